@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Language level, warnings, optimisation and sanitizers, carried by the interface target softfall_options.
+option(SOFTFALL_TESTS "Build the tests" ON)
+option(SOFTFALL_NATIVE "Compile for the processor of this machine" ON)
+option(SOFTFALL_WERROR "Treat warnings as errors" OFF)
+set(SOFTFALL_SANITIZE "" CACHE STRING "Comma list for -fsanitize=, e.g. address,undefined")
+
+if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_C_STANDARD 17)
+set(CMAKE_C_STANDARD_REQUIRED ON)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+# assert() guards programmer errors and costs nothing in the kernels: keep it in every build.
+set(CMAKE_C_FLAGS_RELEASE "-O3 -g")
+
+add_library(softfall_options INTERFACE)
+target_compile_definitions(softfall_options INTERFACE _GNU_SOURCE)
+target_compile_options(softfall_options INTERFACE
+    -Wall -Wextra -Wshadow -Wconversion -Wmissing-prototypes -Wvla
+    # No errno and no traps from sqrt and friends: lets loops over lanes vectorise without changing any result.
+    -fno-math-errno -fno-trapping-math)
+if(SOFTFALL_WERROR)
+    target_compile_options(softfall_options INTERFACE -Werror)
+endif()
+if(SOFTFALL_NATIVE)
+    target_compile_options(softfall_options INTERFACE -march=native)
+endif()
+if(SOFTFALL_SANITIZE)
+    target_compile_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE} -fno-omit-frame-pointer
+                                                      -fno-sanitize-recover=all)
+    target_link_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE})
+endif()

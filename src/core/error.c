@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/error.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format, ...) {
+    if (err->status != SF_OK)
+        return err->status;
+    err->status = status;
+    err->where = where;
+    err->line = line;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(err->text, sizeof err->text, format, args);
+    va_end(args);
+    return status;
+}
+
+int sf_error_report(const sf_error *err, const char *program) {
+    if (err->status == SF_OK)
+        return 0;
+    fflush(stdout);
+    if (getenv("SOFTFALL_DEBUG"))
+        fprintf(stderr, "%s: [%s:%d] %s\n", program, err->where, err->line, err->text);
+    else
+        fprintf(stderr, "%s: %s\n", program, err->text);
+    return (int)err->status;
+}
+
+void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what) {
+    if (size != 0 && count > (SIZE_MAX - 64) / size) {
+        SF_FAIL(err, SF_ERR_MEMORY, "%s: %lu items of %lu bytes exceed the address space", what, count, size);
+        return NULL;
+    }
+    unsigned long bytes = (count * size + 63) / 64 * 64;
+    void *block = aligned_alloc(64, bytes ? bytes : 64);
+    if (!block) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %s (%.1f MB)", what, (double)bytes / 1e6);
+        return NULL;
+    }
+    memset(block, 0, bytes ? bytes : 64);
+    return block;
+}

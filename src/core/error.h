@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Status codes and the error record that every fallible softfall function fills.
+ *
+ * A function that can fail returns sf_status and takes an `sf_error *err` as its last argument. The first failure is
+ * kept (later calls on the same record do not overwrite it) with a sentence that names the entity, the value and the
+ * bound, and with the source line that raised it. `err` may not be NULL. A failing function leaves its outputs
+ * released or NULL unless its header says otherwise. Only main() functions turn a status into an exit code. */
+#ifndef SF_CORE_ERROR_H
+#define SF_CORE_ERROR_H
+
+typedef enum sf_status {
+    SF_OK = 0,
+    SF_ERR_INPUT = 2,     /* case file, geometry, curve or command line is wrong: the user can mend it */
+    SF_ERR_IO = 3,        /* a file could not be opened, read, written or renamed */
+    SF_ERR_MODEL = 4,     /* the discretisation breaks one of its invariants */
+    SF_ERR_NUMERIC = 5,   /* the solution failed: collapsed domain, non-finite value, energy growth */
+    SF_ERR_MEMORY = 6,    /* an allocation failed */
+    SF_ERR_LIBRARY = 7,   /* a library reported an error that is none of the above */
+    SF_INTERRUPTED = 130, /* ended early on SIGINT or SIGTERM; what was written is readable */
+} sf_status;
+
+typedef struct sf_error {
+    sf_status status;  /* SF_OK until the first failure */
+    const char *where; /* source file of the first failure, static storage */
+    int line;          /* source line of the first failure */
+    char text[1024];   /* one sentence, no trailing newline */
+} sf_error;
+
+#define SF_ERROR_INIT {SF_OK, "", 0, ""}
+
+/* Records a failure (unless one is recorded already) and returns the recorded status. */
+#define SF_FAIL(err, status, ...) sf_error_set((err), (status), __FILE__, __LINE__, __VA_ARGS__)
+
+sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+/* Prints "program: sentence" (and the source line when SOFTFALL_DEBUG is set in the environment) to stderr.
+ * Returns the process exit code that belongs to the status. */
+int sf_error_report(const sf_error *err, const char *program);
+
+/* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release them
+ * with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
+void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);
+
+#endif

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/model.h"
+
+#include <math.h>
+
+/* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
+static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr, const int32_t *index,
+                           int64_t limit, bool ascending, sf_error *err) {
+    if (ptr[0] != 0 || ptr[rows] != nnz)
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: row starts run from %lld to %lld, not from 0 to %lld", name,
+                       (long long)ptr[0], (long long)ptr[rows], (long long)nnz);
+    for (int64_t i = 0; i < rows; i++)
+        if (ptr[i + 1] < ptr[i] || ptr[i + 1] > nnz)
+            return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld ends before it starts", name, (long long)i);
+    for (int64_t i = 0; i < rows; i++)
+        for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
+            if (index[k] < 0 || index[k] >= limit)
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld refers to node %d, of 0 to %lld", name, (long long)i,
+                               index[k], (long long)limit - 1);
+            if (ascending && k > ptr[i] && index[k] <= index[k - 1])
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld is not in ascending order", name, (long long)i);
+        }
+    return SF_OK;
+}
+
+static sf_status check_set(const char *name, int64_t count, const int32_t *node, int64_t limit, sf_error *err) {
+    for (int64_t k = 0; k < count; k++)
+        if (node[k] < 0 || node[k] >= limit || (k > 0 && node[k] <= node[k - 1]))
+            return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld (node %d) is out of range or out of order", name,
+                           (long long)k, node[k]);
+    return SF_OK;
+}
+
+static sf_status check_finite(const sf_model *model, sf_error *err) {
+    size_t count;
+    const sf_model_field *field = sf_model_fields(&count);
+    for (size_t k = 0; k < count; k++) {
+        if (field[k].type != SF_MODEL_F64)
+            continue;
+        const char *base = (const char *)model;
+        bool scalar = field[k].rows_offset == SIZE_MAX;
+        int64_t rows = scalar ? 1 : *(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra;
+        const double *data = scalar ? (const double *)(base + field[k].offset)
+                                    : *(double *const *)(base + field[k].offset);
+        for (int64_t i = 0; i < rows * field[k].columns; i++)
+            if (!isfinite(data[i]))
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld is not a finite number", field[k].path,
+                               (long long)i);
+    }
+    return SF_OK;
+}
+
+static sf_status check_bound(const char *name, double value, double low, double high, sf_error *err) {
+    if (!(value >= low && value <= high))
+        return SF_FAIL(err, SF_ERR_MODEL, "%s is %g, outside %g to %g", name, value, low, high);
+    return SF_OK;
+}
+
+static sf_status check_curves(const sf_foam_card *foam, sf_error *err) {
+    if (foam->curve_count < 1 || foam->curve_ptr[0] != 0 || foam->curve_ptr[foam->curve_count] != foam->curve_points)
+        return SF_FAIL(err, SF_ERR_MODEL, "the foam has no usable compression curve");
+    for (int64_t c = 0; c < foam->curve_count; c++) {
+        int64_t first = foam->curve_ptr[c], last = foam->curve_ptr[c + 1];
+        if (first < 0 || last > foam->curve_points || last - first < 4)
+            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld has fewer than 4 points", (long long)c);
+        if (c > 0 && foam->curve_rate[c] <= foam->curve_rate[c - 1])
+            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld: rates must ascend", (long long)c);
+        if (foam->curve_strain[first] != 0 || foam->curve_stress[first] != 0)
+            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not start at (0, 0)", (long long)c);
+        for (int64_t k = first + 1; k < last; k++)
+            if (foam->curve_strain[k] <= foam->curve_strain[k - 1] ||
+                foam->curve_stress[k] < foam->curve_stress[k - 1] || foam->curve_strain[k] >= 1)
+                return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not rise at strain %g", (long long)c,
+                               foam->curve_strain[k]);
+    }
+    return SF_OK;
+}
+
+static sf_status check_cards(const sf_model *m, sf_error *err) {
+    const struct {
+        const char *name;
+        double value, low, high;
+    } bound[] = {
+        {"foam density (kg/m3)", m->foam.density, 1e-3, 1e5},
+        {"foam E (Pa)", m->foam.modulus, 1, 1e12},
+        {"foam HU", m->foam.hysteresis_hu, 1e-6, 1},
+        {"foam SHAPE", m->foam.hysteresis_shape, 1e-3, 100},
+        {"foam DAMP", m->foam.damp, 0, 10},
+        {"foam DAMP length (m)", m->foam.damp_length, 0, 1e3},
+        {"foam ED (Pa)", m->foam.maxwell_modulus, 0, 1e12},
+        {"foam BETA1 (1/s)", m->foam.maxwell_rate, m->foam.maxwell_modulus > 0 ? 1e-6 : 0, 1e12},
+        {"foam viscosity (Pa s)", m->foam.kelvin_viscosity, 0, 1e9},
+        {"foam tension cut-off (Pa)", m->foam.tension_cutoff, 0, 1e300},
+        {"densification start", m->foam.densification_start, 0, 0.999},
+        {"densification limit", m->foam.densification_limit, 0.01, 1},
+        {"densification exponent", m->foam.densification_exponent, 0, 100},
+        {"rate filter time (s)", m->foam.rate_filter_time, m->foam.curve_count > 1 ? 1e-9 : 0, 1e3},
+        {"missile mass (kg)", m->missile.mass, 1e-9, 1e9},
+        {"missile speed (m/s)", m->missile.speed, 1e-9, 200},
+        {"missile friction", m->missile.friction, 0, 10},
+        {"missile gravity (m/s2)", m->missile.gravity, 0, 1e4},
+        {"missile gap (m)", m->missile.gap, 0, 1e3},
+        {"missile shape", (double)m->missile.shape, 0, 1},
+        {"missile sphere radius (m)", m->missile.sphere_radius, m->missile.shape ? 0 : 1e-9, 1e3},
+        {"symmetry factor", (double)m->symmetry_factor, 1, 4},
+        {"pad thickness (m)", m->thickness, 1e-6, 1e3},
+        {"end time (s)", m->run.end_time, 1e-9, 1e3},
+        {"step safety", m->run.step_safety, 1e-3, 1},
+        {"step limit (s)", m->run.step_limit, 1e-12, 1e3},
+        {"stabilisation coefficient", m->run.stabilisation, 0, 10},
+        {"energy limit", m->run.energy_limit, 1e-9, 1e9},
+        {"frame interval (s)", m->run.frame_interval, 1e-9, 1e3},
+    };
+    for (size_t k = 0; k < sizeof bound / sizeof bound[0]; k++)
+        if (check_bound(bound[k].name, bound[k].value, bound[k].low, bound[k].high, err) != SF_OK)
+            return err->status;
+    double length = 0;
+    for (int c = 0; c < 3; c++)
+        length += m->missile.direction[c] * m->missile.direction[c];
+    if (fabs(length - 1) > 1e-9)
+        return SF_FAIL(err, SF_ERR_MODEL, "missile direction has length %g, expected 1", sqrt(length));
+    return check_curves(&m->foam, err);
+}
+
+static sf_status check_mesh(const sf_model *m, sf_error *err) {
+    if (check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count, false,
+                  err) != SF_OK)
+        return err->status;
+    for (int64_t c = 0; c < m->cell_count; c++) {
+        static const int vertices[] = {[SF_CELL_TETRAHEDRON] = 4, [SF_CELL_PYRAMID] = 5, [SF_CELL_PRISM] = 6,
+                                       [SF_CELL_HEXAHEDRON] = 8};
+        uint8_t type = m->cell_type[c];
+        if (type < SF_CELL_TETRAHEDRON || type > SF_CELL_HEXAHEDRON ||
+            m->cell_ptr[c + 1] - m->cell_ptr[c] != vertices[type])
+            return SF_FAIL(err, SF_ERR_MODEL, "background cell %lld has type %d and %lld vertices", (long long)c, type,
+                           (long long)(m->cell_ptr[c + 1] - m->cell_ptr[c]));
+    }
+    for (int64_t k = 0; k < 3 * m->surface_triangle_count; k++)
+        if (m->surface_triangle[k] < 0 || m->surface_triangle[k] >= m->surface_node_count)
+            return SF_FAIL(err, SF_ERR_MODEL, "missile triangle %lld refers to node %d, of 0 to %lld",
+                           (long long)k / 3, m->surface_triangle[k], (long long)m->surface_node_count - 1);
+    return SF_OK;
+}
+
+sf_status sf_model_check(const sf_model *m, sf_error *err) {
+    if (m->node_count < 1 || m->node_count > INT32_MAX)
+        return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld nodes", (long long)m->node_count);
+    if (m->contact_count < 1 || m->surface_triangle_count < 1)
+        return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
+    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK)
+        return err->status;
+    for (int64_t i = 0; i < m->node_count; i++)
+        if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0))
+            return SF_FAIL(err, SF_ERR_MODEL, "node %lld has volume %g m3, mass %g kg, spacing %g m: all must be > 0",
+                           (long long)i, m->volume[i], m->mass[i], m->spacing[i]);
+    if (check_csr("smoothing domains", m->node_count, m->domain_nnz, m->domain_ptr, m->domain_node, m->node_count,
+                  true, err) != SF_OK ||
+        check_csr("shape functions", m->node_count, m->phi_nnz, m->phi_ptr, m->phi_node, m->node_count, true, err) !=
+            SF_OK ||
+        check_csr("edges", m->node_count, m->edge_nnz, m->edge_ptr, m->edge_node, m->node_count, true, err) != SF_OK ||
+        check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
+        check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK)
+        return err->status;
+    return check_mesh(m, err);
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Quantities with units, read with UDUNITS-2: "4.5 m/s" to 4.5, "160 mm" to 0.16. The only file that includes
+ * udunits2.h is units.c. Errors are sentences that say the text, what it is and what was expected. */
+#ifndef SF_CORE_UNITS_H
+#define SF_CORE_UNITS_H
+
+#include "core/error.h"
+
+/* The kinds of quantity that softfall's inputs know. */
+typedef enum sf_quantity {
+    SF_LENGTH,
+    SF_MASS,
+    SF_TIME,
+    SF_SPEED,
+    SF_ACCELERATION,
+    SF_DENSITY,
+    SF_PRESSURE,
+    SF_RATE,
+    SF_VISCOSITY,
+    SF_QUANTITY_COUNT,
+} sf_quantity;
+
+/* The unit system: UDUNITS' database, loaded once. While one is open UDUNITS prints nothing. */
+typedef struct sf_units sf_units;
+
+/* Loads the database. `*units` is owned by the caller: release with sf_units_close (which takes NULL as
+ * well). SF_ERR_LIBRARY if the database cannot be read. */
+sf_status sf_units_open(sf_units **units, sf_error *err);
+void sf_units_close(sf_units **units);
+
+/* Reads "number unit" into the SI value of `kind`. SF_ERR_INPUT if the number or the unit is missing or
+ * unknown, if the unit belongs to another kind (reciprocals too), is an offset or scaled unit, or the value
+ * is not finite. */
+sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity kind, double *si,
+                         sf_error *err);
+
+/* "a speed", "m s-1" and "4.5 m/s"; static storage. */
+const char *sf_quantity_phrase(sf_quantity kind);
+const char *sf_quantity_unit(sf_quantity kind);
+const char *sf_quantity_example(sf_quantity kind);
+
+#endif

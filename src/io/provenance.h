@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where a file comes from: the texts under /provenance (docs/formats.md). */
+#ifndef SF_IO_PROVENANCE_H
+#define SF_IO_PROVENANCE_H
+
+#include "core/error.h"
+#include "io/h5.h"
+
+enum { SF_FORMAT_VERSION = 1 };
+
+/* Borrowed strings; NULL members are not written. Version, revision, compiler, flags and date are added. */
+typedef struct sf_provenance {
+    const char *program;
+    const char *command_line;
+    const char *libraries;
+    const char *case_text;
+    const char *parameters;
+    const char *mesh_hash;
+} sf_provenance;
+
+/* Writes /provenance and the root attributes format and format_version. */
+sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenance *provenance, sf_error *err);
+
+/* Refuses a file that is not of `format` or is of a newer version; `path` is for the sentence. */
+sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *format, sf_error *err);
+
+/* Copies every text of `from`:/provenance to `to`:/provenance/model. */
+sf_status sf_provenance_copy(const sf_h5 *from, sf_h5 *to, sf_error *err);
+
+/* The words of a command joined by blanks, quoted where a shell would need it; from malloc, owned by the caller. */
+char *sf_command_line(int argc, char *const *argv);
+
+#endif

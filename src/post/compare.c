@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/compare.h"
+
+#include "post/reference.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One number in ms at *text, moved behind it. */
+static int parse_ms(const char **text, double *seconds) {
+    char *end;
+    double value = strtod(*text, &end);
+    if (end == *text || !isfinite(value))
+        return 0;
+    *seconds = value * 1e-3;
+    *text = end;
+    return 1;
+}
+
+static int parse_region(const char **text, const char *separators, sf_region *region) {
+    if (!parse_ms(text, &region->begin) || **text == '\0' || !strchr(separators, **text))
+        return 0;
+    ++*text;
+    return parse_ms(text, &region->end) && region->end > region->begin;
+}
+
+sf_status sf_region_parse(const char *text, sf_region *region, sf_error *err) {
+    const char *rest = text;
+    if (!parse_region(&rest, ",-", region) || *rest != '\0')
+        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" is not a window: write two times in ms, e.g. 10.5,25",
+                       text);
+    return SF_OK;
+}
+
+sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count, sf_error *err) {
+    unsigned long most = 1;
+    *count = 0;
+    for (const char *c = text; *c; c++)
+        most += *c == ',';
+    *regions = sf_alloc(err, most, sizeof **regions, "the regions");
+    if (!*regions)
+        return err->status;
+    const char *rest = text;
+    while (parse_region(&rest, "-", &(*regions)[*count])) {
+        ++*count;
+        if (*rest == '\0')
+            return SF_OK;
+        if (*rest++ != ',')
+            break;
+    }
+    free(*regions);
+    *regions = NULL;
+    *count = 0;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "\"%s\" is not a list of regions: write ascending times in ms, e.g. 0-10,10-16,16-30",
+                   text);
+}
+
+/* Last instant before point `peak` at which the curve rises through `level`; its first point if it is never
+ * below. */
+static double last_rise(const sf_series *curve, int64_t peak, double level, double *value) {
+    for (int64_t i = peak; i > 0; i--) {
+        double a1 = curve->value[i - 1], a2 = curve->value[i];
+        if (a1 <= level) {
+            *value = level;
+            return curve->time[i - 1] + (curve->time[i] - curve->time[i - 1]) * (level - a1) / (a2 - a1);
+        }
+    }
+    *value = curve->value[0];
+    return curve->time[0];
+}
+
+sf_status sf_contact_instant(const sf_series *curve, const char *name, double *instant, sf_error *err) {
+    int64_t peak = 0;
+    for (int64_t i = 1; i < curve->count; i++)
+        if (curve->value[i] > curve->value[peak])
+            peak = i;
+    double a_max = curve->value[peak], low = 0, high = 0;
+    if (!(a_max > 0))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s has no positive acceleration (largest value %g g): positive means that "
+                       "the missile is slowed down",
+                       name, a_max);
+    double t_low = last_rise(curve, peak, 0.02 * a_max, &low);
+    double t_high = last_rise(curve, peak, 0.10 * a_max, &high);
+    if (!(t_high > t_low) || !(high > low))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s begins at %g g, above 10 %% of its peak %g g: its contact cannot be found, "
+                       "give --shift",
+                       name, curve->value[0], a_max);
+    *instant = t_low - low * (t_high - t_low) / (high - low);
+    return SF_OK;
+}
+
+static double peak_of(const sf_series *curve) {
+    double peak = curve->value[0];
+    for (int64_t i = 1; i < curve->count; i++)
+        peak = fmax(peak, curve->value[i]);
+    return peak;
+}
+
+/* The model at `time`: free flight before its start, and after its end if contact is over by then; NaN
+ * otherwise. */
+static double model_at(const sf_series *model, double peak, double time) {
+    double slack = 1e-9;
+    if (time < model->time[0] - slack)
+        return 0;
+    if (time > model->time[model->count - 1] + slack)
+        return fabs(model->value[model->count - 1]) < 0.05 * peak ? 0 : NAN;
+    return sf_series_at(model, time);
+}
+
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, double shift, sf_region region,
+                         double interval, sf_fit *fit, sf_error *err) {
+    *fit =
+        (sf_fit){.region = region, .first = NAN, .last = NAN, .interval = interval, .r2 = NAN, .rmse_g = NAN};
+    double begin = measured->time[0], end = measured->time[measured->count - 1], slack = 1e-9;
+    if (!(region.end > begin) || !(region.begin < end))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "the region %g to %g ms lies outside the measured curve (%g to %g ms)",
+                       region.begin * 1e3, region.end * 1e3, begin * 1e3, end * 1e3);
+    double peak = peak_of(model), sum = 0, squares = 0, residual = 0, origin = 0;
+    int64_t samples = (int64_t)floor((region.end - region.begin) / interval + slack) + 1;
+    for (int64_t k = 0; k < samples; k++) {
+        double time = region.begin + (double)k * interval;
+        if (time < begin - slack || time > end + slack)
+            continue;
+        double a = sf_series_at(measured, time);
+        double difference = a - model_at(model, peak, time + shift);
+        if (fit->count++ == 0) {
+            fit->first = time;
+            origin = a; /* keeps the sum of squares free of cancellation */
+        }
+        fit->last = time;
+        sum += a - origin;
+        squares += (a - origin) * (a - origin);
+        residual += difference * difference;
+    }
+    double total = squares - sum * sum / (double)fit->count;
+    if (fit->count < 2)
+        return SF_OK;
+    fit->rmse_g = sqrt(residual / (double)fit->count); /* NaN if the model ends too early */
+    if (total > 1e-12 * squares)
+        fit->r2 = 1 - residual / total;
+    return SF_OK;
+}
+
+static sf_status fit_all(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
+                         sf_error *err) {
+    const double intervals[2] = {0.25e-3, 0.50e-3};
+    sf_region window = options->window;
+    if (isnan(window.begin))
+        window = (sf_region){c->injury.hic.t1, c->injury.hic.t2};
+    c->fits =
+        sf_alloc(err, 2 * (unsigned long)(options->region_count + 1), sizeof *c->fits, "the comparison");
+    if (!c->fits)
+        return err->status;
+    for (int64_t k = -1; k < options->region_count; k++) {
+        sf_region region = k < 0 ? window : options->regions[k];
+        for (int j = 0; j < 2; j++)
+            if (sf_compare_fit(&c->measured, model, c->shift, region, intervals[j], &c->fits[c->fit_count++],
+                               err))
+                return err->status;
+    }
+    return SF_OK;
+}
+
+sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
+                         sf_error *err) {
+    double measured_contact = 0, model_contact = 0;
+    *c = (sf_comparison){.shift = options->shift, .shift_given = !isnan(options->shift)};
+    if (sf_reference_read(options->path, &c->measured, err) != SF_OK ||
+        sf_injury_evaluate(&c->measured, &c->injury, err) != SF_OK)
+        goto done;
+    if (!(c->injury.a_max_g > 0)) {
+        SF_FAIL(err, SF_ERR_INPUT,
+                "%s has no positive acceleration: positive means that the missile is slowed down",
+                options->path);
+        goto done;
+    }
+    if (!c->shift_given) {
+        if (sf_contact_instant(&c->measured, options->path, &measured_contact, err) != SF_OK ||
+            sf_contact_instant(model, "the computed curve", &model_contact, err) != SF_OK)
+            goto done;
+        c->shift = model_contact - measured_contact;
+    }
+    c->peak_error = peak_of(model) / c->injury.a_max_g - 1;
+    fit_all(options, model, c, err);
+done:
+    if (err->status != SF_OK)
+        sf_comparison_free(c);
+    return err->status;
+}
+
+void sf_comparison_free(sf_comparison *comparison) {
+    sf_series_free(&comparison->measured);
+    free(comparison->fits);
+    *comparison = (sf_comparison){0};
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Curves as CSV: a heading whose names carry the units, then one row per point. */
+#ifndef SF_POST_CSV_H
+#define SF_POST_CSV_H
+
+#include "post/compare.h"
+#include "post/figures.h"
+#include "post/output.h"
+
+/* history.csv: every row of the history; the filtered acceleration is interpolated to its instants. */
+sf_status sf_csv_write_history(const sf_output *output, const sf_results *results, const sf_figures *figures,
+                               sf_error *err);
+
+/* reference.csv: the measured curve on the clock of the model, and the model at the same instants (empty
+ * outside). */
+sf_status sf_csv_write_reference(const sf_output *output, const sf_comparison *comparison,
+                                 const sf_figures *figures, sf_error *err);
+
+#endif

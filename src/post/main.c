@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-post RESULTS -o DIR: injury figures, curves, pictures and ParaView files from a results.h5. */
+#include "build_info.h"
+#include "io/provenance.h"
+#include "post/compare.h"
+#include "post/csv.h"
+#include "post/figures.h"
+#include "post/output.h"
+#include "post/plot.h"
+#include "post/results.h"
+#include "post/section.h"
+#include "post/summary.h"
+#include "post/xdmf.h"
+
+#include <argp.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEY_FORCE = 256, KEY_FILTER, KEY_REFERENCE, KEY_WINDOW, KEY_REGIONS, KEY_SHIFT };
+
+typedef struct options {
+    const char *results_path;
+    const char *directory;
+    bool force;
+    double cfc;
+    bool comparing; /* --reference was given */
+    bool tuned;     /* an option that needs --reference was given */
+    sf_compare_options compare;
+    sf_region *regions;
+    sf_error err;
+} options;
+
+/* What the run holds, for one clean-up. */
+typedef struct job {
+    sf_results results;
+    sf_figures figures;
+    sf_comparison comparison;
+    sf_output output;
+    char *command_line;
+    int64_t frames;
+    char plot_warning[512];
+} job;
+
+static sf_status parse_filter(const char *text, double *cfc, sf_error *err) {
+    static const double classes[] = {60, 180, 600, 1000};
+    char *end;
+    *cfc = strtod(text, &end);
+    for (size_t k = 0; k < sizeof classes / sizeof classes[0]; k++)
+        if (end != text && *end == '\0' && *cfc == classes[k])
+            return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT, "--filter %s: the channel frequency classes are 60, 180, 600 and 1000",
+                   text);
+}
+
+static sf_status parse_shift(const char *text, double *shift, sf_error *err) {
+    char *end;
+    *shift = strtod(text, &end) * 1e-3;
+    if (end == text || *end != '\0' || !isfinite(*shift))
+        return SF_FAIL(err, SF_ERR_INPUT, "--shift %s: not a time in ms", text);
+    return SF_OK;
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+    options *o = state->input;
+    switch (key) {
+    case 'o':
+        o->directory = text;
+        break;
+    case KEY_FORCE:
+        o->force = true;
+        break;
+    case KEY_FILTER:
+        parse_filter(text, &o->cfc, &o->err);
+        break;
+    case KEY_REFERENCE:
+        o->compare.path = text;
+        o->comparing = true;
+        break;
+    case KEY_WINDOW:
+        sf_region_parse(text, &o->compare.window, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_REGIONS:
+        free(o->regions);
+        sf_regions_parse(text, &o->regions, &o->compare.region_count, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_SHIFT:
+        parse_shift(text, &o->compare.shift, &o->err);
+        o->tuned = true;
+        break;
+    case ARGP_KEY_ARG:
+        if (o->results_path)
+            argp_error(state, "one results file is expected, found \"%s\" as well", text);
+        o->results_path = text;
+        break;
+    case ARGP_KEY_END:
+        if (!o->results_path || !o->directory)
+            argp_error(state, "give a results file, and the output directory with -o");
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static void print_version(FILE *stream, struct argp_state *state) {
+    (void)state;
+    fputs("softfall-post " SF_VERSION " (" SF_GIT_REVISION ")\n", stream);
+}
+
+static sf_status parse_command(int argc, char **argv, options *o) {
+    static const struct argp_option known[] = {
+        {"output", 'o', "DIR", 0, "write everything there (required)", 0},
+        {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier run in DIR", 0},
+        {"filter", KEY_FILTER, "CFC", 0, "channel frequency class: 60, 180, 600 or 1000 (default)", 0},
+        {"reference", KEY_REFERENCE, "CSV", 0,
+         "compare with a measured curve: columns time_ms (or _s, _us) and acceleration_g (or _m_s2)", 1},
+        {"window", KEY_WINDOW, "A,B", 0,
+         "compare over A to B ms of the measured time (default: its HIC window)", 1},
+        {"regions", KEY_REGIONS, "A-B,C-D,...", 0,
+         "compare over these regions too, in ms of the measured time", 1},
+        {"shift", KEY_SHIFT, "MS", 0, "model time = measured time + MS (default: align the contacts)", 1},
+        {0},
+    };
+    const struct argp parser = {
+        .options = known,
+        .parser = parse_option,
+        .args_doc = "RESULTS.h5 -o DIR",
+        .doc =
+            "Injury figures, curves and ParaView files of a softfall drop.\v"
+            "Writes summary.json, history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and pad.h5. "
+            "Open pad.xdmf in ParaView. The figures are indicative, not a certification.",
+    };
+    argp_program_version_hook = print_version;
+    *o = (options){.cfc = 1000, .compare = {.shift = NAN, .window = {NAN, NAN}}, .err = SF_ERROR_INIT};
+    if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
+        return SF_FAIL(&o->err, SF_ERR_INPUT, "the command line cannot be read");
+    o->compare.regions = o->regions;
+    if (o->tuned && !o->comparing)
+        return SF_FAIL(&o->err, SF_ERR_INPUT, "--window, --regions and --shift need --reference");
+    return o->err.status;
+}
+
+static sf_status write_output(const options *o, job *j, sf_error *err) {
+    bool section = false;
+    const sf_comparison *comparison = o->comparing ? &j->comparison : NULL;
+    if (sf_output_begin(o->directory, o->force, &j->output, err) != SF_OK ||
+        sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
+        (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
+        sf_section_write(&j->output, &j->results, &section, err) != SF_OK ||
+        sf_xdmf_write(&j->output, &j->results, j->command_line, &j->frames, err) != SF_OK ||
+        sf_plot_write(&j->output, &j->results, &j->figures, comparison, j->plot_warning,
+                      sizeof j->plot_warning, err))
+        return err->status;
+    if (!section)
+        fprintf(stderr,
+                "softfall-post: warning: no frame holds the von Mises stress at the peak: no section.csv\n");
+    const sf_summary summary = {o->results_path, o->compare.path, &j->results, &j->figures, comparison};
+    if (sf_summary_write(&j->output, &summary, err) != SF_OK || sf_output_commit(&j->output, err) != SF_OK)
+        return err->status;
+    sf_summary_print(stdout, &summary);
+    return SF_OK;
+}
+
+static void print_warnings(const job *j) {
+    fflush(stdout);
+    for (int k = 0; k < j->results.note_count; k++)
+        fprintf(stderr, "softfall-post: warning: %s\n", j->results.notes[k]);
+    if (!j->figures.touched)
+        fprintf(stderr,
+                "softfall-post: warning: the missile never touched the pad: there are no injury figures\n");
+    else if (!j->figures.rebounded)
+        fprintf(
+            stderr,
+            "softfall-post: warning: the run ended in contact: no rebound speed, the peak may lie ahead\n");
+    if (j->plot_warning[0])
+        fprintf(stderr, "softfall-post: warning: %s\n", j->plot_warning);
+}
+
+static void print_files(const job *j) {
+    static const struct {
+        const char *name, *meaning;
+    } files[] = {
+        {"summary.json", "the figures"},
+        {"acceleration.png", "the curves and the HIC window"},
+        {"history.csv", "acceleration, speed, indentation, forces, energies over time"},
+        {"section.csv", "mid-section and profile under the axis at the peak"},
+        {"reference.csv", "the measured curve, aligned"},
+        {"pad.xdmf", "pad and missile for ParaView (with pad.h5)"},
+    };
+    printf("Files\n");
+    for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
+        if (sf_output_has(&j->output, files[k].name))
+            printf("  %s/%-18s %s\n", j->output.directory, files[k].name, files[k].meaning);
+}
+
+static sf_status run(const options *o, job *j, sf_error *err) {
+    if (!j->command_line)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the command line");
+    if (sf_results_open(o->results_path, &j->results, err) != SF_OK ||
+        sf_figures_compute(&j->results, o->cfc, &j->figures, err) != SF_OK)
+        return err->status;
+    if (o->comparing && !j->figures.touched)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile never touched the pad",
+                       o->results_path);
+    if (o->comparing && sf_compare_run(&o->compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
+        return err->status;
+    if (write_output(o, j, err) != SF_OK)
+        return err->status;
+    print_files(j);
+    print_warnings(j);
+    return SF_OK;
+}
+
+int main(int argc, char **argv) {
+    options o;
+    job j = {0};
+    sf_error err = SF_ERROR_INIT;
+    if (parse_command(argc, argv, &o) != SF_OK) {
+        err = o.err;
+    } else {
+        j.command_line = sf_command_line(argc, argv);
+        run(&o, &j, &err);
+    }
+    sf_output_end(&j.output);
+    if (o.comparing)
+        sf_comparison_free(&j.comparison);
+    sf_figures_free(&j.figures);
+    sf_results_close(&j.results);
+    free(j.command_line);
+    free(o.regions);
+    return sf_error_report(&err, "softfall-post");
+}

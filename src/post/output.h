@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The output directory. Files are first written in a hidden directory inside it and moved to their places
+ * when all of them are complete: a run that fails leaves the files of an earlier run as they were. */
+#ifndef SF_POST_OUTPUT_H
+#define SF_POST_OUTPUT_H
+
+#include "core/error.h"
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct sf_output {
+    char *directory; /* where the files will be */
+    char *staging;   /* where they are written */
+    bool created;    /* the directory did not exist before */
+} sf_output;
+
+/* Makes the directory if need be. SF_ERR_INPUT if it holds one of our files already and `force` is false. */
+sf_status sf_output_begin(const char *directory, bool force, sf_output *output, sf_error *err);
+
+/* "staging/name"; from malloc, owned by the caller; NULL on failure. */
+char *sf_output_path(const sf_output *output, const char *name, sf_error *err);
+
+/* A text file of that name in the staging directory; NULL on failure. sf_output_close reports writes that
+ * failed. */
+FILE *sf_output_open(const sf_output *output, const char *name, sf_error *err);
+sf_status sf_output_close(FILE *file, const char *name, sf_error *err);
+
+/* True if the file has been written in this run. */
+bool sf_output_has(const sf_output *output, const char *name);
+
+/* Moves every file to its place and removes those of an earlier run that have no successor. */
+sf_status sf_output_commit(sf_output *output, sf_error *err);
+
+/* Removes what was not committed (and the directory, if this run made it and it is empty); releases. Always
+ * safe. */
+void sf_output_end(sf_output *output);
+
+#endif

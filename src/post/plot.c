@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/plot.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Time axis (ms): the run, and of a longer measured curve at most a bit more. */
+static void time_range(const sf_figures *f, const sf_comparison *c, double range[2]) {
+    range[0] = f->raw.time[0] * 1e3;
+    range[1] = f->raw.time[f->raw.count - 1] * 1e3;
+    if (c) {
+        double margin = 0.15 * (range[1] - range[0]);
+        double first = (c->measured.time[0] + c->shift) * 1e3;
+        double last = (c->measured.time[c->measured.count - 1] + c->shift) * 1e3;
+        range[0] = fmin(range[0], fmax(first, range[0] - margin));
+        range[1] = fmax(range[1], fmin(last, range[1] + margin));
+    }
+}
+
+/* From 0, or below it if the curves really go there, to a tenth above the highest of them (g). */
+static void value_range(const sf_figures *f, const sf_comparison *c, double range[2]) {
+    const sf_series *curves[3] = {&f->raw, &f->filtered, c ? &c->measured : NULL};
+    double low = 0, high = 0;
+    for (int k = 0; k < 3 && curves[k]; k++) {
+        for (int64_t i = 0; i < curves[k]->count; i++) {
+            low = fmin(low, curves[k]->value[i]);
+            high = fmax(high, curves[k]->value[i]);
+        }
+    }
+    range[0] = low < -0.02 * high ? 1.1 * low : 0;
+    range[1] = high > 0 ? 1.1 * high : 1;
+}
+
+static void put_style(FILE *g, const sf_results *r, const sf_figures *f, const sf_comparison *c) {
+    double time[2], value[2];
+    time_range(f, c, time);
+    value_range(f, c, value);
+    fputs("set terminal pngcairo size 1600,1000 font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"
+          "set output 'acceleration.png'\n"
+          "set datafile separator ','\n"
+          "set encoding utf8\n",
+          g);
+    fprintf(g, "set title 'Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm' offset 0,-0.3\n",
+            r->missile_mass, r->missile_speed, r->thickness * 1e3);
+    fputs("set xlabel 'time (ms)'\nset ylabel 'deceleration (g)'\n", g);
+    fprintf(g, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", time[0], time[1], value[0], value[1]);
+    fputs("set grid back lt 1 lc rgb '#c8c8c8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
+          "set tics nomirror out scale 0.6\nset xzeroaxis lw 1 lc rgb '#808080'\n"
+          "set key bmargin center horizontal maxcols 2 Left reverse samplen 2.5 width 2\n",
+          g);
+}
+
+static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
+    fputs("plot ", g);
+    if (f->injury.hic.value > 0)
+        fprintf(g,
+                "'history.csv' skip 1 using 1:($1 >= %.9g && $1 <= %.9g ? $3 : NaN) with filledcurves y=0 "
+                "fc rgb '#c6dbef' title 'HIC %.1f: %.2f to %.2f ms', \\\n     ",
+                f->injury.hic.t1 * 1e3, f->injury.hic.t2 * 1e3, f->injury.hic.value, f->injury.hic.t1 * 1e3,
+                f->injury.hic.t2 * 1e3);
+    fputs("'history.csv' skip 1 using 1:2 with lines lw 1.2 lc rgb '#fd8d3c' title 'raw', \\\n     ", g);
+    fprintf(g, "'history.csv' skip 1 using 1:3 with lines lw 4 lc rgb '#08519c' title 'CFC %.0f", f->cfc);
+    if (f->touched)
+        fprintf(g, ": a_max %.1f g", f->injury.a_max_g);
+    fputc('\'', g);
+    if (c)
+        fprintf(g,
+                ", \\\n     'reference.csv' skip 1 using 1:2 with lines lw 3 dt 2 lc rgb '#202020' "
+                "title 'measured: a_max %.1f g, HIC %.1f'",
+                c->injury.a_max_g, c->injury.hic.value);
+    fputc('\n', g);
+}
+
+/* Runs gnuplot in `directory`, silently. Returns its exit code, or -1 with errno. */
+static int run_gnuplot(const char *directory) {
+    char program[] = "gnuplot", script[] = "acceleration.gp";
+    char *const arguments[] = {program, script, NULL};
+    posix_spawn_file_actions_t actions;
+    pid_t child = 0;
+    int status = 0;
+    if (posix_spawn_file_actions_init(&actions) != 0)
+        return -1;
+    int result = posix_spawn_file_actions_addchdir_np(&actions, directory);
+    for (int descriptor = 0; descriptor <= 2 && result == 0; descriptor++)
+        result = posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_RDWR, 0);
+    if (result == 0)
+        result = posix_spawnp(&child, program, &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (result != 0) {
+        errno = result;
+        return -1;
+    }
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+}
+
+sf_status sf_plot_write(const sf_output *output, const sf_results *results, const sf_figures *figures,
+                        const sf_comparison *comparison, char *warning, size_t size, sf_error *err) {
+    warning[0] = '\0';
+    FILE *script = sf_output_open(output, "acceleration.gp", err);
+    if (!script)
+        return err->status;
+    put_style(script, results, figures, comparison);
+    put_curves(script, figures, comparison);
+    if (sf_output_close(script, "acceleration.gp", err) != SF_OK)
+        return err->status;
+    int code = run_gnuplot(output->staging);
+    if (code == -1)
+        snprintf(warning, size,
+                 "acceleration.png was not drawn, as gnuplot cannot be run (%s): install it and run "
+                 "\"gnuplot acceleration.gp\" in the output directory",
+                 strerror(errno));
+    else if (code != 0 || !sf_output_has(output, "acceleration.png"))
+        snprintf(warning, size,
+                 "acceleration.png was not drawn: gnuplot ended with code %d; run "
+                 "\"gnuplot acceleration.gp\" in the output directory to see why",
+                 code);
+    return SF_OK;
+}

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* acceleration.png, drawn by gnuplot from acceleration.gp and history.csv (and reference.csv), which stay
+ * beside it: the picture can be drawn again, or differently, with `gnuplot acceleration.gp`. */
+#ifndef SF_POST_PLOT_H
+#define SF_POST_PLOT_H
+
+#include "post/compare.h"
+#include "post/figures.h"
+#include "post/output.h"
+
+/* After the CSV files. `comparison` may be NULL. If gnuplot is absent or fails, `warning` (size bytes) says
+ * so in a sentence, and that is no error; otherwise it is "". */
+sf_status sf_plot_write(const sf_output *output, const sf_results *results, const sf_figures *figures,
+                        const sf_comparison *comparison, char *warning, size_t size, sf_error *err);
+
+#endif

@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/results.h"
+
+#include "io/provenance.h"
+#include "post/results_check.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *sf_history_name(sf_history_column column) {
+    static const char *const names[SF_HISTORY_COLUMNS] = {
+        "time",
+        "time_step",
+        "acceleration",
+        "velocity",
+        "displacement",
+        "indentation",
+        "contact_force",
+        "friction_force",
+        "base_reaction",
+        "energy_kinetic_missile",
+        "energy_kinetic_pad",
+        "energy_stored",
+        "energy_hysteresis",
+        "energy_viscous",
+        "energy_stabilisation",
+        "energy_contact",
+        "energy_friction",
+        "energy_external",
+        "energy_error",
+        "momentum_error",
+        "largest_compression",
+        "smallest_jacobian",
+        "contact_nodes",
+        "penetration",
+        "constraint_residual",
+    };
+    return names[column];
+}
+
+const sf_frame_field_info *sf_frame_field_get(sf_frame_field field) {
+    static const sf_frame_field_info fields[SF_FRAME_FIELDS] = {
+        {"displacement", 3, "m", "displacement u_h at the nodes"},
+        {"velocity", 3, "m s-1", "velocity at the nodes"},
+        {"cauchy_stress", 9, "Pa", "Cauchy stress, row-major xx xy xz yx yy yz zx zy zz"},
+        {"von_mises", 1, "Pa", "von Mises stress"},
+        {"principal_stretches", 3, "1", "principal stretches, ascending"},
+        {"largest_compression", 1, "1", "1 - smallest principal stretch"},
+        {"energy_density", 1, "J m-3", "W of the loading curve per reference volume"},
+        {"hysteresis_factor", 1, "1", "factor on the stress of the loading curve"},
+    };
+    return &fields[field];
+}
+
+bool sf_results_touched(const sf_results *results) {
+    for (int64_t i = 0; i < results->history_rows; i++)
+        if (results->history[SF_HISTORY_CONTACT_NODES][i] > 0)
+            return true;
+    return false;
+}
+
+static sf_status read_array(const sf_results *r, const char *path, sf_h5_type type, int64_t *rows,
+                            int64_t columns, void *array, sf_error *err) {
+    int64_t dims[2] = {*rows, columns};
+    void *data = NULL;
+    if (sf_h5_read(r->file, path, type, columns > 1 ? 2 : 1, dims, &data, err) != SF_OK)
+        return err->status;
+    *rows = dims[0];
+    *(void **)array = data;
+    return SF_OK;
+}
+
+static sf_status read_integer(const sf_results *r, const char *path, int64_t *value, sf_error *err) {
+    void *data = NULL;
+    if (sf_h5_read(r->file, path, SF_H5_I64, 0, NULL, &data, err) != SF_OK)
+        return err->status;
+    *value = *(int64_t *)data;
+    free(data);
+    return SF_OK;
+}
+
+static sf_status read_vector(const sf_results *r, const char *path, double vector[3], sf_error *err) {
+    int64_t three = 3;
+    double *data = NULL;
+    if (read_array(r, path, SF_H5_F64, &three, 1, &data, err) != SF_OK)
+        return err->status;
+    memcpy(vector, data, 3 * sizeof *vector);
+    free(data);
+    return SF_OK;
+}
+
+static sf_status read_model(sf_results *r, sf_error *err) {
+    int64_t pointers = -1;
+    r->node_count = r->cell_count = r->cell_nnz = r->surface_node_count = r->surface_triangle_count = -1;
+    if (read_array(r, "/model/position", SF_H5_F64, &r->node_count, 3, &r->position, err) != SF_OK ||
+        read_array(r, "/model/volume", SF_H5_F64, &r->node_count, 1, &r->volume, err) != SF_OK ||
+        read_array(r, "/model/cell_type", SF_H5_U8, &r->cell_count, 1, &r->cell_type, err) != SF_OK)
+        return err->status;
+    pointers = r->cell_count + 1;
+    if (read_array(r, "/model/cell_ptr", SF_H5_I64, &pointers, 1, &r->cell_ptr, err) != SF_OK ||
+        read_array(r, "/model/cell_node", SF_H5_I32, &r->cell_nnz, 1, &r->cell_node, err) != SF_OK ||
+        read_array(r, "/model/surface_position", SF_H5_F64, &r->surface_node_count, 3, &r->surface_position,
+                   err) ||
+        read_array(r, "/model/surface_triangle", SF_H5_I32, &r->surface_triangle_count, 3,
+                   &r->surface_triangle, err))
+        return err->status;
+    if (read_integer(r, "/model/symmetry_factor", &r->symmetry_factor, err) != SF_OK ||
+        sf_h5_read_scalar(r->file, "/model/thickness", &r->thickness, err) != SF_OK ||
+        sf_h5_read_scalar(r->file, "/model/density", &r->density, err) != SF_OK ||
+        sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err) != SF_OK ||
+        sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err) != SF_OK ||
+        read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK)
+        return err->status;
+    return sf_results_check_model(r, err);
+}
+
+static sf_status read_summary(sf_results *r, sf_error *err) {
+    r->steps = r->threads = r->interactions = -1;
+    r->contact_time = r->wall_time = NAN;
+    r->has_summary = sf_h5_exists(r->file, "/summary/status");
+    if (!r->has_summary) {
+        sf_results_note(
+            r, "there is no /summary: the run is still going or was killed; what it had written is used");
+        return SF_OK;
+    }
+    char *status = NULL;
+    if (sf_h5_read_text(r->file, "/summary/status", &status, err) != SF_OK)
+        return err->status;
+    snprintf(r->status, sizeof r->status, "%s", status);
+    free(status);
+    if (read_integer(r, "/summary/steps", &r->steps, err) != SF_OK ||
+        read_integer(r, "/summary/threads", &r->threads, err) != SF_OK ||
+        read_integer(r, "/summary/interactions", &r->interactions, err) != SF_OK ||
+        sf_h5_read_scalar(r->file, "/summary/wall_time", &r->wall_time, err) != SF_OK ||
+        sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err) != SF_OK)
+        return err->status;
+    if (!sf_results_ended_well(r))
+        sf_results_note(r, "the run stopped with: %s", r->status);
+    else if (strcmp(r->status, "interrupted") == 0)
+        sf_results_note(r, "the run was interrupted: the figures are those of the part that was computed");
+    return SF_OK;
+}
+
+static sf_status read_history(sf_results *r, sf_error *err) {
+    int64_t rows[SF_HISTORY_COLUMNS];
+    for (int c = 0; c < SF_HISTORY_COLUMNS; c++) {
+        char path[64];
+        snprintf(path, sizeof path, "/history/%s", sf_history_name((sf_history_column)c));
+        rows[c] = -1;
+        if (read_array(r, path, SF_H5_F64, &rows[c], 1, &r->history[c], err) != SF_OK)
+            return err->status;
+    }
+    return sf_results_check_history(r, rows, err);
+}
+
+static sf_status read_head(const sf_results *r, sf_frame_head *head, sf_error *err) {
+    char path[64];
+    snprintf(path, sizeof path, "%s/time", head->group);
+    if (sf_h5_read_scalar(r->file, path, &head->time, err) != SF_OK)
+        return err->status;
+    snprintf(path, sizeof path, "%s/acceleration", head->group);
+    if (sf_h5_read_scalar(r->file, path, &head->acceleration, err) != SF_OK)
+        return err->status;
+    snprintf(path, sizeof path, "%s/missile_displacement", head->group);
+    if (read_vector(r, path, head->missile_displacement, err) != SF_OK)
+        return err->status;
+    const double *u = head->missile_displacement;
+    if (!isfinite(head->time) || !isfinite(head->acceleration) || !isfinite(u[0] + u[1] + u[2]))
+        return SF_FAIL(err, SF_ERR_IO, "%s: its time, acceleration or missile_displacement is not finite",
+                       head->group);
+    return SF_OK;
+}
+
+/* True if the error is to be passed on; otherwise it becomes a note, as the run did not end well. */
+static bool keep_error(sf_results *r, sf_error *problem, sf_error *err) {
+    if (sf_results_ended_well(r)) {
+        SF_FAIL(err, problem->status, "%s", problem->text);
+        return true;
+    }
+    sf_results_note(r, "left out: %.200s", problem->text);
+    return false;
+}
+
+static sf_status read_frame_list(sf_results *r, sf_error *err) {
+    int64_t count = sf_h5_group_size(r->file, "/frames");
+    r->frames =
+        sf_alloc(err, (unsigned long)(count > 0 ? count : 0), sizeof *r->frames, "the list of frames");
+    if (!r->frames)
+        return err->status;
+    for (int64_t k = 0; k < count; k++) {
+        char name[16];
+        sf_error problem = SF_ERROR_INIT;
+        sf_frame_head *head = &r->frames[r->frame_count];
+        if (sf_h5_group_member(r->file, "/frames", k, name, sizeof name, err) != SF_OK)
+            return err->status;
+        snprintf(head->group, sizeof head->group, "/frames/%s", name);
+        if (read_head(r, head, &problem) == SF_OK && k > 0 && r->frame_count > 0 &&
+            !(head->time > head[-1].time))
+            SF_FAIL(&problem, SF_ERR_IO, "%s: its time %.9g s does not follow %.9g s of the frame before",
+                    head->group, head->time, head[-1].time);
+        if (problem.status == SF_OK)
+            r->frame_count++;
+        else if (keep_error(r, &problem, err))
+            return err->status;
+    }
+    if (r->frame_count == 0)
+        sf_results_note(r, "there are no frames: nothing to show in ParaView");
+    snprintf(r->peak.group, sizeof r->peak.group, "/peak");
+    if (!sf_h5_exists(r->file, "/peak"))
+        return SF_OK;
+    sf_error problem = SF_ERROR_INIT;
+    r->has_peak = read_head(r, &r->peak, &problem) == SF_OK;
+    if (!r->has_peak)
+        keep_error(r, &problem, err);
+    return err->status;
+}
+
+sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) {
+    *results = (sf_results){0};
+    if (sf_h5_open(path, &results->file, err) != SF_OK ||
+        sf_provenance_check(results->file, path, "softfall-results", err) != SF_OK ||
+        read_model(results, err) != SF_OK || read_summary(results, err) != SF_OK ||
+        read_history(results, err) != SF_OK || read_frame_list(results, err) != SF_OK)
+        sf_results_close(results);
+    return err->status;
+}
+
+void sf_results_close(sf_results *results) {
+    sf_error ignored = SF_ERROR_INIT; /* nothing was written, so nothing can be lost */
+    sf_h5_close(&results->file, &ignored);
+    free(results->position);
+    free(results->volume);
+    free(results->cell_type);
+    free(results->cell_ptr);
+    free(results->cell_node);
+    free(results->surface_position);
+    free(results->surface_triangle);
+    for (int c = 0; c < SF_HISTORY_COLUMNS; c++)
+        free(results->history[c]);
+    free(results->frames);
+    *results = (sf_results){0};
+}
+
+sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame,
+                        sf_error *err) {
+    *frame = (sf_frame){0};
+    for (int f = 0; f < SF_FRAME_FIELDS; f++) {
+        const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s", head->group, info->name);
+        if (!sf_h5_exists(results->file, path))
+            continue;
+        int64_t rows = results->node_count;
+        if (read_array(results, path, SF_H5_F64, &rows, info->components, &frame->field[f], err) != SF_OK ||
+            sf_results_check_finite(frame->field[f], rows * info->components, path, err) != SF_OK) {
+            sf_frame_free(frame);
+            return err->status;
+        }
+    }
+    return SF_OK;
+}
+
+void sf_frame_free(sf_frame *frame) {
+    for (int f = 0; f < SF_FRAME_FIELDS; f++)
+        free(frame->field[f]);
+    *frame = (sf_frame){0};
+}

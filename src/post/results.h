@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads results.h5 (docs/formats.md) and refuses what does not keep to that format: every size, index range,
+ * order and finiteness is checked here, so that the rest of softfall-post may trust the numbers.
+ *
+ * A file of a run that failed, was killed or is still going is read as far as it goes, and what is left out
+ * is said in `notes`: history rows that are not complete or not finite, and frames without their scalars. In
+ * a file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
+ * errors. */
+#ifndef SF_POST_RESULTS_H
+#define SF_POST_RESULTS_H
+
+#include "core/error.h"
+#include "io/h5.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Columns of /history, in the order of docs/formats.md. */
+typedef enum sf_history_column {
+    SF_HISTORY_TIME,
+    SF_HISTORY_TIME_STEP,
+    SF_HISTORY_ACCELERATION,
+    SF_HISTORY_VELOCITY,
+    SF_HISTORY_DISPLACEMENT,
+    SF_HISTORY_INDENTATION,
+    SF_HISTORY_CONTACT_FORCE,
+    SF_HISTORY_FRICTION_FORCE,
+    SF_HISTORY_BASE_REACTION,
+    SF_HISTORY_ENERGY_KINETIC_MISSILE,
+    SF_HISTORY_ENERGY_KINETIC_PAD,
+    SF_HISTORY_ENERGY_STORED,
+    SF_HISTORY_ENERGY_HYSTERESIS,
+    SF_HISTORY_ENERGY_VISCOUS,
+    SF_HISTORY_ENERGY_STABILISATION,
+    SF_HISTORY_ENERGY_CONTACT,
+    SF_HISTORY_ENERGY_FRICTION,
+    SF_HISTORY_ENERGY_EXTERNAL,
+    SF_HISTORY_ENERGY_ERROR,
+    SF_HISTORY_MOMENTUM_ERROR,
+    SF_HISTORY_LARGEST_COMPRESSION,
+    SF_HISTORY_SMALLEST_JACOBIAN,
+    SF_HISTORY_CONTACT_NODES,
+    SF_HISTORY_PENETRATION,
+    SF_HISTORY_CONSTRAINT_RESIDUAL,
+    SF_HISTORY_COLUMNS,
+} sf_history_column;
+
+/* Fields of a frame, one value or vector per node. */
+typedef enum sf_frame_field {
+    SF_FRAME_DISPLACEMENT,
+    SF_FRAME_VELOCITY,
+    SF_FRAME_CAUCHY_STRESS,
+    SF_FRAME_VON_MISES,
+    SF_FRAME_PRINCIPAL_STRETCHES,
+    SF_FRAME_LARGEST_COMPRESSION,
+    SF_FRAME_ENERGY_DENSITY,
+    SF_FRAME_HYSTERESIS_FACTOR,
+    SF_FRAME_FIELDS,
+} sf_frame_field;
+
+typedef struct sf_frame_field_info {
+    const char *name;
+    int components; /* 1, 3 or 9 */
+    const char *units;
+    const char *description;
+} sf_frame_field_info;
+
+typedef struct sf_frame_head {
+    char group[24];                 /* "/frames/000012" or "/peak" */
+    double time;                    /* s */
+    double missile_displacement[3]; /* m, translation of the surface since t = 0 */
+    double acceleration;            /* m s-2 */
+} sf_frame_head;
+
+typedef struct sf_frame {
+    double *field[SF_FRAME_FIELDS]; /* [node_count][components], NULL if the file does not hold it */
+} sf_frame;
+
+enum { SF_RESULTS_NOTES = 8 };
+
+typedef struct sf_results {
+    sf_h5 *file; /* open until sf_results_close */
+
+    int64_t node_count;
+    double *position; /* [node_count][3] m */
+    double *volume;   /* [node_count] m3 */
+    int64_t cell_count;
+    int64_t cell_nnz;
+    uint8_t *cell_type; /* [cell_count] XDMF topology code */
+    int64_t *cell_ptr;  /* [cell_count + 1] */
+    int32_t *cell_node; /* [cell_nnz] VTK order */
+    int64_t surface_node_count;
+    int64_t surface_triangle_count;
+    double *surface_position;  /* [surface_node_count][3] m, missile at t = 0 */
+    int32_t *surface_triangle; /* [surface_triangle_count][3] */
+    int64_t symmetry_factor;
+    double thickness;     /* m */
+    double density;       /* kg m-3 */
+    double missile_mass;  /* kg */
+    double missile_speed; /* m s-1 */
+    double missile_direction[3];
+
+    int64_t history_rows;
+    double *history[SF_HISTORY_COLUMNS]; /* [history_rows] SI */
+
+    int64_t frame_count;
+    sf_frame_head *frames; /* [frame_count], ascending in time */
+    bool has_peak;
+    sf_frame_head peak;
+
+    bool has_summary;    /* false: the members below are empty, NaN or -1 */
+    char status[512];    /* "" without summary */
+    double contact_time; /* s, NaN if the bodies never touched */
+    double wall_time;    /* s */
+    int64_t steps;
+    int64_t threads;
+    int64_t interactions;
+
+    int note_count;
+    char notes[SF_RESULTS_NOTES][256]; /* sentences for the user about what was left out */
+} sf_results;
+
+/* Opens, reads and checks; on success release with sf_results_close. On failure `results` is already
+ * released. */
+sf_status sf_results_open(const char *path, sf_results *results, sf_error *err);
+void sf_results_close(sf_results *results);
+
+/* Every field that the group holds, checked for shape and finiteness; release with sf_frame_free. */
+sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame, sf_error *err);
+void sf_frame_free(sf_frame *frame);
+
+/* Dataset name below /history; static storage. */
+const char *sf_history_name(sf_history_column column);
+const sf_frame_field_info *sf_frame_field_get(sf_frame_field field);
+
+/* True if the missile ever touched the pad. */
+bool sf_results_touched(const sf_results *results);
+
+#endif

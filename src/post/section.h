@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* section.csv: the pad's mid-section at the instant of the largest acceleration. Rows of the set `section`
+ * are the nodes of the vertical plane y = constant through the missile's axis (nodes within half their own
+ * spacing of it); rows of the set `axis` are points under the axis, evenly spaced through the thickness,
+ * interpolated linearly in the cells. */
+#ifndef SF_POST_SECTION_H
+#define SF_POST_SECTION_H
+
+#include "post/output.h"
+#include "post/results.h"
+
+enum { SF_SECTION_STATIONS = 41 }; /* points under the axis */
+
+/* Reference x and y (m) of the missile's axis: the centre of the surface's bounding box of a full model, the
+ * lowest point of the surface of a half or quarter model, whose axis lies in the symmetry plane. */
+void sf_section_axis(const sf_results *results, double axis[2]);
+
+/* From /peak, or without it the frame of the largest acceleration. `*written` is false if that holds no von
+ * Mises stress: then there is no file. */
+sf_status sf_section_write(const sf_output *output, const sf_results *results, bool *written, sf_error *err);
+
+#endif

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* summary.json, and the short table that softfall-post prints. Keys carry their units; what the run does not
+ * define is null. docs/formats.md lists the keys. */
+#ifndef SF_POST_SUMMARY_H
+#define SF_POST_SUMMARY_H
+
+#include "post/compare.h"
+#include "post/figures.h"
+#include "post/output.h"
+
+/* `comparison` may be NULL. */
+typedef struct sf_summary {
+    const char *results_path;
+    const char *reference_path; /* NULL without comparison */
+    const sf_results *results;
+    const sf_figures *figures;
+    const sf_comparison *comparison;
+} sf_summary;
+
+sf_status sf_summary_write(const sf_output *output, const sf_summary *summary, sf_error *err);
+
+/* The table on `out`, ending with what the figures are not. */
+void sf_summary_print(FILE *out, const sf_summary *summary);
+
+#endif

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/build.h"
+
+#include "core/stability.h"
+#include "pre/cloud.h"
+#include "pre/domains.h"
+#include "pre/dual.h"
+#include "pre/missile_shape.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Cloud arrays that come straight from the mesh. */
+static void take_mesh(sf_mesh *mesh, sf_model *m, sf_build_report *report) {
+    for (int64_t k = 0; k < mesh->cell_count; k++)
+        report->cells[mesh->cell_type[k]]++;
+    report->orphan_count = mesh->orphan_count;
+    double low = INFINITY, high = -INFINITY;
+    for (int64_t i = 0; i < mesh->node_count; i++) {
+        low = fmin(low, mesh->position[3 * i + 2]);
+        high = fmax(high, mesh->position[3 * i + 2]);
+    }
+    m->thickness = high - low;
+    m->node_count = mesh->node_count;
+    m->cell_count = mesh->cell_count;
+    m->cell_nnz = mesh->cell_ptr[mesh->cell_count];
+    m->position = mesh->position;
+    m->cell_type = mesh->cell_type;
+    m->cell_ptr = mesh->cell_ptr;
+    m->cell_node = mesh->cell_node;
+    mesh->position = NULL;
+    mesh->cell_type = NULL;
+    mesh->cell_ptr = NULL;
+    mesh->cell_node = NULL;
+    mesh->node_count = mesh->cell_count = 0;
+}
+
+static void take_domains(sf_domains *d, sf_dual *dual, sf_model *m, sf_build_report *report) {
+    report->enlarged_count = d->enlarged_count;
+    report->largest_enlargement = d->largest_enlargement;
+    report->worst_condition = d->worst_condition;
+    memcpy(report->worst_position, d->worst_position, sizeof d->worst_position);
+    m->volume = d->volume;
+    m->domain_nnz = d->ptr[m->node_count];
+    m->domain_ptr = d->ptr;
+    m->domain_node = d->node;
+    m->domain_b = d->b;
+    m->phi_nnz = d->phi_ptr[m->node_count];
+    m->phi_ptr = d->phi_ptr;
+    m->phi_node = d->phi_node;
+    m->phi_value = d->phi_value;
+    m->edge_nnz = 2 * dual->edge_count;
+    m->edge_ptr = dual->edge_ptr;
+    m->edge_node = dual->edge_node;
+    memset(d, 0, sizeof *d);
+    dual->edge_ptr = NULL;
+    dual->edge_node = NULL;
+}
+
+/* Spacing, supports, domains, masses; the mesh is whole until take_mesh. */
+static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_build_report *report, sf_error *err) {
+    sf_dual dual = {0};
+    sf_domains domains = {0};
+    int64_t n = mesh->node_count;
+    if (sf_mesh_check(mesh, &report->mesh_volume, err) != SF_OK || sf_cloud_reorder(mesh, err) != SF_OK ||
+        sf_dual_build(mesh, &dual, err) != SF_OK)
+        goto done;
+    sf_cloud_hash(mesh, report->mesh_hash);
+    m->spacing = sf_alloc(err, (unsigned long)n, sizeof *m->spacing, "spacing");
+    m->support = sf_alloc(err, (unsigned long)n, sizeof *m->support, "supports");
+    m->mass = sf_alloc(err, (unsigned long)n, sizeof *m->mass, "masses");
+    if (err->status != SF_OK)
+        goto done;
+    sf_cloud_spacing(mesh, &dual, m->spacing);
+    for (int64_t i = 0; i < n; i++)
+        m->support[i] = c->support_ratio * m->spacing[i];
+    if (sf_domains_build(mesh, &dual, c->condition_limit, m->support, &domains, err) != SF_OK ||
+        sf_invariants_measure(mesh, &dual, &domains, m->spacing, report->mesh_volume, &report->invariants, err) !=
+            SF_OK ||
+        sf_invariants_check(&report->invariants, err) != SF_OK)
+        goto done;
+    for (int64_t i = 0; i < n; i++)
+        m->mass[i] = c->foam.density * domains.volume[i];
+    take_mesh(mesh, m, report);
+    take_domains(&domains, &dual, m, report);
+done:
+    sf_domains_free(&domains);
+    sf_dual_free(&dual);
+    return err->status;
+}
+
+/* A set that the case names under `key`; the sentence lists the groups that exist. */
+static const sf_node_set *need_set(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {
+    const sf_node_set *set = sf_mesh_find_set(mesh, name);
+    if (set)
+        return set;
+    char known[512] = "";
+    size_t used = 0;
+    for (int k = 0; k < mesh->set_count && used < sizeof known; k++)
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s\"%s\"", k ? ", " : "", mesh->set[k].name);
+    SF_FAIL(err, SF_ERR_INPUT, "%s names the surface group \"%s\", which the pad does not have; it has %s", key, name,
+            mesh->set_count ? known : "none");
+    return NULL;
+}
+
+/* The axis (0 x, 1 y, 2 z) that a planar set is normal to, or -1. */
+static int plane_axis(const sf_model *m, const sf_node_set *set) {
+    for (int axis = 0; axis < 3; axis++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t k = 0; k < set->count; k++) {
+            low = fmin(low, m->position[3 * (int64_t)set->node[k] + axis]);
+            high = fmax(high, m->position[3 * (int64_t)set->node[k] + axis]);
+        }
+        if (high - low <= 1e-9 * m->thickness)
+            return axis;
+    }
+    return -1;
+}
+
+static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *m, uint8_t *mask, sf_error *err) {
+    m->symmetry_factor = 1;
+    int seen = 0;
+    for (int g = 0; g < c->symmetry_count; g++) {
+        if (!c->symmetry_given && !sf_mesh_find_set(mesh, c->symmetry_group[g]))
+            continue;
+        const sf_node_set *set = need_set(mesh, "pad.symmetry", c->symmetry_group[g], err);
+        if (!set)
+            return err->status;
+        int axis = plane_axis(m, set);
+        if (axis != 0 && axis != 1)
+            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is not a plane normal to x or y", set->name);
+        if (seen & (1 << axis))
+            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is a second plane normal to %c", set->name,
+                           'x' + axis);
+        seen |= 1 << axis;
+        m->symmetry_factor *= 2;
+        for (int64_t k = 0; k < set->count; k++)
+            mask[set->node[k]] |= (uint8_t)(1 << axis);
+    }
+    return SF_OK;
+}
+
+/* Groups to constrained nodes (with their components) and contact points. */
+static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf_error *err) {
+    uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    uint8_t *base = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    if (err->status != SF_OK || mark_symmetry(c, mesh, m, mask, err) != SF_OK)
+        goto done;
+    for (int g = 0; g < c->fixed_count; g++) {
+        const sf_node_set *set = need_set(mesh, "pad.fixed", c->fixed_group[g], err);
+        if (!set)
+            goto done;
+        for (int64_t k = 0; k < set->count; k++) {
+            mask[set->node[k]] = SF_FIX_X | SF_FIX_Y | SF_FIX_Z;
+            base[set->node[k]] = 1;
+        }
+    }
+    for (int64_t i = 0; i < m->node_count; i++)
+        m->fixed_count += mask[i] != 0;
+    const sf_node_set *contact = need_set(mesh, "pad.contact", c->contact_group, err);
+    if (!contact)
+        goto done;
+    m->contact_count = contact->count;
+    m->contact_node = sf_alloc(err, (unsigned long)contact->count, sizeof *m->contact_node, "contact points");
+    m->fixed_node = sf_alloc(err, (unsigned long)m->fixed_count, sizeof *m->fixed_node, "constraints");
+    m->fixed_mask = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
+    m->fixed_base = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
+    if (err->status != SF_OK)
+        goto done;
+    memcpy(m->contact_node, contact->node, (size_t)contact->count * sizeof *contact->node);
+    int64_t used = 0;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        if (!mask[i])
+            continue;
+        m->fixed_node[used] = (int32_t)i;
+        m->fixed_mask[used] = mask[i];
+        m->fixed_base[used++] = base[i];
+    }
+done:
+    free(mask);
+    free(base);
+    return err->status;
+}
+
+/* Places the missile `gap` away from first contact and moves its surface into the model. */
+static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
+    double distance = 0;
+    m->missile = c->missile_card;
+    if (sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
+        sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance, err) !=
+            SF_OK)
+        return err->status;
+    double travel = distance - m->missile.gap;
+    for (int64_t k = 0; k < 3 * surface->node_count; k++)
+        surface->position[k] += travel * m->missile.direction[k % 3];
+    for (int k = 0; k < 3; k++)
+        m->missile.sphere_centre[k] += travel * m->missile.direction[k];
+    m->surface_node_count = surface->node_count;
+    m->surface_triangle_count = surface->triangle_count;
+    m->surface_position = surface->position;
+    m->surface_triangle = surface->triangle;
+    *surface = (sf_surface){0};
+    return SF_OK;
+}
+
+static void take_foam(sf_case *c, sf_model *m) {
+    m->foam = c->foam;
+    c->foam.curve_rate = NULL;
+    c->foam.curve_ptr = NULL;
+    c->foam.curve_strain = NULL;
+    c->foam.curve_stress = NULL;
+    m->run = c->run;
+}
+
+/* The bound on the step at rest: the largest initial tangent of all curves plus the Maxwell branch. */
+static sf_status first_step(const sf_model *m, double *step, sf_error *err) {
+    double *c = sf_alloc(err, (unsigned long)m->node_count, sizeof *c, "stability constants");
+    if (!c || sf_stability_constants(m, c, err) != SF_OK) {
+        free(c);
+        return err->status;
+    }
+    double tangent = m->foam.modulus;
+    for (int64_t k = 0; k < m->foam.curve_count; k++) {
+        int64_t first = m->foam.curve_ptr[k];
+        tangent = fmax(tangent, m->foam.curve_stress[first + 1] / m->foam.curve_strain[first + 1]);
+    }
+    *step = INFINITY;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        double length = m->foam.damp_length > 0 ? m->foam.damp_length : m->spacing[i];
+        double eta = m->foam.kelvin_viscosity + m->foam.damp * length * sqrt(m->foam.density * tangent);
+        *step = fmin(*step, sf_stability_step(c[i], tangent + m->foam.maxwell_modulus, eta));
+    }
+    free(c);
+    return SF_OK;
+}
+
+sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *m, sf_build_report *report,
+                         sf_error *err) {
+    memset(m, 0, sizeof *m);
+    memset(report, 0, sizeof *report);
+    if (build_cloud(c, mesh, m, report, err) == SF_OK && build_sets(c, mesh, m, err) == SF_OK &&
+        build_missile(c, surface, m, err) == SF_OK) {
+        take_foam(c, m);
+        if (sf_model_check(m, err) == SF_OK)
+            first_step(m, &report->first_step, err);
+    }
+    if (err->status != SF_OK)
+        sf_model_free(m);
+    return err->status;
+}

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-pre: CASE -> model.h5. */
+#include "build_info.h"
+#include "io/model_io.h"
+#include "pre/build.h"
+#include "pre/case.h"
+#include "pre/gmsh_session.h"
+#include "pre/report.h"
+
+#include <argp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MAX_OVERRIDES = 64, KEY_SET = 1, KEY_KEYS = 2 };
+
+typedef struct options {
+    const char *case_path;
+    const char *output;
+    bool force;
+    bool keys;
+    int overrides;
+    const char *override[MAX_OVERRIDES];
+} options;
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+    options *o = state->input;
+    switch (key) {
+    case 'o':
+        o->output = arg;
+        return 0;
+    case 'f':
+        o->force = true;
+        return 0;
+    case KEY_KEYS:
+        o->keys = true;
+        return 0;
+    case KEY_SET:
+        if (o->overrides == MAX_OVERRIDES)
+            argp_error(state, "at most %d --set options", MAX_OVERRIDES);
+        o->override[o->overrides++] = arg;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->case_path)
+            argp_error(state, "one case at a time: \"%s\" is one too many", arg);
+        o->case_path = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->keys && (!o->case_path || !o->output))
+            argp_error(state, "usage: softfall-pre CASE -o model.h5");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* Pad mesh and missile surface, from one geometry or two. */
+static sf_status read_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_error *err) {
+    sf_gmsh *session = NULL;
+    if (sf_gmsh_begin(&session, err) == SF_OK && sf_gmsh_load(session, &c->pad, err) == SF_OK &&
+        sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err) == SF_OK &&
+        (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK))
+        sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
+    sf_gmsh_end(&session);
+    return err->status;
+}
+
+static sf_status build(const options *o, const char *command, sf_error *err) {
+    sf_case c = {0};
+    sf_mesh mesh = {0};
+    sf_surface surface = {0};
+    sf_model model = {0};
+    sf_build_report report;
+    char libraries[96];
+    snprintf(libraries, sizeof libraries, "gmsh %s, HDF5 %s", sf_gmsh_version(), sf_h5_version());
+    if (!o->force && access(o->output, F_OK) == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it", o->output);
+    if (sf_case_read(o->case_path, o->overrides, o->override, &c, err) != SF_OK ||
+        read_geometry(&c, &mesh, &surface, err) != SF_OK ||
+        sf_model_build(&c, &mesh, &surface, &model, &report, err) != SF_OK)
+        goto done;
+    sf_report_print(stdout, &model, &report);
+    sf_provenance provenance = {"softfall-pre", command, libraries, c.text, c.parameters, report.mesh_hash};
+    if (sf_model_write(o->output, &model, &provenance, err) == SF_OK)
+        printf("%-26s%s\n", "written", o->output);
+done:
+    sf_model_free(&model);
+    sf_surface_free(&surface);
+    sf_mesh_free(&mesh);
+    sf_case_free(&c);
+    return err->status;
+}
+
+int main(int argc, char **argv) {
+    static const struct argp_option list[] = {
+        {"output", 'o', "MODEL", 0, "model file to write (HDF5)", 0},
+        {"set", KEY_SET, "GROUP.KEY=VALUE", 0, "override a key of the case, e.g. missile.velocity=\"5.2 m/s\"", 0},
+        {"force", 'f', 0, 0, "replace an existing model file", 0},
+        {"keys", KEY_KEYS, 0, 0, "list every key of a case file and end", 0},
+        {0},
+    };
+    argp_program_version = "softfall-pre " SF_VERSION " (" SF_GIT_REVISION ")";
+    static const struct argp argp = {.options = list, .parser = parse, .args_doc = "CASE",
+                                     .doc = "Builds the model of a drop from a case file and its geometry."};
+    options o = {0};
+    sf_error err = SF_ERROR_INIT;
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    if (o.keys) {
+        sf_case_print_keys(stdout);
+        return 0;
+    }
+    char *command = sf_command_line(argc, argv);
+    build(&o, command ? command : "softfall-pre", &err);
+    free(command);
+    return sf_error_report(&err, "softfall-pre");
+}

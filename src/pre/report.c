@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/report.h"
+
+#include <math.h>
+
+/* Node-steps per second and core, and how much smaller the step becomes on average while the foam densifies: from
+ * docs/performance.md, for the estimate only. */
+static const double RATE = 2e6, DENSIFICATION = 4;
+
+static void print_range(FILE *out, const char *name, const double *value, int64_t count, double scale,
+                        const char *unit) {
+    double low = INFINITY, high = -INFINITY, sum = 0;
+    for (int64_t i = 0; i < count; i++) {
+        low = fmin(low, value[i]);
+        high = fmax(high, value[i]);
+        sum += value[i];
+    }
+    fprintf(out, "%-26s%.3f to %.3f %s, mean %.3f\n", name, scale * low, scale * high, unit,
+            scale * sum / (double)count);
+}
+
+static void print_neighbours(FILE *out, const sf_model *m) {
+    int64_t low = INT64_MAX, high = 0;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        int64_t count = m->domain_ptr[i + 1] - m->domain_ptr[i] - 1;
+        low = count < low ? count : low;
+        high = count > high ? count : high;
+    }
+    fprintf(out, "%-26s%lld to %lld, mean %.1f\n", "neighbours of a domain", (long long)low, (long long)high,
+            (double)m->domain_nnz / (double)m->node_count - 1);
+}
+
+static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r) {
+    double mass = 0, whole = (double)m->symmetry_factor, volume = r->mesh_volume;
+    for (int64_t i = 0; i < m->node_count; i++)
+        mass += m->mass[i];
+    fprintf(out, "%-26s%.6f kg modelled; density x volume = %.6f kg (difference %.1e)\n", "pad mass", mass,
+            m->foam.density * volume, mass / (m->foam.density * volume) - 1);
+    fprintf(out, "%-26s%.1f x %.6g cm3, thickness %.4g mm\n", "pad volume", whole, 1e6 * volume, 1e3 * m->thickness);
+    double speed = m->missile.speed, energy = 0.5 * m->missile.mass * speed * speed;
+    fprintf(out, "%-26s%.4g kg at %.4g m/s: kinetic energy %.4g J, momentum %.4g kg m/s\n", "missile", m->missile.mass,
+            speed, energy, m->missile.mass * speed);
+    fprintf(out, "%-26s%.4g m in free fall\n", "equivalent drop height", speed * speed / (2 * 9.80665));
+    if (m->missile.shape == SF_SHAPE_SPHERE)
+        fprintf(out, "%-26sexact sphere cap, radius %.5g mm\n", "missile contact", 1e3 * m->missile.sphere_radius);
+    else
+        fprintf(out, "%-26s%lld triangles\n", "missile contact", (long long)m->surface_triangle_count);
+}
+
+static void print_cost(FILE *out, const sf_model *m, const sf_build_report *r) {
+    double step = fmin(m->run.step_safety * r->first_step, m->run.step_limit);
+    double steps = DENSIFICATION * m->run.end_time / step, n = (double)m->node_count;
+    double bytes = 56 * (double)m->domain_nnz + 12 * (double)m->phi_nnz + 12 * (double)m->edge_nnz + 640 * n;
+    fprintf(out, "%-26s%.2f us (bound %.2f us)\n", "first time step", 1e6 * step, 1e6 * r->first_step);
+    fprintf(out, "%-26s%.0f MB (%.2f kB per node)\n", "memory of the solver", bytes / 1e6, bytes / n / 1e3);
+    fprintf(out, "%-26s%.0f s on one core (about %.0f steps; stops earlier after the rebound)\n",
+            "estimated run time, up to", steps * n / RATE, steps);
+}
+
+void sf_report_print(FILE *out, const sf_model *m, const sf_build_report *r) {
+    fprintf(out, "%-26s%lld, 1/%lld of the pad\n", "nodes", (long long)m->node_count, (long long)m->symmetry_factor);
+    fprintf(out, "%-26s%lld hexahedra, %lld pyramids, %lld prisms, %lld tetrahedra\n", "cells",
+            (long long)r->cells[SF_CELL_HEXAHEDRON], (long long)r->cells[SF_CELL_PYRAMID],
+            (long long)r->cells[SF_CELL_PRISM], (long long)r->cells[SF_CELL_TETRAHEDRON]);
+    if (r->orphan_count > 0)
+        fprintf(out, "%-26s%lld nodes that no cell uses\n", "left out", (long long)r->orphan_count);
+    print_range(out, "nodal spacing", m->spacing, m->node_count, 1e3, "mm");
+    print_neighbours(out, m);
+    fprintf(out, "%-26s%.3g at (%.4g, %.4g, %.4g) mm\n", "worst conditioning", r->worst_condition,
+            1e3 * r->worst_position[0], 1e3 * r->worst_position[1], 1e3 * r->worst_position[2]);
+    if (r->enlarged_count > 0)
+        fprintf(out, "%-26sat %lld nodes, by up to %.2f\n", "support enlarged", (long long)r->enlarged_count,
+                r->largest_enlargement);
+    fprintf(out, "%-26ssum B %.1e, sum X B %.1e, volume %.1e, telescoping %.1e, phi %.1e\n", "invariants",
+            r->invariants.unity, r->invariants.linear, r->invariants.volume, r->invariants.telescope,
+            r->invariants.shape);
+    fprintf(out, "%-26s%lld held, %lld may be touched\n", "boundary nodes", (long long)m->fixed_count,
+            (long long)m->contact_count);
+    print_masses(out, m, r);
+    print_cost(out, m, r);
+    fprintf(out, "%-26s%s\n", "mesh hash", r->mesh_hash);
+}

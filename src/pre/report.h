@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table that softfall-pre prints before anybody spends time on a run. */
+#ifndef SF_PRE_REPORT_H
+#define SF_PRE_REPORT_H
+
+#include "pre/build.h"
+#include <stdio.h>
+
+void sf_report_print(FILE *out, const sf_model *model, const sf_build_report *report);
+
+#endif

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Kinematics and stress of every smoothing domain: F = I + sum d_J B_J^T, foam law, V P (theory eq. 7, section
+ * "Foam"). Writes f, stress, history, energy, stiffness, tangent, and the domains' partial sums. */
+#ifndef SF_SOLVER_DOMAIN_STRESS_H
+#define SF_SOLVER_DOMAIN_STRESS_H
+
+#include "solver/operators.h"
+#include "solver/state.h"
+
+/* dt_old is the step that led to the present coefficients; 0 at the start. */
+void sf_domain_stress(const sf_model *model, const sf_operators *operators, sf_state *state);
+
+#endif

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/foam.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { XX, YY, ZZ, XY, YZ, XZ };
+static const int SYM[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
+
+sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) {
+    *foam = (sf_foam){
+        .density = card->density,
+        .modulus = card->modulus,
+        .hu = card->hysteresis_hu,
+        .shape = card->hysteresis_shape,
+        .damp = card->damp,
+        .maxwell = card->maxwell_modulus,
+        .maxwell_rate = card->maxwell_rate,
+        .kelvin = card->kelvin_viscosity,
+        .cutoff = card->tension_cutoff,
+        .filter_time = card->rate_filter_time,
+        .curve_count = card->curve_count,
+    };
+    foam->curve = sf_alloc(err, (unsigned long)card->curve_count, sizeof *foam->curve, "curves");
+    foam->curve_rate = sf_alloc(err, (unsigned long)card->curve_count, sizeof *foam->curve_rate, "curves");
+    for (int64_t k = 0; k < card->curve_count && err->status == SF_OK; k++) {
+        foam->curve_rate[k] = card->curve_rate[k];
+        sf_curve_build(card, k, &foam->curve[k], err);
+    }
+    if (err->status != SF_OK)
+        sf_foam_free(foam);
+    return err->status;
+}
+
+void sf_foam_free(sf_foam *foam) {
+    for (int64_t k = 0; foam->curve && k < foam->curve_count; k++)
+        sf_curve_free(&foam->curve[k]);
+    free(foam->curve);
+    free(foam->curve_rate);
+    *foam = (sf_foam){0};
+}
+
+void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost) {
+    double s = foam->shape, hu = foam->hu;
+    *lost = peak * (1 - hu) * s / (1 + s);
+    *stored = peak > 0 ? energy * (hu + (1 - hu) * pow(energy / peak, s) / (1 + s)) : 0;
+}
+
+/* Principal law of one point: nominal stress, slope and energy of each stretch. */
+typedef struct principal {
+    double t[3];     /* Pa */
+    double slope[3]; /* Pa */
+    double energy;   /* J m-3 */
+} principal;
+
+static principal base_law(const sf_foam *foam, const double stretch[3]) {
+    principal law = {.energy = 0};
+    for (int i = 0; i < 3; i++) {
+        double strain = 1 - stretch[i], energy;
+        if (strain > 0) {
+            sf_curve_evaluate(&foam->curve[0], strain, &law.t[i], &law.slope[i], &energy);
+            law.t[i] = -law.t[i];
+        } else if (-strain * foam->modulus <= foam->cutoff) {
+            law.t[i] = -strain * foam->modulus;
+            law.slope[i] = foam->modulus;
+            energy = 0.5 * strain * strain * foam->modulus;
+        } else {
+            double yield = foam->cutoff / foam->modulus;
+            law.t[i] = foam->cutoff;
+            law.slope[i] = 0;
+            energy = foam->cutoff * (-strain - 0.5 * yield);
+        }
+        law.energy += energy;
+    }
+    return law;
+}
+
+/* Bound on the elastic tangent in principal axes: uncoupled slopes with the rank-one term of unloading, and the two
+ * shear moduli of each pair (theory eq. 18). `softening` is d(factor)/dW. */
+static double elastic_tangent(const principal *law, const double stretch[3], double factor, double softening) {
+    double bound = 0, square = 0;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3;
+        double gap = stretch[i] - stretch[j];
+        double difference =
+            fabs(gap) > 1e-7 ? (law->t[i] - law->t[j]) / gap : fmax(law->slope[i], law->slope[j]);
+        double sum = (law->t[i] + law->t[j]) / (stretch[i] + stretch[j]);
+        bound = fmax(bound, fmax(law->slope[i], fmax(difference, sum)));
+        square += law->t[i] * law->t[i];
+    }
+    return factor * bound + softening * square;
+}
+
+/* Rate overstress sigma(eps, rate) - sigma(eps, slowest), interpolated over the logarithm of the rate. */
+static double overstress(const sf_foam *foam, double strain, double rate, double *slope, double *rate_slope) {
+    const double *r = foam->curve_rate;
+    int64_t k = foam->curve_count - 2;
+    *slope = *rate_slope = 0;
+    if (!(rate > r[0]) || !(strain > 0))
+        return 0;
+    while (k > 0 && rate < r[k])
+        k--;
+    double low, high, low_slope, high_slope, base, base_slope, energy;
+    sf_curve_evaluate(&foam->curve[0], strain, &base, &base_slope, &energy);
+    sf_curve_evaluate(&foam->curve[k], strain, &low, &low_slope, &energy);
+    sf_curve_evaluate(&foam->curve[k + 1], strain, &high, &high_slope, &energy);
+    double span = log(r[k + 1] / r[k]), x = fmin(1, log(rate / r[k]) / span);
+    *slope = fmax(0, low_slope + x * (high_slope - low_slope) - base_slope);
+    *rate_slope = x < 1 ? fmax(0, (high - low) / (span * rate)) : 0;
+    return low + x * (high - low) - base;
+}
+
+/* Adds the rate overstress of lane l to the principal second Piola-Kirchhoff stress s; returns its stiffness. */
+static double add_overstress(const sf_foam *foam, double dt, sf_foam_batch *b, int l, double v[9][SF_LANES],
+                             const double rate_of_e[6], double s[3]) {
+    double bound = 0, fastest = 0, shortest = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        double quadratic = 0;
+        for (int p = 0; p < 3; p++)
+            for (int q = 0; q < 3; q++)
+                quadratic += v[3 * p + i][l] * rate_of_e[SYM[p][q]] * v[3 * q + i][l];
+        if (b->stretch[i][l] < shortest) {
+            shortest = b->stretch[i][l];
+            fastest = fmax(0, -quadratic / shortest);
+        }
+    }
+    b->rate[l] += -expm1(-dt / foam->filter_time) * (fastest - b->rate[l]);
+    for (int i = 0; i < 3; i++) {
+        double slope, rate_slope;
+        double extra = overstress(foam, 1 - b->stretch[i][l], b->rate[l], &slope, &rate_slope);
+        s[i] -= extra / b->stretch[i][l];
+        bound = fmax(bound, slope + rate_slope / foam->filter_time);
+    }
+    return bound;
+}
+
+/* C = Ft F as (xx, yy, zz, xy, yz, xz). */
+static void right_cauchy_green(double f[9][SF_LANES], double c[6][SF_LANES]) {
+    static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+    for (int k = 0; k < 6; k++) {
+        int i = pair[k][0], j = pair[k][1];
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            c[k][l] = f[i][l] * f[j][l] + f[3 + i][l] * f[3 + j][l] + f[6 + i][l] * f[6 + j][l];
+    }
+}
+
+/* a = J F^-T, row-major; returns J in b->jacobian. */
+static void cofactor(sf_foam_batch *b, double a[9][SF_LANES]) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                a[3 * i + j][l] = b->f[3 * i1 + j1][l] * b->f[3 * i2 + j2][l] -
+                                  b->f[3 * i1 + j2][l] * b->f[3 * i2 + j1][l];
+        }
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        b->jacobian[l] = b->f[0][l] * a[0][l] + b->f[1][l] * a[1][l] + b->f[2][l] * a[2][l];
+}
+
+/* Elastic part of every lane: second Piola-Kirchhoff stress into s [6][lane], with energies and bounds. */
+static void elastic_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double c[6][SF_LANES],
+                           double rate_of_e[6][SF_LANES], double s[6][SF_LANES]) {
+    double v[9][SF_LANES], eigen[6][SF_LANES], principal_s[3][SF_LANES];
+    memcpy(eigen, c, sizeof eigen);
+    sf_foam_eigen(eigen, v);
+    for (int l = 0; l < SF_LANES; l++) {
+        double stretch[3], factor = 1, softening = 0, extra = 0, part[3];
+        for (int i = 0; i < 3; i++)
+            b->stretch[i][l] = stretch[i] = sqrt(eigen[i][l]);
+        principal law = base_law(foam, stretch);
+        b->energy[l] = law.energy;
+        if (law.energy >= b->peak[l]) {
+            b->peak[l] = law.energy;
+        } else {
+            double ratio = law.energy / b->peak[l];
+            double power = foam->shape == 1 ? ratio : pow(ratio, foam->shape);
+            factor = 1 - (1 - foam->hu) * (1 - power);
+            if (law.energy > 0)
+                softening = (1 - foam->hu) * foam->shape * power / law.energy;
+        }
+        b->factor[l] = factor;
+        for (int i = 0; i < 3; i++)
+            part[i] = factor * law.t[i] / stretch[i];
+        b->stiffness[l] = fmax(foam->modulus, fmax(law.slope[0], fmax(law.slope[1], law.slope[2])));
+        if (foam->curve_count > 1 && dt > 0) {
+            double e[6];
+            for (int k = 0; k < 6; k++)
+                e[k] = rate_of_e[k][l];
+            extra = add_overstress(foam, dt, b, l, v, e, part);
+            b->work[l] = 0;
+            for (int i = 0; i < 3; i++) {
+                double quadratic = 0;
+                for (int p = 0; p < 3; p++)
+                    for (int q = 0; q < 3; q++)
+                        quadratic += v[3 * p + i][l] * e[SYM[p][q]] * v[3 * q + i][l];
+                b->work[l] += (part[i] - factor * law.t[i] / stretch[i]) * quadratic * dt;
+            }
+        } else {
+            b->work[l] = 0;
+        }
+        b->tangent[l] = elastic_tangent(&law, stretch, factor, softening) + extra;
+        for (int i = 0; i < 3; i++)
+            principal_s[i][l] = part[i];
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = i; j < 3; j++) {
+            double *restrict out = s[SYM[i][j]];
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                out[l] = principal_s[0][l] * v[3 * i][l] * v[3 * j][l] +
+                         principal_s[1][l] * v[3 * i + 1][l] * v[3 * j + 1][l] +
+                         principal_s[2][l] * v[3 * i + 2][l] * v[3 * j + 2][l];
+        }
+}
+
+/* Maxwell branch and Kelvin viscosity on the Green strain, added to s; their work and bounds. The Maxwell stress is
+ * integrated exactly for a constant rate over the step. */
+static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double rate_of_e[6][SF_LANES],
+                           double s[6][SF_LANES]) {
+    double decay = exp(-foam->maxwell_rate * dt);
+    double gain = foam->maxwell > 0 ? foam->maxwell / foam->maxwell_rate * -expm1(-foam->maxwell_rate * dt) : 0;
+    double norm[SF_LANES] = {0}, work[SF_LANES] = {0};
+    for (int k = 0; k < 6; k++) {
+        double *restrict m = b->maxwell[k], *restrict out = s[k], *restrict rate = rate_of_e[k];
+        double twice = k < 3 ? 1 : 2;
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double old = m[l], kelvin = foam->kelvin * rate[l];
+            m[l] = decay * old + gain * rate[l];
+            out[l] += m[l] + kelvin;
+            work[l] += twice * (0.5 * (old + m[l]) + kelvin) * rate[l] * dt;
+            norm[l] += twice * m[l] * m[l];
+        }
+    }
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double largest = fmax(b->stretch[0][l], fmax(b->stretch[1][l], b->stretch[2][l]));
+        b->work[l] += work[l];
+        b->tangent[l] += foam->maxwell * largest * largest + sqrt(norm[l]);
+        b->viscosity[l] = foam->kelvin * largest * largest;
+    }
+}
+
+/* DAMP: sigma = DAMP rho c L D with everything current (theory eq. 21), added to p; its work and bound. */
+static void damping_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double a[9][SF_LANES]) {
+    double inverse = 1 / dt, rate[9][SF_LANES], jd[9][SF_LANES], eta[SF_LANES];
+    for (int k = 0; k < 9; k++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            rate[k][l] = (b->f[k][l] - b->f_old[k][l]) * inverse;
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double x = b->stretch[0][l] * b->stretch[1][l], y = b->stretch[1][l] * b->stretch[2][l],
+               z = b->stretch[2][l] * b->stretch[0][l], largest = fmax(x, fmax(y, z));
+        eta[l] = foam->damp * b->length[l] * sqrt(foam->density * b->stiffness[l]);
+        b->viscosity[l] += eta[l] * largest * largest;
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j <= i; j++)
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++) {
+                double ij = 0, ji = 0;
+                for (int k = 0; k < 3; k++) {
+                    ij += rate[3 * i + k][l] * a[3 * j + k][l];
+                    ji += rate[3 * j + k][l] * a[3 * i + k][l];
+                }
+                jd[3 * i + j][l] = jd[3 * j + i][l] = 0.5 * (ij + ji);
+            }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++) {
+                double value = eta[l] * (jd[3 * i][l] * a[j][l] + jd[3 * i + 1][l] * a[3 + j][l] +
+                                         jd[3 * i + 2][l] * a[6 + j][l]);
+                b->p[3 * i + j][l] += value;
+                b->work[l] += value * rate[3 * i + j][l] * dt;
+            }
+}
+
+void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *b) {
+    double c[6][SF_LANES], old[6][SF_LANES], rate_of_e[6][SF_LANES] = {{0}}, s[6][SF_LANES], a[9][SF_LANES];
+    right_cauchy_green(b->f, c);
+    if (dt > 0) {
+        right_cauchy_green(b->f_old, old);
+        double half = 0.5 / dt;
+        for (int k = 0; k < 6; k++)
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                rate_of_e[k][l] = half * (c[k][l] - old[k][l]);
+    }
+    cofactor(b, a);
+    elastic_stress(foam, dt, b, c, rate_of_e, s);
+    viscous_stress(foam, dt, b, rate_of_e, s);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                b->p[3 * i + j][l] = b->f[3 * i][l] * s[SYM[0][j]][l] + b->f[3 * i + 1][l] * s[SYM[1][j]][l] +
+                                     b->f[3 * i + 2][l] * s[SYM[2][j]][l];
+    if (foam->damp > 0 && dt > 0)
+        damping_stress(foam, dt, b, a);
+}

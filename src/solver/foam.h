@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The foam law at material points (theory, section "Foam"): uncoupled principal nominal stresses from the compression
+ * curve, hysteretic unloading, Maxwell branch, Kelvin and DAMP viscosity, rate-dependent loading curves. Pure
+ * functions on batches of SF_LANES points; arrays are [component][lane]. Matrices are row-major (9) or symmetric
+ * (xx, yy, zz, xy, yz, xz). */
+#ifndef SF_SOLVER_FOAM_H
+#define SF_SOLVER_FOAM_H
+
+#include "core/curve.h"
+#include "core/error.h"
+#include "core/model.h"
+
+enum { SF_LANES = 8 };
+
+typedef struct sf_foam {
+    double density;      /* kg m-3 */
+    double modulus;      /* Pa, E */
+    double hu, shape;    /* - */
+    double damp;         /* - */
+    double maxwell;      /* Pa, ED */
+    double maxwell_rate; /* s-1, BETA1 */
+    double kelvin;       /* Pa s, eta */
+    double cutoff;       /* Pa */
+    double filter_time;  /* s */
+    int64_t curve_count;
+    double *curve_rate;  /* [curve_count] s-1, owned */
+    sf_curve *curve;     /* [curve_count] owned */
+} sf_foam;
+
+sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err);
+void sf_foam_free(sf_foam *foam);
+
+typedef struct sf_foam_batch {
+    /* in */
+    double f[9][SF_LANES];     /* deformation gradient at the end of the step */
+    double f_old[9][SF_LANES]; /* at its start */
+    double length[SF_LANES];   /* m, L of DAMP */
+    /* history, in and out */
+    double maxwell[6][SF_LANES]; /* Pa, second Piola-Kirchhoff stress of the Maxwell branch */
+    double peak[SF_LANES];       /* J m-3, largest W so far */
+    double rate[SF_LANES];       /* s-1, filtered rate of compression */
+    /* out */
+    double p[9][SF_LANES];       /* Pa, first Piola-Kirchhoff stress */
+    double stretch[3][SF_LANES]; /* -, principal stretches, unsorted */
+    double jacobian[SF_LANES];   /* - */
+    double energy[SF_LANES];     /* J m-3, W of the loading curve */
+    double factor[SF_LANES];     /* -, hysteresis factor */
+    double stiffness[SF_LANES];  /* Pa, largest slope of the loading curve in the principal directions, at least E */
+    double tangent[SF_LANES];    /* Pa, bound on the tangent dP/dF */
+    double viscosity[SF_LANES];  /* Pa s, bound on dP/d(rate of F) */
+    double work[SF_LANES];       /* J m-3, viscous work of the step */
+} sf_foam_batch;
+
+/* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
+void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *batch);
+
+/* Recoverable energy and energy lost to hysteresis (J m-3) at W and its maximum (theory eq. 15, 16). */
+void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost);
+
+/* Eigenvalues of symmetric matrices by cyclic Jacobi: a [6][lane] in, its diagonal = eigenvalues out, v [9][lane]
+ * eigenvectors as columns. */
+void sf_foam_eigen(double a[6][SF_LANES], double v[9][SF_LANES]);
+
+#endif

@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/frame.h"
+
+#include "core/mat3.h"
+#include "solver/stabilisation.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DISPLACEMENT, VELOCITY, CAUCHY, MISES, STRETCHES, COMPRESSION, ENERGY, FACTOR };
+
+static const struct {
+    const char *name, *units, *description;
+    int columns;
+} fields[SF_FRAME_FIELDS] = {
+    {"displacement", "m", "u_h at the nodes", 3},
+    {"velocity", "m s-1", "time derivative of u_h, half a step later", 3},
+    {"cauchy_stress", "Pa", "Cauchy stress xx xy xz yx yy yz zx zy zz of the smoothing domain", 9},
+    {"von_mises", "Pa", "von Mises stress", 1},
+    {"principal_stretches", "1", "principal stretches, ascending", 3},
+    {"largest_compression", "1", "1 - smallest principal stretch", 1},
+    {"energy_density", "J m-3", "W of the loading curve per reference volume", 1},
+    {"hysteresis_factor", "1", "factor on the curve's stress", 1},
+};
+
+sf_status sf_snapshot_create(const sf_model *m, sf_snapshot *snapshot, sf_error *err) {
+    memset(snapshot, 0, sizeof *snapshot);
+    for (int k = 0; k < SF_FRAME_FIELDS; k++)
+        snapshot->field[k] = sf_alloc(err, (unsigned long)m->node_count * (unsigned long)fields[k].columns,
+                                      sizeof(double), fields[k].name);
+    if (err->status != SF_OK)
+        sf_snapshot_free(snapshot);
+    return err->status;
+}
+
+void sf_snapshot_free(sf_snapshot *snapshot) {
+    for (int k = 0; k < SF_FRAME_FIELDS; k++)
+        free(snapshot->field[k]);
+    memset(snapshot, 0, sizeof *snapshot);
+}
+
+static double determinant(const double *f) {
+    return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
+}
+
+/* sigma = P F^T / J of one domain, with the stabilisation's couple taken out of the stored stress. */
+static void take_stress(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t i, double sigma[9],
+                        double *mises) {
+    double force[3], couple[9], p[9];
+    const double *f = &s->f[9 * i];
+    double j = determinant(f), square = 0, mean;
+    sf_stabilisation_node(m, op->pair, s->d, s->f, s->stiffness, i, force, couple);
+    for (int k = 0; k < 9; k++)
+        p[k] = (s->stress[9 * i + k] - couple[k]) / m->volume[i];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            sigma[3 * r + c] = (p[3 * r] * f[3 * c] + p[3 * r + 1] * f[3 * c + 1] + p[3 * r + 2] * f[3 * c + 2]) / j;
+    mean = (sigma[0] + sigma[4] + sigma[8]) / 3;
+    for (int k = 0; k < 9; k++) {
+        double deviator = sigma[k] - (k % 4 == 0 ? mean : 0);
+        square += deviator * deviator;
+    }
+    *mises = sqrt(1.5 * square);
+}
+
+/* Principal stretches of a block of domains, ascending. */
+static void take_stretches(const sf_model *m, const sf_state *s, int64_t block, double out[3 * SF_LANES]) {
+    static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+    double c[6][SF_LANES], v[9][SF_LANES];
+    int64_t first = block * SF_LANES;
+    for (int l = 0; l < SF_LANES; l++) {
+        const double *f = &s->f[9 * (first + l < m->node_count ? first + l : first)];
+        for (int k = 0; k < 6; k++) {
+            int a = pair[k][0], b = pair[k][1];
+            c[k][l] = f[a] * f[b] + f[3 + a] * f[3 + b] + f[6 + a] * f[6 + b];
+        }
+    }
+    sf_foam_eigen(c, v);
+    for (int l = 0; l < SF_LANES; l++) {
+        double x = sqrt(c[0][l]), y = sqrt(c[1][l]), z = sqrt(c[2][l]);
+        double low = fmin(x, fmin(y, z)), high = fmax(x, fmax(y, z));
+        double *stretch = &out[3 * l];
+        stretch[0] = low;
+        stretch[1] = fmax(fmin(x, y), fmin(fmax(x, y), z));
+        stretch[2] = high;
+    }
+}
+
+/* The approximation of a coefficient field at node i. */
+static void take_value(const sf_model *m, const double *coefficient, int64_t i, double out[3]) {
+    double sum[3] = {0};
+    for (int64_t k = m->phi_ptr[i]; k < m->phi_ptr[i + 1]; k++)
+        for (int c = 0; c < 3; c++)
+            sum[c] += m->phi_value[k] * coefficient[3 * (int64_t)m->phi_node[k] + c];
+    memcpy(out, sum, sizeof sum);
+}
+
+static double hysteresis_factor(const sf_foam *foam, double energy, double peak) {
+    return energy < peak ? 1 - (1 - foam->hu) * (1 - pow(energy / peak, foam->shape)) : 1;
+}
+
+/* One field at one node; the stretches' fields come by block (take_stretches). */
+static void take_node(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, int64_t i, double *out) {
+    double sigma[9], mises;
+    switch (kind) {
+    case DISPLACEMENT:
+        take_value(m, s->d, i, &out[3 * i]);
+        break;
+    case VELOCITY:
+        take_value(m, s->v, i, &out[3 * i]);
+        break;
+    case CAUCHY:
+        take_stress(m, op, s, i, &out[9 * i], &mises);
+        break;
+    case MISES:
+        take_stress(m, op, s, i, sigma, &out[i]);
+        break;
+    case ENERGY:
+        out[i] = s->energy[i];
+        break;
+    default:
+        out[i] = hysteresis_factor(&op->foam, s->energy[i], s->peak[i]);
+    }
+}
+
+static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, double *out) {
+    int64_t blocks = (m->node_count + SF_LANES - 1) / SF_LANES;
+#pragma omp parallel for default(none) shared(m, op, s, kind, out, blocks) schedule(static)
+    for (int64_t block = 0; block < blocks; block++) {
+        int64_t first = block * SF_LANES, end = first + SF_LANES < m->node_count ? first + SF_LANES : m->node_count;
+        double stretch[3 * SF_LANES];
+        if (kind == STRETCHES || kind == COMPRESSION)
+            take_stretches(m, s, block, stretch);
+        for (int64_t i = first; i < end; i++) {
+            if (kind == STRETCHES)
+                memcpy(&out[3 * i], &stretch[3 * (i - first)], 3 * sizeof *out);
+            else if (kind == COMPRESSION)
+                out[i] = 1 - stretch[3 * (i - first)];
+            else
+                take_node(m, op, s, kind, i, out);
+        }
+    }
+}
+
+static sf_frame take_frame(const sf_model *m, const sf_state *s) {
+    sf_frame frame = {.time = s->time, .acceleration = -s->missile.acceleration};
+    for (int c = 0; c < 3; c++) {
+        frame.displacement[c] = s->missile.displacement * m->missile.direction[c];
+        frame.base_reaction[c] = (double)m->symmetry_factor * s->base_reaction[c];
+    }
+    return frame;
+}
+
+void sf_snapshot_take(const sf_model *m, const sf_operators *op, const sf_state *s, sf_snapshot *snapshot) {
+    snapshot->frame = take_frame(m, s);
+    for (int k = 0; k < SF_FRAME_FIELDS; k++)
+        take_field(m, op, s, k, snapshot->field[k]);
+}
+
+static sf_status write_item(sf_h5 *file, const char *group, const char *name, const char *units,
+                            const char *description, int rank, const int64_t *dims, const double *data,
+                            sf_error *err) {
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", group, name);
+    sf_h5_info info = {path, units, description};
+    return sf_h5_write(file, &info, SF_H5_F64, rank, dims, data, err);
+}
+
+static sf_status write_frame(const sf_frame *frame, const char *path, sf_h5 *file, sf_error *err) {
+    const int64_t three = 3;
+    if (write_item(file, path, "time", "s", "time", 0, NULL, &frame->time, err) != SF_OK ||
+        write_item(file, path, "acceleration", "m s-2", "of the missile, against its direction of motion", 0, NULL,
+                   &frame->acceleration, err) != SF_OK ||
+        write_item(file, path, "missile_displacement", "m", "translation of the missile since t = 0", 1, &three,
+                   frame->displacement, err) != SF_OK)
+        return err->status;
+    return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three,
+                      frame->base_reaction, err);
+}
+
+static sf_status write_field(const sf_model *m, int kind, const char *path, const double *data, sf_h5 *file,
+                             sf_error *err) {
+    int64_t dims[2] = {m->node_count, fields[kind].columns};
+    return write_item(file, path, fields[kind].name, fields[kind].units, fields[kind].description,
+                      fields[kind].columns > 1 ? 2 : 1, dims, data, err);
+}
+
+sf_status sf_snapshot_write(const sf_model *m, const sf_snapshot *snapshot, const char *path, sf_h5 *file,
+                            sf_error *err) {
+    write_frame(&snapshot->frame, path, file, err);
+    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
+        write_field(m, k, path, snapshot->field[k], file, err);
+    return err->status;
+}
+
+sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, const char *path,
+                         double *scratch, sf_h5 *file, sf_error *err) {
+    sf_frame frame = take_frame(m, s);
+    write_frame(&frame, path, file, err);
+    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++) {
+        if (!(m->run.output_fields >> k & 1))
+            continue;
+        take_field(m, op, s, k, scratch);
+        write_field(m, k, path, scratch, file, err);
+    }
+    return err->status;
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/history.h"
+
+#include "core/mat3.h"
+
+static const sf_h5_info columns[SF_HISTORY_COLUMNS] = {
+    {"/history/time", "s", "end of the step"},
+    {"/history/time_step", "s", "step that follows"},
+    {"/history/acceleration", "m s-2", "missile, against its direction of motion"},
+    {"/history/velocity", "m s-1", "missile, along its direction of motion"},
+    {"/history/displacement", "m", "missile, along its direction of motion"},
+    {"/history/indentation", "m", "depth of the missile's first touching point below the undeformed top"},
+    {"/history/contact_force", "N", "on the missile, against its direction of motion"},
+    {"/history/friction_force", "N", "tangential part of it"},
+    {"/history/base_reaction", "N", "force of the base on the pad, z"},
+    {"/history/energy_kinetic_missile", "J", "kinetic energy of the missile"},
+    {"/history/energy_kinetic_pad", "J", "kinetic energy of the pad"},
+    {"/history/energy_stored", "J", "recoverable energy of the foam"},
+    {"/history/energy_hysteresis", "J", "lost by the unloading rule"},
+    {"/history/energy_viscous", "J", "work of DAMP, Maxwell, Kelvin and rate overstress"},
+    {"/history/energy_stabilisation", "J", "work of the stabilisation"},
+    {"/history/energy_contact", "J", "lost in normal contact"},
+    {"/history/energy_friction", "J", "lost in friction"},
+    {"/history/energy_external", "J", "work of gravity on the missile"},
+    {"/history/energy_error", "1", "total without external work over its initial value, minus 1"},
+    {"/history/momentum_error", "1", "momentum change minus impulses, over mass x speed"},
+    {"/history/largest_compression", "1", "1 - smallest principal stretch of all domains"},
+    {"/history/smallest_jacobian", "1", "smallest det F"},
+    {"/history/contact_nodes", "1", "points in contact, modelled part"},
+    {"/history/penetration", "m", "deepest penetration of a point"},
+    {"/history/constraint_residual", "m s-1", "largest |G v|"},
+};
+
+sf_status sf_history_create(sf_h5 *file, sf_error *err) {
+    for (int k = 0; k < SF_HISTORY_COLUMNS; k++)
+        if (sf_h5_series_create(file, &columns[k], 1, err) != SF_OK)
+            return err->status;
+    return SF_OK;
+}
+
+sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf_h5 *file, sf_error *err) {
+    const sf_ledger *l = &s->ledger;
+    double whole = (double)m->symmetry_factor, travel = s->missile.displacement - m->missile.gap;
+    const double row[SF_HISTORY_COLUMNS] = {
+        s->time,
+        s->dt,
+        -s->missile.acceleration,
+        s->missile.velocity_now,
+        s->missile.displacement,
+        fmax(0, -m->missile.direction[2] * travel),
+        -whole * sf_dot3(s->missile.force, m->missile.direction),
+        whole * s->missile.friction,
+        whole * s->base_reaction[2],
+        whole * l->kinetic_missile,
+        whole * l->kinetic_pad,
+        whole * l->stored,
+        whole * l->hysteresis,
+        whole * l->viscous,
+        whole * l->stabilisation,
+        whole * l->contact,
+        whole * l->friction,
+        whole * l->external,
+        l->error,
+        l->momentum_error,
+        s->largest_compression,
+        s->smallest_jacobian,
+        (double)s->contact_count,
+        s->penetration,
+        s->constraint_residual,
+    };
+    for (int k = 0; k < SF_HISTORY_COLUMNS; k++)
+        h->buffer[k][h->rows] = row[k];
+    if (++h->rows == SF_HISTORY_BUFFER)
+        return sf_history_write(h, file, err);
+    return SF_OK;
+}
+
+sf_status sf_history_write(sf_history *h, sf_h5 *file, sf_error *err) {
+    for (int k = 0; k < SF_HISTORY_COLUMNS; k++)
+        if (sf_h5_append(file, columns[k].path, h->rows, 1, h->buffer[k], err) != SF_OK)
+            return err->status;
+    h->rows = 0;
+    return SF_OK;
+}

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Internal forces f_I = - sum_L (V P)_L B_I^L, gathered by node (theory eq. 8). */
+#ifndef SF_SOLVER_INTERNAL_FORCE_H
+#define SF_SOLVER_INTERNAL_FORCE_H
+
+#include "solver/operators.h"
+#include "solver/state.h"
+
+/* Adds them to force. */
+void sf_internal_force(const sf_model *model, const sf_operators *operators, sf_state *state);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* sf_operators: what the solver derives from the model before the first step and never changes. */
+#ifndef SF_SOLVER_OPERATORS_H
+#define SF_SOLVER_OPERATORS_H
+
+#include "core/error.h"
+#include "core/model.h"
+#include "solver/constraint.h"
+#include "solver/contact_gram.h"
+#include "solver/foam.h"
+#include "solver/missile_surface.h"
+
+typedef struct sf_operators {
+    sf_foam foam;
+    double *damp_length; /* [n] m, L of DAMP */
+    double *stability;   /* [n] m kg-1, core/stability.h */
+
+    /* The smoothed gradient by node: B_I^L for the domains L that see node I, so that internal forces are gathered. */
+    int64_t *force_ptr;    /* [n + 1] */
+    int32_t *force_domain; /* [domain_nnz] L */
+    double *force_b;       /* [domain_nnz][3] m-1 */
+
+    /* Stabilisation pairs along the model's edges: coefficient x (V_I/n_I + V_J/n_J) / (2 |X_J - X_I|^2). */
+    double *pair; /* [edge_nnz] m */
+
+    sf_constraint constraint;
+    sf_contact_gram gram;
+    sf_missile_surface surface;
+} sf_operators;
+
+sf_status sf_operators_build(const sf_model *model, sf_operators *operators, sf_error *err);
+void sf_operators_free(sf_operators *operators);
+
+#endif

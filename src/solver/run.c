@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/run.h"
+
+#include "solver/frame.h"
+#include "solver/history.h"
+#include "solver/ledger.h"
+#include "solver/step.h"
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+static const double PEAK_INTERVAL = 50e-6;  /* s, between snapshots of a growing acceleration */
+static const double REBOUND_WAIT = 1e-3;    /* s, without contact before the run may end */
+static const double PROGRESS_INTERVAL = 5;  /* s of wall time between plain lines */
+
+/* What a run carries from step to step beside the state. */
+typedef struct recorder {
+    sf_history *history;
+    double *scratch; /* [n][9], for the fields of a frame */
+    sf_snapshot peak;
+    int64_t frames;
+    double next_frame; /* s */
+    double start, last_line; /* s, wall clock */
+} recorder;
+
+static double wall_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void print_progress(const sf_model *m, const sf_state *s, sf_run *run, recorder *r, bool last) {
+    double now = wall_clock(), interval = run->terminal ? 0.2 : PROGRESS_INTERVAL;
+    if (!last && now - r->last_line < interval)
+        return;
+    r->last_line = now;
+    double done = s->time / m->run.end_time, spent = now - r->start;
+    fprintf(run->log, "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  a %6.1f g  indentation %5.1f mm  compression %.3f  "
+                      "energy %+.3f %%  left <= %.0f s%s",
+            run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
+            -s->missile.acceleration / 9.80665, 1e3 * (s->missile.displacement - m->missile.gap),
+            s->largest_compression, 100 * s->ledger.error, done > 0 ? spent * (1 - done) / done : 0.0,
+            run->terminal && !last ? "  " : "\n");
+    fflush(run->log);
+}
+
+static sf_status write_frame(const sf_model *m, const sf_operators *op, const sf_state *s, recorder *r, sf_h5 *file,
+                             sf_error *err) {
+    char path[32];
+    snprintf(path, sizeof path, "/frames/%06lld", (long long)r->frames++);
+    if (sf_frame_write(m, op, s, path, r->scratch, file, err) != SF_OK ||
+        sf_history_write(r->history, file, err) != SF_OK)
+        return err->status;
+    return sf_h5_flush(file, err);
+}
+
+/* Extremes over the run, and the fields at the largest acceleration. */
+static void watch(const sf_model *m, const sf_operators *op, const sf_state *s, sf_run *run, recorder *r) {
+    double whole = (double)m->symmetry_factor, internal = whole * sf_ledger_internal(&s->ledger);
+    double a = -s->missile.acceleration;
+    run->largest_compression = fmax(run->largest_compression, s->largest_compression);
+    run->largest_penetration = fmax(run->largest_penetration, s->penetration);
+    run->largest_residual = fmax(run->largest_residual, s->constraint_residual);
+    run->largest_momentum = fmax(run->largest_momentum, fabs(s->ledger.momentum_error));
+    if (internal > run->peak_internal) {
+        run->peak_internal = internal;
+        run->stabilisation_share = whole * s->ledger.stabilisation / internal;
+        run->contact_share = whole * s->ledger.contact / internal;
+    }
+    if (a > run->peak_acceleration) {
+        run->peak_acceleration = a;
+        run->peak_time = s->time;
+        if (s->step == 0 || s->time - r->peak.frame.time >= PEAK_INTERVAL)
+            sf_snapshot_take(m, op, s, &r->peak);
+    }
+}
+
+/* Has the missile left the pad for good? */
+static bool has_rebounded(const sf_model *m, const sf_state *s) {
+    return m->run.stop_after_rebound && s->missile.velocity < 0 && s->contact_count == 0 &&
+           s->time - s->missile.release_time > REBOUND_WAIT;
+}
+
+static sf_status run_steps(const sf_model *m, const sf_operators *op, sf_state *s, sf_run *run, recorder *r,
+                           sf_h5 *file, sf_error *err) {
+    for (;;) {
+        if (sf_step_evaluate(m, op, s, err) != SF_OK) {
+            run->ending = "failed";
+            return err->status;
+        }
+        watch(m, op, s, run, r);
+        if (sf_history_add(r->history, m, s, file, err) != SF_OK)
+            return err->status;
+        bool end = s->time >= m->run.end_time, rebound = has_rebounded(m, s), stop = *run->stop != 0;
+        if (s->time >= r->next_frame || end || rebound || stop) {
+            r->next_frame += m->run.frame_interval;
+            if (write_frame(m, op, s, r, file, err) != SF_OK)
+                return err->status;
+        }
+        print_progress(m, s, run, r, end || rebound || stop);
+        if (end || rebound || stop) {
+            run->ending = stop ? "interrupted" : rebound ? "rebound" : "finished";
+            return stop ? SF_FAIL(err, SF_INTERRUPTED, "interrupted at t = %.6g s; results up to there are readable",
+                                  s->time)
+                        : SF_OK;
+        }
+        sf_step_advance(m, s);
+    }
+}
+
+static sf_status write_scalar(sf_h5 *file, const char *path, const char *units, const char *text, double value,
+                              sf_error *err) {
+    sf_h5_info info = {path, units, text};
+    return sf_h5_write_scalar(file, &info, value, err);
+}
+
+static sf_status write_count(sf_h5 *file, const char *path, const char *text, int64_t value, sf_error *err) {
+    sf_h5_info info = {path, "1", text};
+    return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
+}
+
+static sf_status write_summary(const sf_model *m, const sf_state *s, const sf_run *run, const char *status,
+                               sf_h5 *file, sf_error *err) {
+    sf_h5_info info = {"/summary/status", "1", "how the run ended"};
+    if (sf_h5_write_text(file, &info, status, err) != SF_OK ||
+        write_count(file, "/summary/steps", "time steps", s->step, err) != SF_OK ||
+        write_count(file, "/summary/threads", "OpenMP threads", run->threads, err) != SF_OK ||
+        write_count(file, "/summary/nodes", "nodes", m->node_count, err) != SF_OK ||
+        write_count(file, "/summary/interactions", "(domain, node) pairs", m->domain_nnz, err) != SF_OK ||
+        write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) != SF_OK ||
+        write_scalar(file, "/summary/wall_time", "s", "time of the run", run->wall_time, err) != SF_OK)
+        return err->status;
+    return write_scalar(file, "/summary/contact_time", "s", "first contact, NaN if none", s->missile.contact_time, err);
+}
+
+sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf_run *run, sf_h5 *file,
+                      sf_error *err) {
+    recorder r = {.start = wall_clock()};
+    sf_error late = SF_ERROR_INIT;
+    r.history = sf_alloc(err, 1, sizeof *r.history, "history");
+    r.scratch = sf_alloc(err, 9 * (unsigned long)m->node_count, sizeof *r.scratch, "frame");
+    if (err->status != SF_OK || sf_snapshot_create(m, &r.peak, err) != SF_OK || sf_history_create(file, err) != SF_OK)
+        goto done;
+    run_steps(m, op, s, run, &r, file, err);
+    run->wall_time = wall_clock() - r.start;
+    /* Whatever ended the run, what it found so far is written; the first failure stays the one reported. */
+    if (err->status == SF_ERR_NUMERIC)
+        write_frame(m, op, s, &r, file, &late);
+    if (err->status == SF_OK || err->status == SF_ERR_NUMERIC || err->status == SF_INTERRUPTED) {
+        sf_history_write(r.history, file, &late);
+        sf_snapshot_write(m, &r.peak, "/peak", file, &late);
+        write_summary(m, s, run, err->status == SF_ERR_NUMERIC ? err->text : run->ending, file, &late);
+        if (late.status != SF_OK)
+            SF_FAIL(err, late.status, "%s", late.text);
+    }
+done:
+    free(r.history);
+    free(r.scratch);
+    sf_snapshot_free(&r.peak);
+    return err->status;
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/state.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One list of the arrays: allocation, release and size. Rows: n nodes, b blocks of lanes, c contact points, k chunks. */
+static const struct {
+    size_t offset;
+    char rows;
+    int bytes;
+} arrays[] = {
+#define DOUBLES(member, rows, columns) {offsetof(sf_state, member), rows, (columns) * (int)sizeof(double)}
+    DOUBLES(d, 'n', 3),
+    DOUBLES(v, 'n', 3),
+    DOUBLES(force, 'n', 3),
+    DOUBLES(reaction, 'n', 3),
+    DOUBLES(f, 'n', 9),
+    DOUBLES(stress, 'n', 9),
+    DOUBLES(maxwell, 'b', 6 * SF_LANES),
+    DOUBLES(peak, 'b', SF_LANES),
+    DOUBLES(rate, 'b', SF_LANES),
+    DOUBLES(energy, 'n', 1),
+    DOUBLES(stiffness, 'n', 1),
+    DOUBLES(tangent, 'n', 1),
+    DOUBLES(pair_sum, 'n', 1),
+    DOUBLES(pair_stiffness, 'n', 1),
+    DOUBLES(mode, 'n', 1),
+    DOUBLES(mode_work, 'n', 4),
+    DOUBLES(power_couple, 'n', 3),
+    DOUBLES(power_out, 'n', 1),
+    DOUBLES(contact_position, 'c', 3),
+    DOUBLES(contact_motion, 'c', 3),
+    DOUBLES(contact_step, 'c', 3),
+    DOUBLES(contact_force, 'c', 3),
+    DOUBLES(contact_old, 'c', 3),
+    DOUBLES(contact_gap, 'c', 1),
+    DOUBLES(contact_normal, 'c', 3),
+#undef DOUBLES
+    {offsetof(sf_state, contact_active), 'c', sizeof(int32_t)},
+    {offsetof(sf_state, partial), 'k', sizeof(sf_partial)},
+};
+
+static int64_t rows_of(const sf_model *model, char rows) {
+    switch (rows) {
+    case 'n':
+        return model->node_count;
+    case 'b':
+        return (model->node_count + SF_LANES - 1) / SF_LANES;
+    case 'c':
+        return model->contact_count;
+    default:
+        return (model->node_count + SF_CHUNK - 1) / SF_CHUNK;
+    }
+}
+
+sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
+    memset(s, 0, sizeof *s);
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
+        *(void **)((char *)s + arrays[k].offset) =
+            sf_alloc(err, (unsigned long)rows_of(model, arrays[k].rows), (unsigned long)arrays[k].bytes, "state");
+    if (err->status != SF_OK) {
+        sf_state_free(s);
+        return err->status;
+    }
+    s->chunk_count = rows_of(model, 'k');
+    for (int64_t i = 0; i < model->node_count; i++) {
+        s->f[9 * i] = s->f[9 * i + 4] = s->f[9 * i + 8] = 1;
+        s->pair_stiffness[i] = model->foam.modulus;
+    }
+    for (int64_t c = 0; c < model->contact_count; c++)
+        memcpy(&s->contact_position[3 * c], &model->position[3 * (int64_t)model->contact_node[c]], 3 * sizeof(double));
+    s->tightness = 1;
+    s->missile.velocity = s->missile.velocity_now = model->missile.speed;
+    s->missile.contact_time = s->missile.release_time = NAN;
+    double mass = model->missile.mass / (double)model->symmetry_factor;
+    s->ledger.initial = 0.5 * mass * model->missile.speed * model->missile.speed;
+    s->ledger.momentum_initial = mass * model->missile.speed;
+    return SF_OK;
+}
+
+void sf_state_free(sf_state *s) {
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
+        free(*(void **)((char *)s + arrays[k].offset));
+    memset(s, 0, sizeof *s);
+}

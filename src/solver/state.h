@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* sf_state: everything that changes while a drop is solved. Allocated once; a step allocates nothing. The modelled part
+ * only: a quarter model holds a quarter of the pad, and forces and energies of that quarter, unless said otherwise. */
+#ifndef SF_SOLVER_STATE_H
+#define SF_SOLVER_STATE_H
+
+#include "core/error.h"
+#include "core/model.h"
+#include "solver/foam.h"
+
+enum { SF_CHUNK = 64 }; /* nodes per partial sum: fixes the order of every sum, whatever the threads */
+
+/* Partial results of a chunk of nodes. */
+typedef struct sf_partial {
+    double stored, hysteresis, viscous; /* J; viscous: of this step */
+    double kinetic;                     /* J, 1/2 m v(n-1/2) . v(n+1/2) */
+    double momentum[3];                 /* kg m s-1 */
+    double stabilisation;               /* J, potential */
+    double stabilisation_drift;         /* J, change of the potential by the change of its stiffness */
+    double step;                        /* s, smallest stable step */
+    double jacobian;                    /* -, smallest */
+    double shortest;                    /* -, smallest principal stretch */
+    double load;                        /* s-2, largest c (a + 2 eta / dt) */
+    int64_t jacobian_node;
+} sf_partial;
+
+/* Energies at the current time, J, and the momentum balance, of the modelled part. */
+typedef struct sf_ledger {
+    double kinetic_missile, kinetic_pad;
+    double stored, hysteresis, viscous, stabilisation, contact, friction;
+    double external;         /* work of gravity on the missile */
+    double initial;          /* J, total at t = 0 */
+    double stabilisation_drift; /* J, work that changed stiffness put into the pairs, to date */
+    double error;            /* total / initial - 1 */
+    double largest_error;    /* largest |error| so far */
+    double momentum_initial; /* kg m s-1, along the missile's direction */
+    double impulse;          /* N s, of gravity and constraints, along it */
+    double momentum_error;   /* relative to mass x speed */
+} sf_ledger;
+
+/* The missile: one translational degree of freedom along model->missile.direction. Forces are the modelled part's. */
+typedef struct sf_missile {
+    double displacement; /* m */
+    double velocity;     /* m s-1, at the half step before `time` until the step ends */
+    double velocity_now; /* m s-1, at `time` */
+    double acceleration; /* m s-2, along the direction: negative while it is braked */
+    double force[3];     /* N, of the pad on the missile */
+    double friction;     /* N, tangential part of it against the direction */
+    double contact_time; /* s, first contact; NAN before */
+    double release_time; /* s, last time with contact */
+} sf_missile;
+
+typedef struct sf_state {
+    int64_t step;
+    double time;       /* s */
+    double dt;         /* s, from time to the next */
+    double dt_old;     /* s, from the previous time */
+    double tightness;  /* -, highest frequency squared over its bound, from the power iteration */
+
+    /* Nodes: coefficients of the approximation, not nodal values. */
+    double *d;         /* [n][3] m */
+    double *v;         /* [n][3] m s-1, at the half step */
+    double *force;     /* [n][3] N, all but constraint reactions */
+    double *reaction;  /* [n][3] N, constraint reactions (G^T lambda) of the last step */
+
+    /* Smoothing domains. */
+    double *f;         /* [n][9] F */
+    double *stress;    /* [n][9] J, V P plus the stabilisation's couple */
+    double *maxwell;   /* [blocks][6][SF_LANES] Pa */
+    double *peak;      /* [blocks][SF_LANES] J m-3 */
+    double *rate;      /* [blocks][SF_LANES] s-1 */
+    double *energy;    /* [n] J m-3, W */
+    double *stiffness; /* [n] Pa */
+    double *tangent;   /* [n] Pa, effective: a + 2 eta / dt of the last step */
+
+    /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, and the stiffness it was last used with. */
+    double *pair_sum;       /* [n] m3 */
+    double *pair_stiffness; /* [n] Pa */
+    double *mode;           /* [n] vector of the power iteration */
+    double *mode_work;      /* [n][4] its gradient */
+    double *power_couple;   /* [n][3] couples of the product */
+    double *power_out;      /* [n] the product */
+
+    /* Contact points. */
+    double *contact_position; /* [contacts][3] m, physical, now */
+    double *contact_motion;   /* [contacts][3] m, its last step */
+    double *contact_step;     /* [contacts][3] m, its next step without contact forces */
+    double *contact_force;    /* [contacts][3] N, on the pad */
+    double *contact_old;      /* [contacts][3] N, of the last step */
+    double *contact_gap;      /* [contacts] m, predicted */
+    double *contact_normal;   /* [contacts][3] outward from the missile */
+    int32_t *contact_active;  /* [contacts] list */
+    double missile_old;       /* m, displacement one step ago */
+    int64_t contact_count;    /* points with a force */
+    double penetration;       /* m, deepest now */
+
+    sf_missile missile;
+    sf_ledger ledger;
+    double base_reaction[3];      /* N, of the base on the pad */
+    double constraint_residual;   /* m s-1, largest |G v| */
+    double largest_compression;   /* - */
+    double smallest_jacobian;     /* - */
+    int64_t jacobian_node;
+    double bound_step;            /* s, guaranteed by the partition bound now */
+    double bound_load;            /* s-2, the bound on omega^2 it came from */
+    int64_t power_iterations;     /* spent so far */
+
+    int64_t chunk_count;
+    sf_partial *partial; /* [chunks] */
+} sf_state;
+
+sf_status sf_state_create(const sf_model *model, sf_state *state, sf_error *err);
+void sf_state_free(sf_state *state);
+
+#endif

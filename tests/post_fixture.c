@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post_fixture.h"
+
+#include "io/h5.h"
+#include "post/injury.h"
+#include "post/results.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct cloud {
+    double position[FIXTURE_NODES][3];
+    uint8_t type[FIXTURE_CELLS];
+    int64_t ptr[FIXTURE_CELLS + 1];
+    int32_t node[8 * 8 + 5 + 4];
+} cloud;
+
+static int32_t lattice(int i, int j, int k) {
+    return (int32_t)(i + 3 * j + 9 * k);
+}
+
+static void cloud_build(cloud *c, bool bad_cell) {
+    int64_t cell = 0, at = 0;
+    for (int k = 0; k < 3; k++)
+        for (int j = 0; j < 3; j++)
+            for (int i = 0; i < 3; i++) {
+                double *x = c->position[lattice(i, j, k)];
+                x[0] = 0.1 * (i - 1);
+                x[1] = 0.1 * (j - 1);
+                x[2] = 0.025 * (k - 2);
+            }
+    const double apex[2][3] = {{0.15, 0.05, -0.0125}, {0.15, 0.05, 0}};
+    memcpy(c->position[27], apex, sizeof apex);
+    for (int k = 0; k < 2; k++)
+        for (int j = 0; j < 2; j++)
+            for (int i = 0; i < 2; i++) {
+                const int32_t hexahedron[8] = {
+                    lattice(i, j, k),
+                    lattice(i + 1, j, k),
+                    lattice(i + 1, j + 1, k),
+                    lattice(i, j + 1, k),
+                    lattice(i, j, k + 1),
+                    lattice(i + 1, j, k + 1),
+                    lattice(i + 1, j + 1, k + 1),
+                    lattice(i, j + 1, k + 1),
+                };
+                c->type[cell++] = 9;
+                memcpy(&c->node[at], hexahedron, sizeof hexahedron);
+                at += 8;
+                c->ptr[cell] = at;
+            }
+    const int32_t rest[9] = {lattice(2, 1, 1),
+                             lattice(2, 1, 2),
+                             lattice(2, 2, 2),
+                             lattice(2, 2, 1),
+                             27, /* pyramid */
+                             lattice(2, 1, 2),
+                             lattice(2, 2, 2),
+                             27,
+                             bad_cell ? FIXTURE_NODES : 28};
+    memcpy(&c->node[at], rest, sizeof rest);
+    c->type[cell++] = 7;
+    c->ptr[cell] = at + 5;
+    c->type[cell++] = 6;
+    c->ptr[cell] = at + 9;
+}
+
+static sf_status put(sf_h5 *file, const char *path, sf_h5_type type, int64_t rows, int64_t columns,
+                     const void *data, sf_error *err) {
+    int64_t dims[2] = {rows, columns};
+    sf_h5_info info = {path, "1", "fixture"};
+    return sf_h5_write(file, &info, type, columns > 1 ? 2 : 1, dims, data, err);
+}
+
+static sf_status put_scalar(sf_h5 *file, const char *path, double value, sf_error *err) {
+    sf_h5_info info = {path, "1", "fixture"};
+    return sf_h5_write_scalar(file, &info, value, err);
+}
+
+static sf_status put_integer(sf_h5 *file, const char *path, int64_t value, sf_error *err) {
+    sf_h5_info info = {path, "1", "fixture"};
+    return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
+}
+
+static sf_status put_model(sf_h5 *file, const cloud *c, sf_error *err) {
+    static const double surface[5][3] = {
+        {0, 0, 0}, {0.08, 0.08, 0.08}, {-0.08, 0.08, 0.08}, {-0.08, -0.08, 0.08}, {0.08, -0.08, 0.08}};
+    static const int32_t triangle[FIXTURE_TRIANGLES][3] = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}};
+    static const double direction[3] = {0, 0, -1};
+    double volume[FIXTURE_NODES];
+    for (int i = 0; i < FIXTURE_NODES; i++)
+        volume[i] = 0.2 * 0.2 * FIXTURE_THICKNESS / FIXTURE_NODES;
+    put(file, "/model/position", SF_H5_F64, FIXTURE_NODES, 3, c->position, err);
+    put(file, "/model/volume", SF_H5_F64, FIXTURE_NODES, 1, volume, err);
+    put(file, "/model/cell_type", SF_H5_U8, FIXTURE_CELLS, 1, c->type, err);
+    put(file, "/model/cell_ptr", SF_H5_I64, FIXTURE_CELLS + 1, 1, c->ptr, err);
+    put(file, "/model/cell_node", SF_H5_I32, c->ptr[FIXTURE_CELLS], 1, c->node, err);
+    put(file, "/model/surface_position", SF_H5_F64, 5, 3, surface, err);
+    put(file, "/model/surface_triangle", SF_H5_I32, FIXTURE_TRIANGLES, 3, triangle, err);
+    put_integer(file, "/model/symmetry_factor", 1, err);
+    put_scalar(file, "/model/thickness", FIXTURE_THICKNESS, err);
+    put_scalar(file, "/model/density", 35, err);
+    put_scalar(file, "/model/missile_mass", FIXTURE_MASS, err);
+    put_scalar(file, "/model/missile_speed", FIXTURE_SPEED, err);
+    return put(file, "/model/missile_direction", SF_H5_F64, 3, 1, direction, err);
+}
+
+/* Value of a column at `time`; what is not set here is zero. */
+static double history_value(sf_history_column column, double time, bool untouched) {
+    double peak = untouched ? 0 : FIXTURE_PEAK_G * SF_STANDARD_GRAVITY;
+    double x = M_PI * fmin(time / FIXTURE_DURATION, 1), scale = FIXTURE_DURATION / M_PI;
+    bool contact = !untouched && time > 0 && time < FIXTURE_DURATION;
+    switch (column) {
+    case SF_HISTORY_TIME:
+        return time;
+    case SF_HISTORY_ACCELERATION:
+        return contact ? peak * sin(x) : 0;
+    case SF_HISTORY_VELOCITY:
+        return FIXTURE_SPEED - peak * scale * (1 - cos(x));
+    case SF_HISTORY_INDENTATION:
+        return untouched ? -0.01 : 0.03 * sin(x);
+    case SF_HISTORY_ENERGY_STORED:
+        return contact ? 80 * sin(x) : 0;
+    case SF_HISTORY_ENERGY_VISCOUS:
+        return contact ? 16 * sin(x) : 0;
+    case SF_HISTORY_ENERGY_STABILISATION:
+        return contact ? 4 * sin(x) : 0;
+    case SF_HISTORY_ENERGY_CONTACT:
+        return contact ? 0.5 * sin(x) : 0;
+    case SF_HISTORY_ENERGY_ERROR:
+        return -0.002 * sin(x);
+    case SF_HISTORY_LARGEST_COMPRESSION:
+        return untouched ? 0 : 0.7 * sin(x);
+    case SF_HISTORY_SMALLEST_JACOBIAN:
+        return 1 - 0.5 * sin(x);
+    case SF_HISTORY_CONTACT_NODES:
+        return contact ? 9 : 0;
+    default:
+        return 0;
+    }
+}
+
+static sf_status put_history(sf_h5 *file, const fixture_options *o, sf_error *err) {
+    double end = o->end_time > 0 ? o->end_time : FIXTURE_DURATION + 2e-3;
+    int64_t rows = (int64_t)(end / 1e-5);
+    double *column = sf_alloc(err, (unsigned long)rows, sizeof *column, "a column");
+    if (!column)
+        return err->status;
+    for (int c = 0; c < SF_HISTORY_COLUMNS; c++) {
+        char path[64];
+        for (int64_t i = 0; i < rows; i++) { /* steps that grow and shrink by a fifth */
+            double time =
+                end * (double)i / (double)(rows - 1) + (i > 0 && i < rows - 1 ? 1e-6 * sin((double)i) : 0);
+            column[i] = history_value((sf_history_column)c, time, o->untouched);
+        }
+        if (c == SF_HISTORY_ACCELERATION && o->nan_row > 0)
+            column[o->nan_row] = NAN;
+        snprintf(path, sizeof path, "/history/%s", sf_history_name((sf_history_column)c));
+        put(file, path, SF_H5_F64, rows - (c == SF_HISTORY_VELOCITY ? o->lost_rows : 0), 1, column, err);
+    }
+    free(column);
+    return err->status;
+}
+
+static sf_status put_frame(sf_h5 *file, const cloud *c, const char *group, int k, const fixture_options *o,
+                           sf_error *err) {
+    double field[FIXTURE_NODES * 9];
+    const double lowered[3] = {0, 0, -0.005 * k};
+    bool last = k == FIXTURE_FRAMES - 1;
+    char path[80];
+    for (int f = 0; f < SF_FRAME_FIELDS; f++) {
+        const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
+        if (f == SF_FRAME_VON_MISES && o->no_stress)
+            continue;
+        for (int i = 0; i < FIXTURE_NODES; i++)
+            for (int j = 0; j < info->components; j++)
+                field[i * info->components + j] = 1000 * k + 10 * i + j;
+        for (int i = 0; i < FIXTURE_NODES && f == SF_FRAME_DISPLACEMENT; i++) {
+            field[3 * i] = field[3 * i + 1] = 0;
+            field[3 * i + 2] = lowered[2] * (c->position[i][2] + FIXTURE_THICKNESS) / FIXTURE_THICKNESS;
+        }
+        if (f == SF_FRAME_VON_MISES && last && o->bad_frame)
+            field[7] = NAN;
+        snprintf(path, sizeof path, "%s/%s", group, info->name);
+        put(file, path, SF_H5_F64, FIXTURE_NODES, info->components, field, err);
+    }
+    snprintf(path, sizeof path, "%s/time", group);
+    if (!(last && o->headless_frame))
+        put_scalar(file, path, k * FIXTURE_DURATION / 4, err);
+    snprintf(path, sizeof path, "%s/acceleration", group);
+    put_scalar(file, path, FIXTURE_PEAK_G * SF_STANDARD_GRAVITY * sin(M_PI * k / 4), err);
+    snprintf(path, sizeof path, "%s/missile_displacement", group);
+    return put(file, path, SF_H5_F64, 3, 1, lowered, err);
+}
+
+static sf_status put_summary(sf_h5 *file, const fixture_options *o, sf_error *err) {
+    sf_h5_info status = {"/summary/status", "1", "how the run ended"};
+    sf_h5_write_text(file, &status, o->status ? o->status : "rebound", err);
+    put_integer(file, "/summary/steps", 4199, err);
+    put_integer(file, "/summary/threads", 2, err);
+    put_integer(file, "/summary/nodes", FIXTURE_NODES, err);
+    put_integer(file, "/summary/interactions", 500, err);
+    put_scalar(file, "/summary/wall_time", 12.5, err);
+    return put_scalar(file, "/summary/contact_time", o->untouched ? NAN : 0, err);
+}
+
+sf_status fixture_write(const char *path, const fixture_options *o, sf_error *err) {
+    sf_h5 *file = NULL;
+    cloud c = {0};
+    cloud_build(&c, o->bad_cell);
+    if (sf_h5_create(path, &file, err) != SF_OK)
+        return err->status;
+    sf_h5_set_attribute(file, "/", "format", o->format ? o->format : "softfall-results", err);
+    sf_h5_set_attribute_i64(file, "/", "format_version", 1, err);
+    put_model(file, &c, err);
+    put_history(file, o, err);
+    for (int k = 0; k < FIXTURE_FRAMES; k++) {
+        char group[32];
+        snprintf(group, sizeof group, "/frames/%06d", k);
+        put_frame(file, &c, group, k, o, err);
+    }
+    if (!o->no_peak)
+        put_frame(file, &c, "/peak", 2, o, err);
+    if (!o->no_summary)
+        put_summary(file, o, err);
+    sf_h5_close(&file, err);
+    return err->status;
+}

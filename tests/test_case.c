@@ -1,0 +1,520 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Case files: what a good one gives, and the sentence that each fault gets. */
+#include "pre/case.h"
+#include "pre/case_curve.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+static char folder[256]; /* of this run's files; set up once before the tests */
+
+#define GEOMETRY "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\n"
+#define MATERIAL "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curve = \"foam.csv\"; };\n"
+#define MISSILE "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
+#define SOLVER "solver: { end_time = \"40 ms\"; };\n"
+#define GOOD GEOMETRY MATERIAL MISSILE SOLVER
+
+static const char *in_folder(const char *name) {
+    static char path[4][512];
+    static int turn;
+    turn = (turn + 1) % 4;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+    return path[turn];
+}
+
+static void write_file(const char *name, const char *text) {
+    FILE *out = fopen(in_folder(name), "w");
+    assert_non_null(out);
+    fputs(text, out);
+    assert_int_equal(fclose(out), 0);
+}
+
+static int make_folder(void **state) {
+    (void)state;
+    const char *base = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/softfall-case-XXXXXX", base && *base ? base : "/tmp");
+    if (!mkdtemp(folder))
+        return 1;
+    mkdir(in_folder("materials"), 0700);
+    write_file("pad.geo", "DefineConstant[ side = 1 ];\n");
+    write_file("ball.geo", "DefineConstant[ diameter = 1 ];\n");
+    write_file("foam.csv", "# a foam\nstrain,stress_kPa\n0,0\n0.1,20\n0.5,100\n0.8,900\n");
+    write_file("fast.csv", "strain,stress_kPa\n0,0\n0.1,30\n0.5,150\n0.7,1500\n");
+    write_file("materials/inner.csv", "strain_percent,stress_MPa\n0,0\n10,0.02\n50,0.1\n80,0.9\n");
+    write_file("materials/soft.cfg", "density = \"35 kg/m3\";\nE = \"0.4 MPa\";\ncurve = \"inner.csv\";\n");
+    return 0;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    char command[600];
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
+    return system(command) != 0;
+}
+
+/* Reads `text` as case.cfg with up to one override. */
+static sf_status read_text(const char *text, const char *override, sf_case *c, sf_error *err) {
+    write_file("case.cfg", text);
+    return sf_case_read(in_folder("case.cfg"), override ? 1 : 0, &override, c, err);
+}
+
+static void read_good(const char *text, const char *override, sf_case *c) {
+    sf_error err = SF_ERROR_INIT;
+    if (read_text(text, override, c, &err) != SF_OK)
+        fail_msg("%s", err.text);
+}
+
+/* The case must be refused with a sentence that holds every one of the parts (up to NULL). */
+static void assert_refused(const char *text, const char *override, ...) {
+    sf_error err = SF_ERROR_INIT;
+    sf_case c;
+    if (read_text(text, override, &c, &err) == SF_OK)
+        fail_msg("accepted: %s %s", text, override ? override : "");
+    assert_int_equal(err.status, SF_ERR_INPUT);
+    assert_null(c.path);
+    va_list parts;
+    va_start(parts, override);
+    for (const char *part = va_arg(parts, const char *); part; part = va_arg(parts, const char *))
+        if (!strstr(err.text, part))
+            fail_msg("the sentence is '%s' and lacks '%s'", err.text, part);
+    va_end(parts);
+}
+
+static void assert_curve_refused(const char *text, const char *part) {
+    sf_error err = SF_ERROR_INIT;
+    sf_curve curve;
+    write_file("bad.csv", text);
+    if (sf_curve_read(in_folder("bad.csv"), &curve, &err) == SF_OK)
+        fail_msg("accepted: %s", text);
+    assert_int_equal(err.status, SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "bad.csv"));
+    if (!strstr(err.text, part))
+        fail_msg("the sentence is '%s' and lacks '%s'", err.text, part);
+}
+
+static void good_case_is_in_si(void **state) {
+    (void)state;
+    sf_case c;
+    read_good(GEOMETRY
+              "material: { density = \"0.035 g/cm3\"; E = \"0.4136 MPa\"; curve = \"foam.csv\"; HU = 0.01; "
+              "SHAPE = 2;\n"
+              "  DAMP = 0.35; damp_length = \"5 mm\"; ED = \"3.43 MPa\"; BETA1 = \"5000 1/s\"; eta = \"690 "
+              "Pa s\";\n"
+              "  tension_cutoff = \"20 kPa\"; densification = { start = 0.7; exponent = 3.0; }; };\n"
+              "missile: { mass = \"4600 g\"; velocity = \"16.2 km/h\"; direction = [0.0, 3.0, -4.0]; "
+              "friction = 0.3;\n"
+              "  shape = \"surface\"; gap = \"2 mm\"; };\n"
+              "pad: { group = \"foam\"; fixed = [\"base\", \"wall\"]; symmetry = []; };\n"
+              "solver: { end_time = \"40 ms\"; step_limit = \"10 us\"; stop_after_rebound = false; };\n"
+              "output: { frame_interval = \"0.5 ms\"; fields = [\"displacement\", \"von_mises\"]; };\n",
+              NULL, &c);
+    assert_true(fabs(c.foam.density - 35.0) < 1e-12);
+    assert_true(fabs(c.foam.modulus - 413600.0) < 1e-8);
+    assert_true(c.foam.hysteresis_hu == 0.01 && c.foam.hysteresis_shape == 2.0 && c.foam.damp == 0.35);
+    assert_true(fabs(c.foam.damp_length - 0.005) < 1e-16 && c.foam.maxwell_rate == 5000.0);
+    assert_true(fabs(c.foam.maxwell_modulus - 3.43e6) < 1e-8 && c.foam.kelvin_viscosity == 690.0);
+    assert_true(c.foam.tension_cutoff == 20000.0 && c.foam.densification_exponent == 3.0);
+    assert_true(c.foam.densification_start == 0.7 && c.foam.densification_limit == 1.0);
+    assert_true(fabs(c.missile_card.mass - 4.6) < 1e-14 && fabs(c.missile_card.speed - 4.5) < 1e-14);
+    assert_true(fabs(c.missile_card.direction[1] - 0.6) < 1e-15 &&
+                fabs(c.missile_card.direction[2] + 0.8) < 1e-15);
+    assert_true(c.missile_card.friction == 0.3 && c.missile_card.gravity == 9.80665);
+    assert_true(fabs(c.missile_card.gap - 0.002) < 1e-16);
+    assert_true(c.length_unit == 0.001);
+    assert_int_equal(c.shape_rule, 2);
+    assert_string_equal(c.pad_group, "foam");
+    assert_string_equal(c.contact_group, "top");
+    assert_int_equal(c.fixed_count, 2);
+    assert_string_equal(c.fixed_group[1], "wall");
+    assert_int_equal(c.symmetry_count, 0);
+    assert_true(c.symmetry_given);
+    assert_true(fabs(c.run.end_time - 0.04) < 1e-16 && fabs(c.run.frame_interval - 5e-4) < 1e-18);
+    assert_int_equal(c.run.stop_after_rebound, 0);
+    assert_int_equal(c.run.output_fields, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES);
+    assert_int_equal(c.foam.curve_count, 1);
+    assert_int_equal(c.foam.curve_points, 4);
+    assert_true(c.foam.curve_strain[2] == 0.5 && c.foam.curve_stress[2] == 100e3);
+    sf_case_free(&c);
+}
+
+static void defaults_are_those_of_the_table(void **state) {
+    (void)state;
+    sf_case c;
+    read_good(GOOD, NULL, &c);
+    assert_string_equal(c.pad_group, "pad");
+    assert_string_equal(c.fixed_group[0], "base");
+    assert_int_equal(c.symmetry_count, 2);
+    assert_false(c.symmetry_given);
+    assert_string_equal(c.symmetry_group[1], "symmetry_y");
+    assert_string_equal(c.surface_group, "missile_surface");
+    assert_true(c.support_ratio == 1.4 && c.run.stabilisation == 0.1 && c.run.step_safety == 0.9);
+    assert_true(c.foam.hysteresis_hu == 1.0 && c.foam.damp_length == 0.0 && c.foam.maxwell_modulus == 0.0);
+    assert_true(c.foam.tension_cutoff >= 1e30 && isfinite(c.foam.tension_cutoff));
+    assert_true(c.missile_card.direction[2] == -1.0);
+    assert_int_equal(c.run.output_fields, SF_FIELD_ALL);
+    assert_int_equal(c.run.stop_after_rebound, 1);
+    assert_null(c.missile.path);
+    assert_non_null(strstr(c.parameters, "given"));
+    assert_non_null(strstr(c.parameters, "kernel.support_ratio"));
+    sf_case_free(&c);
+}
+
+/* The line of the listing that begins with `key`. */
+static void listed_line(const sf_case *c, const char *key, char *out, size_t size) {
+    const char *at = strstr(c->parameters, key);
+    assert_non_null(at);
+    snprintf(out, size, "%.*s", (int)strcspn(at, "\n"), at);
+}
+
+static void listing_has_value_si_value_and_origin(void **state) {
+    (void)state;
+    sf_case c;
+    char line[512];
+    read_good(GOOD, "missile.velocity=18 km/h", &c);
+    listed_line(&c, "missile.velocity", line, sizeof line);
+    assert_non_null(strstr(line, "\"18 km/h\""));
+    assert_non_null(strstr(line, "5 m s-1"));
+    assert_non_null(strstr(line, "given"));
+    listed_line(&c, "missile.gravity", line, sizeof line);
+    assert_non_null(strstr(line, "9.80665 m s-2"));
+    assert_non_null(strstr(line, "default"));
+    sf_case_free(&c);
+}
+
+static void set_overrides_every_kind_of_value(void **state) {
+    (void)state;
+    sf_case c;
+    write_file("case.cfg", GOOD);
+    const char *const sets[] = {
+        "missile.velocity=5.2 m/s",        "missile.mass = \"5 kg\"",
+        "geometry.parameters.side=70",     "geometry.parameters.quarter=true",
+        "geometry.missile_file=ball.geo",  "geometry.missile_parameters={ diameter = 160; }",
+        "solver.stop_after_rebound=false", "kernel.support_ratio=1.5",
+        "pad.fixed=[\"left\", \"right\"]", "material.densification.start=0.6"};
+    sf_error err = SF_ERROR_INIT;
+    if (sf_case_read(in_folder("case.cfg"), 10, sets, &c, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_true(c.missile_card.speed == 5.2 && c.missile_card.mass == 5.0);
+    assert_int_equal(c.pad.parameter_count, 2);
+    assert_string_equal(c.pad.parameter[0].name, "side");
+    assert_true(c.pad.parameter[0].value == 70.0 && c.pad.parameter[1].value == 1.0);
+    assert_string_equal(c.missile.path, in_folder("ball.geo"));
+    assert_true(c.missile.parameter[0].value == 160.0);
+    assert_int_equal(c.run.stop_after_rebound, 0);
+    assert_true(c.support_ratio == 1.5);
+    assert_string_equal(c.fixed_group[1], "right");
+    assert_true(c.foam.densification_start == 0.6);
+    assert_non_null(strstr(c.text, "# --set missile.velocity=5.2 m/s\n"));
+    sf_case_free(&c);
+}
+
+static void include_brings_its_own_folder_for_the_curve(void **state) {
+    (void)state;
+    sf_case c;
+    read_good(GEOMETRY "material: {\n@include \"materials/soft.cfg\"\n};\n" MISSILE SOLVER, NULL, &c);
+    assert_int_equal(c.foam.curve_points, 4);
+    assert_true(fabs(c.foam.curve_strain[1] - 0.1) < 1e-16 && fabs(c.foam.curve_stress[3] - 0.9e6) < 1e-9);
+    assert_non_null(strstr(c.text, "density = \"35 kg/m3\";\nE = "));
+    assert_null(strstr(c.text, "@include"));
+    sf_case_free(&c);
+}
+
+static void curves_at_several_rates_ascend(void **state) {
+    (void)state;
+    sf_case c;
+    read_good(
+        GEOMETRY MISSILE SOLVER
+        "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = (\n"
+        "{ rate = \"0.01 1/s\"; file = \"foam.csv\"; }, { rate = \"100 1/s\"; file = \"fast.csv\"; } ); };\n",
+        NULL, &c);
+    assert_int_equal(c.foam.curve_count, 2);
+    assert_int_equal(c.foam.curve_points, 8);
+    assert_int_equal(c.foam.curve_ptr[1], 4);
+    assert_int_equal(c.foam.curve_ptr[2], 8);
+    assert_true(c.foam.curve_rate[0] == 0.01 && c.foam.curve_rate[1] == 100.0);
+    assert_true(c.foam.curve_strain[7] == 0.7 && c.foam.curve_stress[7] == 1.5e6 &&
+                c.foam.curve_stress[3] == 9e5);
+    sf_case_free(&c);
+}
+
+static void h2_takes_limit_and_exponent(void **state) {
+    (void)state;
+    sf_case c;
+    read_good(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; exponent = 2.5; }", &c);
+    assert_int_equal(c.densification_rule, SF_DENSIFICATION_H2);
+    assert_true(c.foam.densification_limit == 0.95 && c.foam.densification_exponent == 2.5);
+    sf_case_free(&c);
+}
+
+static void unknown_names_are_refused_with_what_exists(void **state) {
+    (void)state;
+    assert_refused(GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\";\n velocty = \"4.5 m/s\"; };\n",
+                   NULL, "case.cfg:5: unknown key \"velocty\" in group missile (did you mean \"velocity\"?)",
+                   "mass, velocity, direction, friction", NULL);
+    assert_refused(
+        GOOD "missle: { };\n", NULL,
+        "case.cfg:5: unknown group \"missle\" (did you mean \"missile\"?); the groups are geometry, pad, "
+        "material, missile, kernel, solver, output",
+        NULL);
+    assert_refused(GOOD "colour = 3;\n", NULL, "case.cfg:5: unknown group \"colour\"; the groups are", NULL);
+    assert_refused(GOOD, "missile.weight=3 kg", "--set missile.weight=3 kg: unknown key \"weight\"", NULL);
+    assert_refused(GOOD, "material.densification.power=3",
+                   "unknown key \"power\" in group material.densification", "rule, start, exponent, limit",
+                   NULL);
+    assert_refused(GOOD, "material.densification=3", "material.densification must be a group", NULL);
+    assert_refused(GOOD "pad = 3;\n", NULL, "case.cfg:5: pad must be a group", NULL);
+    assert_refused(GEOMETRY MISSILE SOLVER "material: {\n@include \"materials/soft.cfg\"\ncolor = 3; };\n",
+                   NULL, "case.cfg:6: unknown key \"color\"", NULL);
+    write_file("materials/wrong.cfg", "density = \"35 kg/m3\";\n\nmodulus = 3;\n");
+    assert_refused(GEOMETRY MISSILE SOLVER "material: {\n@include \"materials/wrong.cfg\"\n};\n", NULL,
+                   "materials/wrong.cfg:3: unknown key \"modulus\" in group material", NULL);
+}
+
+static void missing_keys_are_refused(void **state) {
+    (void)state;
+    assert_refused(
+        GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\"; };\n", NULL,
+        "case.cfg:4: missile.velocity is missing: speed when it touches the pad, for example velocity = "
+        "\"4.5 m/s\"",
+        NULL);
+    assert_refused(GEOMETRY MATERIAL MISSILE, NULL, "solver.end_time is missing (there is no such group)",
+                   NULL);
+    assert_refused(MATERIAL MISSILE SOLVER, NULL, "geometry.file is missing", NULL);
+    assert_refused(GEOMETRY MISSILE SOLVER "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; };\n", NULL,
+                   "material.curve is missing", NULL);
+    assert_refused(GOOD, "material.ED=1 MPa", "material.BETA1 is missing", NULL);
+    assert_refused(GOOD, "material.densification.rule=H2", "material.densification.limit is missing", NULL);
+    assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; }",
+                   "material.densification.exponent is missing: rule H2 needs it", NULL);
+}
+
+static void units_of_another_kind_are_refused(void **state) {
+    (void)state;
+    assert_refused(
+        GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\";\n\n velocity = \"4.6 kg\"; };\n", NULL,
+        "case.cfg:6: missile.velocity: \"4.6 kg\" is a mass; expected a speed, for example \"4.5 m/s\"",
+        NULL);
+    assert_refused(GOOD, "missile.gravity=5 g", "is a mass; expected an acceleration", NULL);
+    assert_refused(GOOD, "missile.mass=4.6",
+                   "missile.mass: the value is a plain number; expected a mass as a text", NULL);
+    assert_refused(GOOD, "material.E=0.4 GigaPascals!", "is not a unit", NULL);
+    assert_refused(GOOD, "material.damp_length=cell",
+                   "material.damp_length: \"cell\" does not begin with a number", "or \"spacing\"", NULL);
+    assert_refused(GOOD, "geometry.length_unit=kg", "\"kg\" is not a unit of length", NULL);
+    assert_refused(GOOD, "kernel.support_ratio=\"1.4\"", "the value is a text; expected a plain number",
+                   NULL);
+}
+
+static void values_out_of_bounds_are_refused(void **state) {
+    (void)state;
+    assert_refused(GOOD, "missile.mass=0 kg",
+                   "missile.mass: 0 kg is out of bounds; it must be greater than 0 kg", NULL);
+    assert_refused(GOOD, "material.HU=1.5",
+                   "material.HU: 1.5 is out of bounds; it must be greater than 0 and at most 1", NULL);
+    assert_refused(GOOD, "material.HU=0", "material.HU: 0 is out of bounds", NULL);
+    assert_refused(GOOD, "solver.step_limit=1 ms", "solver.step_limit: 0.001 s is out of bounds", "2e-05 s",
+                   NULL);
+    assert_refused(GOOD, "missile.friction=-0.1",
+                   "missile.friction: -0.1 is out of bounds; it must be at least 0", NULL);
+    assert_refused(GOOD, "kernel.support_ratio=1", "must be greater than 1", NULL);
+    assert_refused(GOOD, "missile.friction=1e999", "not finite", NULL);
+    assert_refused(GOOD, "missile.direction=[0, 0, 1]", "missile.direction: [0, 0, 1] does not point down",
+                   NULL);
+    assert_refused(GOOD, "missile.direction=[0, -1]", "expected three plain numbers", NULL);
+    assert_refused(GOOD, "material.densification.start=0.9",
+                   "0.9 lies beyond the end of the compression table (0.8)", NULL);
+    assert_refused(GOOD, "material.densification.limit=0.9", "0.9 belongs to rule H2", NULL);
+    assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.5; exponent = 2; }",
+                   "0.5 is not above the strain 0.8 at which the law starts", NULL);
+}
+
+static void wrong_types_and_words_are_refused(void **state) {
+    (void)state;
+    assert_refused(GOOD, "missile.shape=cube", "missile.shape: \"cube\" is none of: auto, sphere, surface",
+                   NULL);
+    assert_refused(GOOD, "output.fields=[\"stress\"]", "\"stress\" is none of: displacement, velocity", NULL);
+    assert_refused(GOOD, "output.fields=all", "expected an array of field names", NULL);
+    assert_refused(GOOD, "solver.stop_after_rebound=1", "expected true or false", NULL);
+    assert_refused(GOOD, "pad.fixed=base", "the value is a text; expected an array of names", NULL);
+    assert_refused(GOOD, "pad.fixed=[\"base\", \"base\"]", "\"base\" is named twice", NULL);
+    assert_refused(GOOD, "pad.fixed=[]", "pad.fixed: at least one surface must hold the pad", NULL);
+    assert_refused(GOOD, "pad.group=3", "pad.group: a plain number stands where a name is expected", NULL);
+    assert_refused(GOOD, "geometry.parameters=3", "expected a group such as", NULL);
+    assert_refused(GOOD, "geometry.parameters.side=40 mm", "\"side\" is not a finite plain number", NULL);
+    assert_refused(GOOD, "geometry.missile_parameters.diameter=3", "no geometry.missile_file", NULL);
+}
+
+static void files_that_are_not_there_are_refused(void **state) {
+    (void)state;
+    assert_refused(GOOD, "geometry.file=none.geo", "geometry.file: the file \"none.geo\" cannot be read",
+                   NULL);
+    assert_refused(GOOD, "material.curve=none.csv", "none.csv cannot be read: No such file",
+                   "(named at --set material.curve=none.csv)", NULL);
+    assert_refused(GOOD, "material.curve=materials", "is not a plain file", NULL);
+    assert_refused(GOOD "@include \"none.cfg\"\n", NULL, "case.cfg:5: ", "none.cfg cannot be read", NULL);
+    assert_refused(GOOD "@include \"materials\"\n", NULL, "is not a plain file", NULL);
+    assert_refused(GOOD "@include \"case.cfg\"\n", NULL, "nested more than", NULL);
+    sf_error err = SF_ERROR_INIT;
+    sf_case c;
+    assert_int_equal(sf_case_read(in_folder("absent.cfg"), 0, NULL, &c, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "absent.cfg cannot be read"));
+    sf_error of_folder = SF_ERROR_INIT;
+    assert_int_equal(sf_case_read(folder, 0, NULL, &c, &of_folder), SF_ERR_INPUT);
+    assert_non_null(strstr(of_folder.text, "is not a plain file"));
+}
+
+static void broken_syntax_names_file_and_line(void **state) {
+    (void)state;
+    assert_refused(GEOMETRY "missile: { mass = 4.6 kg; };\n", NULL, "case.cfg:2: syntax error", NULL);
+    assert_refused(GOOD "pad: { group = \"a\"; group = \"b\"; };\n", NULL,
+                   "case.cfg:5: duplicate setting name", NULL);
+    write_file("materials/broken.cfg", "density = ;\n");
+    assert_refused(GEOMETRY "material: {\n@include \"materials/broken.cfg\"\n};\n", NULL,
+                   "materials/broken.cfg:1: syntax error", NULL);
+    assert_refused(GOOD, "velocity=3", "--set velocity=3: expected group.key=value", NULL);
+    assert_refused(GOOD, "missile.velocity", "--set missile.velocity: expected group.key=value", NULL);
+    assert_refused(GOOD, "missile.mass.value=3", "\"mass\" is not a group", NULL);
+    assert_refused(GOOD, "missile.=3", "--set missile.=3: \"\" is not a valid key", NULL);
+}
+
+static void rate_curves_are_checked(void **state) {
+    (void)state;
+    assert_refused(GOOD, "material.curves=( { rate = \"1 1/s\"; file = \"foam.csv\"; } )",
+                   "material has both curve and curves", NULL);
+#define RATES(list)                                                                                          \
+    GEOMETRY MISSILE SOLVER "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = " list "; };\n"
+    assert_refused(RATES("( )"), NULL, "material.curves must be a list", NULL);
+    assert_refused(RATES("( { rate = \"1 1/s\"; } )"), NULL, "each entry must be { rate", NULL);
+    assert_refused(RATES("( { rate = \"1 s\"; file = \"foam.csv\"; } )"), NULL, "is a time; expected a rate",
+                   NULL);
+    assert_refused(
+        RATES("( { rate = \"9 1/s\"; file = \"foam.csv\"; }, { rate = \"1 1/s\"; file = \"fast.csv\"; } )"),
+        NULL, "the rate 1 s-1 is not above 9 s-1 before it", NULL);
+}
+
+static void curve_faults_name_file_line_and_value(void **state) {
+    (void)state;
+#define HEAD "strain,stress_kPa\n"
+    assert_curve_refused("# nothing\n", "0 points; a compression curve needs at least 4");
+    assert_curve_refused(HEAD "0,0\n0.1,2\n0.2,3\n", "3 points; a compression curve needs at least 4");
+    assert_curve_refused("eps,stress_kPa\n0,0\n", ":1: the header has no column \"strain\"");
+    assert_curve_refused("strain,stress\n0,0\n", ":1: the header has no column \"stress_Pa\"");
+    assert_curve_refused("strain,stress_kPa,stress_Pa\n0,0,0\n", "two stress columns");
+    assert_curve_refused("#\n" HEAD "0,0\n0.1,abc\n", ":4: stress \"abc\" is not a number");
+    assert_curve_refused(HEAD "0,0\n0.1,2 kPa\n", ":3: stress \"2 kPa\" is not a number");
+    assert_curve_refused(HEAD "0,0\n0,1,2\n", ":3: 3 values where the header has 2 columns");
+    assert_curve_refused(HEAD "0,0\n0.1\n", ":3: 1 values where the header has 2 columns");
+    assert_curve_refused(HEAD "0,0\n0.1,2\n0.1,3\n", ":4: strain 0.1 is not above the one before it (0.1)");
+    assert_curve_refused(HEAD "0,0\n0.1,2\n0.2,1.5\n", ":4: stress 1.5 is below the one before it (2)");
+    assert_curve_refused(HEAD "0,0\n0.1,nan\n", ":3: stress \"nan\" is not finite");
+    assert_curve_refused(HEAD "0,0\n-0.1,-2\n", ":3: strain -0.1 is negative; compression is positive");
+    assert_curve_refused(HEAD "0,0\n0.1,-2\n", ":3: stress -2 is negative");
+    assert_curve_refused(HEAD "0,0\n1.2,5\n", ":3: strain 1.2 means a compression to nothing");
+    assert_curve_refused(HEAD "0,4\n0.1,5\n", ":2: stress 4 at zero strain; the curve must start at (0, 0)");
+    assert_curve_refused(HEAD "0,0\n0.1,0\n0.2,0\n0.3,0\n", "the stress is zero everywhere");
+}
+
+static void curve_without_origin_is_extended_to_it(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_curve curve;
+    write_file(
+        "late.csv",
+        "\xEF\xBB\xBF# from a spreadsheet\r\n time , strain_percent , stress_Pa \r\n1,5,100\r\n2,10,200\r\n"
+        "3,20,300\r\n\r\n4,30,300\r\n");
+    if (sf_curve_read(in_folder("late.csv"), &curve, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_true(curve.extended);
+    assert_int_equal(curve.count, 5);
+    assert_true(curve.strain[0] == 0.0 && curve.stress[0] == 0.0 && fabs(curve.strain[1] - 0.05) < 1e-16);
+    assert_true(curve.stress[4] == 300.0);
+    sf_curve_free(&curve);
+}
+
+/* Every example reads, and they differ in what their names say. */
+static void examples_are_the_drops_they_are_called(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        double thickness, speed, quarter;
+    } drops[] = {{"eva50-v4.5", 50, 4.5, 1}, {"eva50-v5.2", 50, 5.2, 1}, {"eva70-v4.5", 70, 4.5, 1},
+                 {"eva70-v5.2", 70, 5.2, 1}, {"eva70-v6.2", 70, 6.2, 1}, {"eva50-v4.5-full", 50, 4.5, 0}};
+    const char *root = getenv("SF_SOURCE_DIR");
+    assert_non_null(root);
+    for (size_t k = 0; k < sizeof drops / sizeof *drops; k++) {
+        char path[1024];
+        sf_error err = SF_ERROR_INIT;
+        sf_case c;
+        snprintf(path, sizeof path, "%s/examples/%s/case.cfg", root, drops[k].name);
+        if (sf_case_read(path, 0, NULL, &c, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        int seen = 0;
+        for (int i = 0; i < c.pad.parameter_count; i++) {
+            const sf_geo_parameter *p = &c.pad.parameter[i];
+            seen += strcmp(p->name, "thickness") == 0 && p->value == drops[k].thickness;
+            seen += strcmp(p->name, "quarter") == 0 && p->value == drops[k].quarter;
+        }
+        assert_int_equal(seen, 2);
+        assert_true(c.missile_card.speed == drops[k].speed && c.missile_card.mass == 4.6);
+        assert_true(c.foam.density == 35.0 && c.foam.hysteresis_hu == 0.01 && c.foam.damp == 0.35);
+        sf_case_free(&c);
+    }
+}
+
+/* docs/case.md ends with the table as the program prints it. */
+static void reference_is_the_table(void **state) {
+    (void)state;
+    char *table = NULL, path[1024];
+    size_t size = 0;
+    FILE *out = open_memstream(&table, &size);
+    assert_non_null(out);
+    sf_case_print_keys(out);
+    fclose(out);
+    const char *root = getenv("SF_SOURCE_DIR");
+    assert_non_null(root);
+    snprintf(path, sizeof path, "%s/docs/case.md", root);
+    FILE *in = fopen(path, "r");
+    assert_non_null(in);
+    char *text = NULL;
+    size_t capacity = 0;
+    assert_true(getdelim(&text, &capacity, '\0', in) > 0);
+    fclose(in);
+    if (!strstr(text, table))
+        fail_msg("docs/case.md is not up to date; its last part must be the output of softfall-pre --keys");
+    free(text);
+    free(table);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(good_case_is_in_si),
+        cmocka_unit_test(defaults_are_those_of_the_table),
+        cmocka_unit_test(listing_has_value_si_value_and_origin),
+        cmocka_unit_test(set_overrides_every_kind_of_value),
+        cmocka_unit_test(include_brings_its_own_folder_for_the_curve),
+        cmocka_unit_test(curves_at_several_rates_ascend),
+        cmocka_unit_test(h2_takes_limit_and_exponent),
+        cmocka_unit_test(unknown_names_are_refused_with_what_exists),
+        cmocka_unit_test(missing_keys_are_refused),
+        cmocka_unit_test(units_of_another_kind_are_refused),
+        cmocka_unit_test(values_out_of_bounds_are_refused),
+        cmocka_unit_test(wrong_types_and_words_are_refused),
+        cmocka_unit_test(files_that_are_not_there_are_refused),
+        cmocka_unit_test(broken_syntax_names_file_and_line),
+        cmocka_unit_test(rate_curves_are_checked),
+        cmocka_unit_test(curve_faults_name_file_line_and_value),
+        cmocka_unit_test(curve_without_origin_is_extended_to_it),
+        cmocka_unit_test(examples_are_the_drops_they_are_called),
+        cmocka_unit_test(reference_is_the_table),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

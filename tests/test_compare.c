@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/compare.h"
+#include "post/reference.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+
+/* Half-sine of `peak` g and `duration` from `start` on, zero before and after, every 0.05 ms from 0 to 40 ms.
+ */
+static sf_series half_sine(double peak, double start, double duration) {
+    sf_error err = SF_ERROR_INIT;
+    sf_series curve;
+    assert_int_equal(sf_series_create(801, &curve, &err), SF_OK);
+    for (int64_t i = 0; i < curve.count; i++) {
+        double time = (double)i * 5e-5, x = (time - start) / duration;
+        curve.time[i] = time;
+        curve.value[i] = x > 0 && x < 1 ? peak * sin(M_PI * x) : 0;
+    }
+    return curve;
+}
+
+static void write_text(char *path, const char *text) {
+    const char *root = getenv("TMPDIR");
+    snprintf(path, 256, "%s/softfall-compare-XXXXXX", root ? root : "/tmp");
+    int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    FILE *file = fdopen(descriptor, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static sf_status read_text(const char *text, sf_series *curve, sf_error *err) {
+    char path[256];
+    write_text(path, text);
+    *err = (sf_error)SF_ERROR_INIT;
+    sf_status status = sf_reference_read(path, curve, err);
+    unlink(path);
+    return status;
+}
+
+static void identical_curves_fit_perfectly(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_fit fit;
+    sf_series curve = half_sine(60, 0.01, 0.015);
+    assert_int_equal(sf_compare_fit(&curve, &curve, 0, (sf_region){0.01, 0.025}, 0.25e-3, &fit, &err), SF_OK);
+    assert_int_equal(fit.count, 61);
+    assert_close(fit.r2, 1, 1e-15);
+    assert_close(fit.rmse_g, 0, 1e-15);
+    sf_series_free(&curve);
+}
+
+/* measured = A sin, model = k A sin over whole half periods with n even intervals:
+ * sum sin^2 = n/2, so RMSE^2 (n+1) = (1-k)^2 A^2 n/2, and sum sin = cot(pi/2n). */
+static void r2_and_rmse_of_a_scaled_half_sine(void **state) {
+    (void)state;
+    const double peak = 60, scale = 0.9;
+    sf_series measured = half_sine(peak, 0.01, 0.015), model = half_sine(scale * peak, 0.01, 0.015);
+    for (int k = 0; k < 2; k++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_fit fit;
+        double interval = k ? 0.5e-3 : 0.25e-3, n = k ? 30 : 60;
+        assert_int_equal(sf_compare_fit(&measured, &model, 0, (sf_region){0.01, 0.025}, interval, &fit, &err),
+                         SF_OK);
+        double residual = (1 - scale) * (1 - scale) * peak * peak * n / 2;
+        double sum = peak / tan(M_PI / (2 * n));
+        double total = peak * peak * n / 2 - sum * sum / (n + 1);
+        assert_int_equal(fit.count, (int64_t)n + 1);
+        assert_relative(fit.rmse_g, sqrt(residual / (n + 1)), 1e-9);
+        assert_close(fit.r2, 1 - residual / total, 1e-9);
+    }
+    sf_series_free(&measured);
+    sf_series_free(&model);
+}
+
+static void contact_of_a_ramp_is_where_it_leaves_zero(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    double time[4] = {0, 0.0101, 0.0201, 0.03}, value[4] = {0, 0, 50, 0}, instant = 0;
+    sf_series curve = {4, time, value};
+    assert_int_equal(sf_contact_instant(&curve, "ramp", &instant, &err), SF_OK);
+    assert_close(instant, 0.0101, 1e-12);
+    sf_series cut = {3, time + 1, value + 1}; /* cut at 4 % of its peak it still shows where it came from */
+    time[1] = 0.0101 + 0.0004;
+    value[1] = 2;
+    assert_int_equal(sf_contact_instant(&cut, "cut ramp", &instant, &err), SF_OK);
+    assert_close(instant, 0.0101, 1e-12);
+    value[1] = 20;
+    assert_int_equal(sf_contact_instant(&cut, "late ramp", &instant, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "--shift"));
+}
+
+static void alignment_undoes_a_shifted_clock(void **state) {
+    (void)state;
+    char path[256];
+    char text[65536] = "# drop 7\nsample,time_ms,acceleration_g\n";
+    for (int i = 0; i <= 800; i++) {
+        double x = (i * 0.05 - 10.5) / 15;
+        char row[80];
+        snprintf(row, sizeof row, "%d,%.2f,%.9f\n", i, i * 0.05, x > 0 && x < 1 ? 60 * sin(M_PI * x) : 0);
+        strcat(text, row);
+    }
+    write_text(path, text);
+    sf_error err = SF_ERROR_INIT;
+    sf_series model = half_sine(60, 0.002, 0.015);
+    sf_region regions[2] = {{0.0, 0.012}, {0.012, 0.030}};
+    sf_compare_options options = {path, NAN, {NAN, NAN}, regions, 2};
+    sf_comparison c;
+    assert_int_equal(sf_compare_run(&options, &model, &c, &err), SF_OK);
+    assert_close(c.shift, -0.0085, 1e-6);
+    assert_int_equal(c.shift_given, 0);
+    assert_int_equal(c.fit_count, 6);
+    for (int64_t k = 0; k < c.fit_count; k++) {
+        assert_true(c.fits[k].r2 > 0.999999);
+        assert_close(c.fits[k].interval, k % 2 ? 0.5e-3 : 0.25e-3, 1e-12);
+    }
+    /* the window is the measured HIC window: 0.6702296636 of the half-sine, in its middle */
+    assert_close(c.fits[0].region.begin, 0.018 - 0.6702296636 * 0.0075, 1e-5);
+    assert_close(c.fits[0].region.end, 0.018 + 0.6702296636 * 0.0075, 1e-5);
+    assert_relative(c.injury.a_max_g, 60, 1e-6);
+    sf_comparison_free(&c);
+
+    options.shift = -0.0075; /* a wrong shift that the user insists on */
+    options.window = (sf_region){0.011, 0.025};
+    options.region_count = 0;
+    assert_int_equal(sf_compare_run(&options, &model, &c, &err), SF_OK);
+    assert_close(c.shift, -0.0075, 0);
+    assert_int_equal(c.fit_count, 2);
+    assert_close(c.fits[0].region.begin, 0.011, 0);
+    assert_true(c.fits[0].r2 < 0.97);
+    sf_comparison_free(&c);
+    sf_series_free(&model);
+    unlink(path);
+}
+
+static void model_that_ends_in_contact_gives_no_figure(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_fit fit;
+    sf_series measured = half_sine(60, 0.01, 0.015), model = half_sine(60, 0.01, 0.015);
+    model.count = 351; /* stops at 17.5 ms, at the peak */
+    assert_int_equal(sf_compare_fit(&measured, &model, 0, (sf_region){0.01, 0.025}, 0.25e-3, &fit, &err),
+                     SF_OK);
+    assert_true(isnan(fit.r2) && isnan(fit.rmse_g));
+    model.count = 501; /* stops with the pulse: free flight after it */
+    assert_int_equal(sf_compare_fit(&measured, &model, 0, (sf_region){0.01, 0.035}, 0.25e-3, &fit, &err),
+                     SF_OK);
+    assert_close(fit.r2, 1, 1e-12);
+    sf_series_free(&measured);
+    sf_series_free(&model);
+}
+
+static void still_measurement_has_rmse_but_no_r2(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_fit fit;
+    sf_series measured = half_sine(60, 0.01, 0.015), model = half_sine(60, 0.01, 0.015);
+    for (int64_t i = 0; i < model.count; i++)
+        model.value[i] += 2;
+    assert_int_equal(sf_compare_fit(&measured, &model, 0, (sf_region){0, 0.008}, 0.25e-3, &fit, &err), SF_OK);
+    assert_true(isnan(fit.r2));
+    assert_close(fit.rmse_g, 2, 1e-12);
+    sf_series_free(&measured);
+    sf_series_free(&model);
+}
+
+static void region_outside_the_measurement_is_refused(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_fit fit;
+    sf_series curve = half_sine(60, 0.01, 0.015);
+    assert_int_equal(sf_compare_fit(&curve, &curve, 0, (sf_region){0.05, 0.06}, 0.25e-3, &fit, &err),
+                     SF_ERR_INPUT);
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_compare_fit(&curve, &curve, 0, (sf_region){0.03, 0.06}, 0.25e-3, &fit, &err), SF_OK);
+    assert_int_equal(fit.count, 41); /* the part that was measured: 30 to 40 ms */
+    assert_close(fit.last, 0.04, 1e-9);
+    sf_series_free(&curve);
+}
+
+static void regions_are_parsed_in_ms(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_region *regions = NULL, window;
+    int64_t count = 0;
+    assert_int_equal(sf_regions_parse("0-10,10-16,16-30", &regions, &count, &err), SF_OK);
+    assert_int_equal(count, 3);
+    assert_close(regions[1].begin, 0.010, 1e-15);
+    assert_close(regions[2].end, 0.030, 1e-15);
+    free(regions);
+    assert_int_equal(sf_region_parse("10.5,25", &window, &err), SF_OK);
+    assert_close(window.begin, 0.0105, 1e-15);
+    const char *bad[] = {"", "5", "5-", "10-5", "0-10,", "0-10;10-16", "a-b", "0-nan", "0-10,10"};
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        err = (sf_error)SF_ERROR_INIT;
+        assert_int_equal(sf_regions_parse(bad[k], &regions, &count, &err), SF_ERR_INPUT);
+        assert_null(regions);
+    }
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_region_parse("25,10.5", &window, &err), SF_ERR_INPUT);
+}
+
+static void reference_units_are_taken_from_the_heading(void **state) {
+    (void)state;
+    sf_error err;
+    sf_series curve;
+    assert_int_equal(read_text("\xef\xbb\xbftime_s,acceleration_m_s2\r\n0,0\r\n0.001,98.0665\r\n0.002,0\r\n",
+                               &curve, &err),
+                     SF_OK);
+    assert_int_equal(curve.count, 3);
+    assert_close(curve.time[1], 0.001, 1e-15);
+    assert_close(curve.value[1], 10, 1e-12);
+    sf_series_free(&curve);
+    assert_int_equal(
+        read_text("# c\n\nacceleration_g , x, time_us\n1,9,1000\n\n2,9,2000\n3,9,3000", &curve, &err), SF_OK);
+    assert_close(curve.time[2], 0.003, 1e-15);
+    assert_close(curve.value[2], 3, 0);
+    sf_series_free(&curve);
+}
+
+static void bad_references_name_file_and_line(void **state) {
+    (void)state;
+    const struct {
+        const char *text, *expected;
+    } bad[] = {
+        {"", "at least 3"},
+        {"time,acceleration_g\n0,1\n", ":1: the heading needs a column time_s"},
+        {"# x\ntime_ms,a\n0,1\n", ":2: the heading needs a column acceleration_g"},
+        {"time_ms,acceleration_g\n0,1\n1,two\n", ":3: \"two\" is not a number"},
+        {"time_ms,acceleration_g\n0,1\n1\n", ":3: the row has too few columns"},
+        {"time_ms,acceleration_g\n0,1\n1,nan\n", ":3: \"nan\""},
+        {"time_ms,acceleration_g\n0,1\n1,2\n1,3\n", ":4: time 1 ms does not follow 1 ms"},
+        {"time_ms,acceleration_g\n0,1\n1,2\n", "2 points"},
+    };
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        sf_error err;
+        sf_series curve;
+        assert_int_equal(read_text(bad[k].text, &curve, &err), SF_ERR_INPUT);
+        assert_non_null(strstr(err.text, bad[k].expected));
+        assert_null(curve.time);
+    }
+    sf_error err = SF_ERROR_INIT;
+    sf_series curve;
+    assert_int_equal(sf_reference_read("/nonexistent/measured.csv", &curve, &err), SF_ERR_INPUT);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(identical_curves_fit_perfectly),
+        cmocka_unit_test(r2_and_rmse_of_a_scaled_half_sine),
+        cmocka_unit_test(contact_of_a_ramp_is_where_it_leaves_zero),
+        cmocka_unit_test(alignment_undoes_a_shifted_clock),
+        cmocka_unit_test(model_that_ends_in_contact_gives_no_figure),
+        cmocka_unit_test(still_measurement_has_rmse_but_no_r2),
+        cmocka_unit_test(region_outside_the_measurement_is_refused),
+        cmocka_unit_test(regions_are_parsed_in_ms),
+        cmocka_unit_test(reference_units_are_taken_from_the_heading),
+        cmocka_unit_test(bad_references_name_file_and_line),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

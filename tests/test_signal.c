@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/signal.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+
+static sf_series uniform_curve(int64_t count, double rate) {
+    sf_error err = SF_ERROR_INIT;
+    sf_series series;
+    assert_int_equal(sf_series_create(count, &series, &err), SF_OK);
+    for (int64_t k = 0; k < count; k++)
+        series.time[k] = (double)k / rate;
+    return series;
+}
+
+typedef struct response {
+    double gain;
+    double phase; /* rad */
+} response;
+
+/* Amplitude and phase of the filtered sine of `frequency`, by projection over whole periods in the middle. */
+static response filter_response(double cfc, double rate, double frequency) {
+    sf_error err = SF_ERROR_INIT;
+    sf_series filtered, sine = uniform_curve(80001, rate);
+    for (int64_t k = 0; k < sine.count; k++)
+        sine.value[k] = sin(2 * M_PI * frequency * sine.time[k]);
+    assert_int_equal(sf_signal_filter_cfc(&sine, cfc, &filtered, &err), SF_OK);
+    double in_phase = 0, quadrature = 0, weight = 0;
+    for (int64_t k = 20000; k < 60000; k++) {
+        double window = 1 - cos(2 * M_PI * (double)(k - 20000) / 40000); /* whole periods need not fit */
+        in_phase += window * filtered.value[k] * sin(2 * M_PI * frequency * sine.time[k]);
+        quadrature += window * filtered.value[k] * cos(2 * M_PI * frequency * sine.time[k]);
+        weight += window / 2;
+    }
+    sf_series_free(&sine);
+    sf_series_free(&filtered);
+    return (response){hypot(in_phase, quadrature) / weight, atan2(quadrature, in_phase)};
+}
+
+/* The forward-backward gain of the digital two-pole Butterworth filter is 1 / (1 + (tan(w T/2) / wa)^4). */
+static void cfc_minus_3_db_points_at_20_khz(void **state) {
+    (void)state;
+    const double cfc[4] = {60, 180, 600, 1000}, corner[4] = {99.9, 299.8, 1003.6, 1686};
+    for (int k = 0; k < 4; k++) {
+        double low = 0.5 * corner[k], high = 2 * corner[k];
+        for (int step = 0; step < 14; step++) {
+            double middle = (low + high) / 2;
+            if (filter_response(cfc[k], 20e3, middle).gain > pow(10, -3.0 / 20))
+                low = middle;
+            else
+                high = middle;
+        }
+        assert_relative(low, corner[k], 6e-4); /* half a unit of the last digit tabulated */
+    }
+}
+
+static void cfc_gain_matches_bilinear_butterworth(void **state) {
+    (void)state;
+    const double rate = 100e3, frequency[3] = {200, 1650, 5000};
+    double wa = tan(M_PI * 1000 * 2.0775 / rate);
+    for (int k = 0; k < 3; k++) {
+        double ratio = tan(M_PI * frequency[k] / rate) / wa;
+        assert_close(filter_response(1000, rate, frequency[k]).gain, 1 / (1 + pow(ratio, 4)), 1e-7);
+    }
+}
+
+static void cfc_has_no_phase_shift(void **state) {
+    (void)state;
+    assert_close(filter_response(1000, 20e3, 800).phase, 0, 1e-8);
+    assert_close(filter_response(60, 20e3, 100).phase, 0, 1e-8);
+}
+
+static void cfc_leaves_constants_and_ramps_alone(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_series filtered, curve = uniform_curve(1000, 100e3);
+    for (int64_t k = 0; k < curve.count; k++)
+        curve.value[k] = 7.5;
+    assert_int_equal(sf_signal_filter_cfc(&curve, 1000, &filtered, &err), SF_OK);
+    for (int64_t k = 0; k < curve.count; k++)
+        assert_close(filtered.value[k], 7.5, 1e-10);
+    sf_series_free(&filtered);
+    for (int64_t k = 0; k < curve.count; k++)
+        curve.value[k] = (double)k;
+    assert_int_equal(sf_signal_filter_cfc(&curve, 1000, &filtered, &err), SF_OK);
+    for (int64_t k = 0; k < curve.count; k++) /* both ends included: that is what the padding is for */
+        assert_close(filtered.value[k], (double)k, 1e-4);
+    sf_series_free(&filtered);
+    sf_series_free(&curve);
+}
+
+static void filtered_pulse_mirrors_like_the_pulse(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_series filtered, curve = uniform_curve(2001, 100e3);
+    for (int64_t k = 0; k < curve.count; k++)
+        curve.value[k] = k > 600 && k < 1400 ? 100 : 0;
+    assert_int_equal(sf_signal_filter_cfc(&curve, 1000, &filtered, &err), SF_OK);
+    for (int64_t k = 0; k < 1000; k++)
+        assert_close(filtered.value[k], filtered.value[2000 - k], 1e-6);
+    assert_true(filtered.value[600] > 30 && filtered.value[600] < 70); /* the step really is smoothed */
+    sf_series_free(&filtered);
+    sf_series_free(&curve);
+}
+
+static void resampling_interpolates_a_non_uniform_history(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    double time[5] = {0.001, 0.00101, 0.00104, 0.0012, 0.002}, value[5];
+    for (int i = 0; i < 5; i++)
+        value[i] = 3 + 2000 * time[i];
+    sf_series uniform, history = {5, time, value};
+    assert_int_equal(sf_signal_resample(&history, 100e3, &uniform, &err), SF_OK);
+    assert_int_equal(uniform.count, 101);
+    for (int64_t k = 0; k < uniform.count; k++) {
+        assert_close(uniform.time[k], 0.001 + (double)k * 1e-5, 1e-15);
+        assert_close(uniform.value[k], 3 + 2000 * uniform.time[k], 1e-12);
+    }
+    sf_series_free(&uniform);
+    assert_close(sf_series_at(&history, 0.0011), 5.2, 1e-12);
+    assert_close(sf_series_at(&history, 0), value[0], 0);
+    assert_close(sf_series_at(&history, 1), value[4], 0);
+}
+
+static void sampling_rate_follows_the_steps_of_the_history(void **state) {
+    (void)state;
+    sf_series coarse = uniform_curve(100, 50e3), fine = uniform_curve(1000, 730e3);
+    assert_close(sf_signal_rate(&coarse), 100e3, 1e-6);
+    assert_close(sf_signal_rate(&fine), 800e3, 1e-6);
+    sf_series_free(&coarse);
+    sf_series_free(&fine);
+}
+
+static void bad_curves_are_refused(void **state) {
+    (void)state;
+    sf_series out;
+    double time[3] = {0, 1e-3, 1e-3}, value[3] = {0, 1, 2};
+    sf_series curve = {3, time, value};
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_signal_resample(&curve, 100e3, &out, &err), SF_ERR_INPUT); /* time stands still */
+    time[2] = 3e-3;
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_signal_filter_cfc(&curve, 60, &out, &err), SF_ERR_INPUT); /* not uniform */
+    time[2] = 2e-3;
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_signal_filter_cfc(&curve, 1000, &out, &err), SF_ERR_INPUT); /* 1 kHz is too coarse */
+    value[1] = NAN;
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_signal_filter_cfc(&curve, 60, &out, &err), SF_ERR_INPUT);
+    assert_null(out.time);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cfc_minus_3_db_points_at_20_khz),
+        cmocka_unit_test(cfc_gain_matches_bilinear_butterworth),
+        cmocka_unit_test(cfc_has_no_phase_shift),
+        cmocka_unit_test(cfc_leaves_constants_and_ramps_alone),
+        cmocka_unit_test(filtered_pulse_mirrors_like_the_pulse),
+        cmocka_unit_test(resampling_interpolates_a_non_uniform_history),
+        cmocka_unit_test(sampling_rate_follows_the_steps_of_the_history),
+        cmocka_unit_test(bad_curves_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
