@@ -408,5 +408,5 @@ sf_status sf_h5_append(sf_h5 *file, const char *path, int64_t rows, int64_t colu
 }
 
 const char *sf_h5_version(void) {
-    return H5_VERS_INFO + sizeof "HDF5 library version: " - 1;
+    return &H5_VERS_INFO[sizeof "HDF5 library version: " - 1];
 }

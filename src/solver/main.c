@@ -87,6 +87,11 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
            fmax(0, -s->missile.velocity_now));
     if (isnan(s->missile.contact_time))
         fprintf(stderr, "softfall-solve: warning: the missile never touched the pad\n");
+    if (run->largest_indentation > m->thickness)
+        fprintf(stderr,
+                "softfall-solve: warning: the missile went %.4g mm into a pad of %.4g mm: it is smaller than the spacing "
+                "of the contact points and passed between them\n",
+                1e3 * run->largest_indentation, 1e3 * m->thickness);
 }
 
 static sf_status solve(const options *o, const char *command, sf_error *err) {

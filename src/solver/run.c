@@ -59,6 +59,8 @@ static void watch(const sf_model *m, const sf_operators *op, const sf_state *s, 
     double whole = (double)m->symmetry_factor, internal = whole * sf_ledger_internal(&s->ledger);
     double a = -s->missile.acceleration;
     run->largest_compression = fmax(run->largest_compression, s->largest_compression);
+    run->largest_indentation = fmax(run->largest_indentation, -m->missile.direction[2] *
+                                                                  (s->missile.displacement - m->missile.gap));
     run->largest_penetration = fmax(run->largest_penetration, s->penetration);
     run->largest_residual = fmax(run->largest_residual, s->constraint_residual);
     run->largest_momentum = fmax(run->largest_momentum, fabs(s->ledger.momentum_error));

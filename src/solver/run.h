@@ -22,6 +22,7 @@ typedef struct sf_run {
     double peak_acceleration;   /* m s-2 */
     double peak_time;           /* s */
     double largest_compression; /* - */
+    double largest_indentation; /* m, along z */
     double largest_penetration; /* m */
     double largest_residual;    /* m s-1, |G v| */
     double largest_momentum;    /* - */
