@@ -115,7 +115,8 @@ static void good_case_is_in_si(void **state) {
               "  shape = \"surface\"; gap = \"2 mm\"; };\n"
               "pad: { group = \"foam\"; fixed = [\"base\", \"wall\"]; symmetry = []; };\n"
               "solver: { end_time = \"40 ms\"; step_limit = \"10 us\"; stop_after_rebound = false; };\n"
-              "output: { frame_interval = \"0.5 ms\"; fields = [\"displacement\", \"von_mises\"]; };\n",
+              "output: { frame_interval = \"0.5 ms\"; times = [\"12.2 ms\", \"300 us\"];\n"
+              "  fields = [\"displacement\", \"von_mises\"]; };\n",
               NULL, &c);
     assert_true(fabs(c.foam.density - 35.0) < 1e-12);
     assert_true(fabs(c.foam.modulus - 413600.0) < 1e-8);
@@ -138,6 +139,8 @@ static void good_case_is_in_si(void **state) {
     assert_int_equal(c.symmetry_count, 0);
     assert_true(c.symmetry_given);
     assert_true(fabs(c.run.end_time - 0.04) < 1e-16 && fabs(c.run.frame_interval - 5e-4) < 1e-18);
+    assert_int_equal(c.frame_time_count, 2);
+    assert_true(fabs(c.frame_time[0] - 3e-4) < 1e-18 && fabs(c.frame_time[1] - 0.0122) < 1e-16);
     assert_int_equal(c.run.stop_after_rebound, 0);
     assert_int_equal(c.run.output_fields, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES);
     assert_int_equal(c.foam.curve_count, 1);
@@ -310,6 +313,11 @@ static void units_of_another_kind_are_refused(void **state) {
     assert_refused(GOOD, "material.damp_length=cell",
                    "material.damp_length: \"cell\" does not begin with a number", "or \"spacing\"", NULL);
     assert_refused(GOOD, "geometry.length_unit=kg", "\"kg\" is not a unit of length", NULL);
+    assert_refused(GOOD, "output.times=[\"1 ms\", \"2 kg\"]", "output.times: \"2 kg\" is a mass; expected a time",
+                   NULL);
+    assert_refused(GOOD, "output.times=[1.0]", "item 1 is a plain number; expected a time", NULL);
+    assert_refused(GOOD, "output.times=\"1 ms\"", "expected an array of at most", NULL);
+    assert_refused(GOOD, "output.times=[\"-1 ms\"]", "output.times: -0.001 s is out of bounds", NULL);
     assert_refused(GOOD, "kernel.support_ratio=\"1.4\"", "the value is a text; expected a plain number",
                    NULL);
 }

@@ -47,6 +47,8 @@ static const sf_model_field fields[] = {
     SCALAR(surface_triangle_count, I64, "/missile/surface_triangle_count", "1", "triangles of it"),
     ARRAY(surface_position, F64, surface_node_count, 0, 3, "/missile/surface_position", "m", "position at t = 0"),
     ARRAY(surface_triangle, I32, surface_triangle_count, 0, 3, "/missile/surface_triangle", "1", "outward triangles"),
+    SCALAR(frame_time_count, I64, "/run/frame_time_count", "1", "number of further frames"),
+    ARRAY(frame_time, F64, frame_time_count, 0, 1, "/run/frame_time", "s", "times of further frames"),
     SCALAR(symmetry_factor, I64, "/model/symmetry_factor", "1", "modelled parts that make the whole"),
     SCALAR(thickness, F64, "/model/thickness", "m", "pad thickness"),
     SCALAR(foam.density, F64, "/foam/density", "kg m-3", "density of the undeformed foam"),

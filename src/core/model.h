@@ -134,6 +134,10 @@ typedef struct sf_model {
     double *surface_position;  /* [surface_node_count][3] m */
     int32_t *surface_triangle; /* [surface_triangle_count][3] */
 
+    /* Times of further frames, beside run.frame_interval. */
+    int64_t frame_time_count;
+    double *frame_time; /* [frame_time_count] s, ascending */
+
     int64_t symmetry_factor;  /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness;         /* m, of the pad along z */
     sf_foam_card foam;

@@ -204,13 +204,19 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     return SF_OK;
 }
 
-static void take_foam(sf_case *c, sf_model *m) {
+static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
+    m->frame_time = sf_alloc(err, (unsigned long)c->frame_time_count, sizeof *m->frame_time, "frame times");
+    if (!m->frame_time)
+        return err->status;
+    m->frame_time_count = c->frame_time_count;
+    memcpy(m->frame_time, c->frame_time, (size_t)c->frame_time_count * sizeof *m->frame_time);
     m->foam = c->foam;
     c->foam.curve_rate = NULL;
     c->foam.curve_ptr = NULL;
     c->foam.curve_strain = NULL;
     c->foam.curve_stress = NULL;
     m->run = c->run;
+    return SF_OK;
 }
 
 /* The bound on the step at rest: the largest initial tangent of all curves plus the Maxwell branch. */
@@ -240,11 +246,9 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     memset(m, 0, sizeof *m);
     memset(report, 0, sizeof *report);
     if (build_cloud(c, mesh, m, report, err) == SF_OK && build_sets(c, mesh, m, err) == SF_OK &&
-        build_missile(c, surface, m, err) == SF_OK) {
-        take_foam(c, m);
-        if (sf_model_check(m, err) == SF_OK)
-            first_step(m, &report->first_step, err);
-    }
+        build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK &&
+        sf_model_check(m, err) == SF_OK)
+        first_step(m, &report->first_step, err);
     if (err->status != SF_OK)
         sf_model_free(m);
     return err->status;

@@ -10,7 +10,7 @@
 
 enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
 
-enum { SF_CASE_NAME_SIZE = 128, SF_CASE_MAX_GROUPS = 16, SF_CASE_MAX_PARAMETERS = 64 };
+enum { SF_CASE_NAME_SIZE = 128, SF_CASE_MAX_GROUPS = 16, SF_CASE_MAX_PARAMETERS = 64, SF_CASE_MAX_TIMES = 256 };
 
 /* A variable of a .geo file set by the case; plain numbers, in the geometry's own length unit. */
 typedef struct sf_geo_parameter {
@@ -49,6 +49,8 @@ typedef struct sf_case {
     sf_foam_card foam;            /* curve arrays owned by the case until moved into a model */
     sf_missile_card missile_card; /* sphere_* are left zero: they come from the geometry */
     sf_run_options run;
+    int frame_time_count;                 /* further frames, beside run.frame_interval */
+    double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */
 } sf_case;
 
 /* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in

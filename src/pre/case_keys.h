@@ -24,6 +24,7 @@ typedef enum sf_key_kind {
     SF_KEY_NAMES,      /* ["base"]: char[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE], int at count_offset */
     SF_KEY_CHOICE,     /* one of `words` ("a|b"): int, its index */
     SF_KEY_FIELDS,     /* list of `words`: int64_t, bit k for word k */
+    SF_KEY_TIMES,      /* ["12 ms", "20 ms"]: double[SF_CASE_MAX_TIMES] ascending, s; int at count_offset */
     SF_KEY_VECTOR,     /* [0.0, 0.0, -1.0]: double[3] */
     SF_KEY_PATH,       /* "file": char *, relative to the file that holds the key; must be readable */
     SF_KEY_PARAMETERS, /* { side = 400.0; }: sf_geo_source */
@@ -43,7 +44,7 @@ typedef struct sf_key {
     bool low_open;           /* the lower bound itself is refused */
     const char *words;       /* see sf_key_kind; NULL = none */
     double word_value;
-    size_t count_offset; /* SF_KEY_NAMES */
+    size_t count_offset; /* SF_KEY_NAMES, SF_KEY_TIMES */
 } sf_key;
 
 enum { SF_KEY_MAX = 64 };

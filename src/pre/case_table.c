@@ -111,6 +111,8 @@ static const sf_key keys[] = {
     /* output */
     {"output", "frame_interval", SF_KEY_QUANTITY, "\"1 ms\"", AT(run.frame_interval),
      "time between frames; there are also frames at the start and at the end", .quantity = SF_TIME, POSITIVE},
+    {"output", "times", SF_KEY_TIMES, "[]", AT(frame_time),
+     "times of further frames", .quantity = SF_TIME, .count_offset = offsetof(sf_case, frame_time_count)},
     {"output", "fields", SF_KEY_FIELDS,
      "[\"displacement\", \"velocity\", \"cauchy_stress\", \"von_mises\", \"principal_stretches\", "
      "\"largest_compression\", \"energy_density\", \"hysteresis_factor\"]",

@@ -250,6 +250,37 @@ static sf_status read_fields(sf_case_reader *reader, const sf_key *key, const co
     return SF_OK;
 }
 
+static int by_time(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static sf_status read_times(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
+                            char *detail, size_t size, sf_error *err) {
+    double *value = (double *)((char *)reader->out + key->offset);
+    int *count = (int *)((char *)reader->out + key->count_offset);
+    if (!is_sequence(setting) || config_setting_length(setting) > SF_CASE_MAX_TIMES)
+        return FAIL_AT(reader, key, setting, err,
+                       "expected an array of at most %d times, for example [\"12 ms\", \"20 ms\"]",
+                       SF_CASE_MAX_TIMES);
+    *count = config_setting_length(setting);
+    for (int i = 0; i < *count; i++) {
+        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
+        const char *text = config_setting_get_string(item);
+        sf_error inner = SF_ERROR_INIT;
+        if (!text)
+            return FAIL_AT(reader, key, setting, err, "item %d is %s; expected a time such as \"12 ms\"",
+                           i + 1, type_phrase(item));
+        if (sf_units_parse(reader->units, text, key->quantity, &value[i], &inner) != SF_OK)
+            return FAIL_AT(reader, key, setting, err, "%s", inner.text);
+        if (check_bounds(reader, key, setting, value[i], "s", err) != SF_OK)
+            return err->status;
+    }
+    qsort(value, (size_t)*count, sizeof *value, by_time);
+    snprintf(detail, size, "-");
+    return SF_OK;
+}
+
 static sf_status read_vector(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                              char *detail, size_t size, sf_error *err) {
     double *value = (double *)((char *)reader->out + key->offset);
@@ -334,6 +365,8 @@ sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const co
         return read_choice(reader, key, setting, detail, size, err);
     case SF_KEY_FIELDS:
         return read_fields(reader, key, setting, detail, size, err);
+    case SF_KEY_TIMES:
+        return read_times(reader, key, setting, detail, size, err);
     case SF_KEY_VECTOR:
         return read_vector(reader, key, setting, detail, size, err);
     case SF_KEY_PATH:

@@ -19,7 +19,8 @@ typedef struct recorder {
     double *scratch; /* [n][9], for the fields of a frame */
     sf_snapshot peak;
     int64_t frames;
-    double next_frame; /* s */
+    double next_frame;   /* s */
+    int64_t next_extra;  /* index in model->frame_time */
     double start, last_line; /* s, wall clock */
 } recorder;
 
@@ -83,6 +84,16 @@ static bool has_rebounded(const sf_model *m, const sf_state *s) {
            s->time - s->missile.release_time > REBOUND_WAIT;
 }
 
+/* Is a frame due? Advances both schedules past the present time. */
+static bool frame_is_due(const sf_model *m, const sf_state *s, recorder *r) {
+    bool due = false;
+    for (; s->time >= r->next_frame; r->next_frame += m->run.frame_interval)
+        due = true;
+    for (; r->next_extra < m->frame_time_count && s->time >= m->frame_time[r->next_extra]; r->next_extra++)
+        due = true;
+    return due;
+}
+
 static sf_status run_steps(const sf_model *m, const sf_operators *op, sf_state *s, sf_run *run, recorder *r,
                            sf_h5 *file, sf_error *err) {
     for (;;) {
@@ -94,11 +105,8 @@ static sf_status run_steps(const sf_model *m, const sf_operators *op, sf_state *
         if (sf_history_add(r->history, m, s, file, err) != SF_OK)
             return err->status;
         bool end = s->time >= m->run.end_time, rebound = has_rebounded(m, s), stop = *run->stop != 0;
-        if (s->time >= r->next_frame || end || rebound || stop) {
-            r->next_frame += m->run.frame_interval;
-            if (write_frame(m, op, s, r, file, err) != SF_OK)
-                return err->status;
-        }
+        if ((frame_is_due(m, s, r) || end || rebound || stop) && write_frame(m, op, s, r, file, err) != SF_OK)
+            return err->status;
         print_progress(m, s, run, r, end || rebound || stop);
         if (end || rebound || stop) {
             run->ending = stop ? "interrupted" : rebound ? "rebound" : "finished";
