@@ -12,3 +12,7 @@ list(JOIN option_flags " " option_flags)
 set(SOFTFALL_FLAGS "${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_${build_type_upper}} ${option_flags}")
 string(STRIP "${SOFTFALL_FLAGS}" SOFTFALL_FLAGS)
 configure_file(${CMAKE_SOURCE_DIR}/cmake/build_info.h.in ${CMAKE_BINARY_DIR}/generated/build_info.h @ONLY)
+# A commit makes CMake configure again, so that the recorded revision stays true.
+if(EXISTS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
+endif()

@@ -91,9 +91,9 @@ static void assert_refused(const char *text, const char *override, ...) {
 
 static void assert_curve_refused(const char *text, const char *part) {
     sf_error err = SF_ERROR_INIT;
-    sf_curve curve;
+    sf_case_curve curve;
     write_file("bad.csv", text);
-    if (sf_curve_read(in_folder("bad.csv"), &curve, &err) == SF_OK)
+    if (sf_case_curve_read(in_folder("bad.csv"), &curve, &err) == SF_OK)
         fail_msg("accepted: %s", text);
     assert_int_equal(err.status, SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "bad.csv"));
@@ -434,18 +434,18 @@ static void curve_faults_name_file_line_and_value(void **state) {
 static void curve_without_origin_is_extended_to_it(void **state) {
     (void)state;
     sf_error err = SF_ERROR_INIT;
-    sf_curve curve;
+    sf_case_curve curve;
     write_file(
         "late.csv",
         "\xEF\xBB\xBF# from a spreadsheet\r\n time , strain_percent , stress_Pa \r\n1,5,100\r\n2,10,200\r\n"
         "3,20,300\r\n\r\n4,30,300\r\n");
-    if (sf_curve_read(in_folder("late.csv"), &curve, &err) != SF_OK)
+    if (sf_case_curve_read(in_folder("late.csv"), &curve, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_true(curve.extended);
     assert_int_equal(curve.count, 5);
     assert_true(curve.strain[0] == 0.0 && curve.stress[0] == 0.0 && fabs(curve.strain[1] - 0.05) < 1e-16);
     assert_true(curve.stress[4] == 300.0);
-    sf_curve_free(&curve);
+    sf_case_curve_free(&curve);
 }
 
 /* Every example reads, and they differ in what their names say. */

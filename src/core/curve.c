@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/curve.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_interp.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -23,20 +21,66 @@ static sf_status build_densification(const sf_foam_card *foam, double stress, do
     return SF_OK;
 }
 
-/* Hermite pieces through values and slopes of the interpolant at uniform points. */
-static void build_pieces(const gsl_interp *interp, const double *x, const double *y, sf_curve *curve) {
+/* Steffen's slopes at the points. Those of the ends come from the parabola through three points, as in the paper; GSL takes
+ * the secant of the last interval, which is of first order and would hand a wrong exponent to the densification. */
+static void steffen_slopes(int64_t count, const double *x, const double *y, double *slope) {
+    for (int64_t i = 0; i < count; i++) {
+        bool first = i == 0, last = i + 1 == count;
+        int64_t k = last ? i - 1 : i, n = first ? 1 : k - 1; /* the interval at the point, and the next or other one */
+        double h = x[k + 1] - x[k], g = x[n + 1] - x[n], s = (y[k + 1] - y[k]) / h, r = (y[n + 1] - y[n]) / g;
+        if (first || last)
+            slope[i] = fmax(0, fmin(s + (s - r) * h / (h + g), 2 * s));
+        else
+            slope[i] = 2 * fmin(fmin(s, r), 0.5 * (r * h + s * g) / (h + g));
+    }
+}
+
+static sf_status check_points(int64_t index, int64_t count, const double *x, sf_error *err) {
+    if (count < 3)
+        return SF_FAIL(err, SF_ERR_INPUT, "compression curve %lld has %lld points; it needs at least 3",
+                       (long long)index, (long long)count);
+    for (int64_t i = 1; i < count; i++)
+        if (!(x[i] > x[i - 1]))
+            return SF_FAIL(err, SF_ERR_INPUT, "the strains of compression curve %lld are not ascending: %g after %g",
+                           (long long)index, x[i], x[i - 1]);
+    return SF_OK;
+}
+
+/* Stress and slope of the interpolant at the ends of the pieces, into c[0] and c[1] of the piece that begins there, and at
+ * the end of the last. Data denser than the table can be steeper at an end than the table's secants: slopes within three
+ * times both secants keep every cubic piece rising (Fritsch, Carlson 1980, doi:10.1137/0717021). */
+static void sample_pieces(const double *x, const double *y, const double *slope, sf_curve *curve, double *end_stress,
+                          double *end_slope) {
+    sf_curve_piece *p = curve->piece;
+    int64_t i = 0;
+    for (int k = 0; k <= SF_CURVE_INTERVALS; k++) {
+        bool last = k == SF_CURVE_INTERVALS;
+        double at = last ? curve->start : k * curve->step;
+        while (x[i + 1] < at)
+            i++;
+        double h = x[i + 1] - x[i], q = (at - x[i]) / h, s = (y[i + 1] - y[i]) / h;
+        double c2 = 3 * s - 2 * slope[i] - slope[i + 1], c3 = slope[i] + slope[i + 1] - 2 * s;
+        *(last ? end_stress : &p[k].c[0]) = y[i] + h * q * (slope[i] + q * (c2 + q * c3));
+        *(last ? end_slope : &p[k].c[1]) = slope[i] + q * (2 * c2 + q * 3 * c3);
+    }
+    for (int k = 0; k < SF_CURVE_INTERVALS; k++) {
+        bool last = k + 1 == SF_CURVE_INTERVALS;
+        double bound = 3 * ((last ? *end_stress : p[k + 1].c[0]) - p[k].c[0]) / curve->step;
+        double *next = last ? end_slope : &p[k + 1].c[1];
+        p[k].c[1] = fmin(p[k].c[1], bound);
+        *next = fmin(*next, bound);
+    }
+}
+
+/* Hermite pieces through the sampled stresses and slopes. */
+static void build_pieces(double end_stress, double end_slope, sf_curve *curve) {
     double energy = 0;
     for (int k = 0; k < SF_CURVE_INTERVALS; k++) {
-        double a = k * curve->step, b = k + 1 == SF_CURVE_INTERVALS ? curve->start : (k + 1) * curve->step;
-        double h = b - a, y0, y1, d0, d1;
-        gsl_interp_eval_e(interp, x, y, a, NULL, &y0);
-        gsl_interp_eval_e(interp, x, y, b, NULL, &y1);
-        gsl_interp_eval_deriv_e(interp, x, y, a, NULL, &d0);
-        gsl_interp_eval_deriv_e(interp, x, y, b, NULL, &d1);
+        bool last = k + 1 == SF_CURVE_INTERVALS;
         sf_curve_piece *p = &curve->piece[k];
+        double h = (last ? curve->start : (k + 1) * curve->step) - k * curve->step;
+        double y0 = p->c[0], d0 = p->c[1], y1 = last ? end_stress : p[1].c[0], d1 = last ? end_slope : p[1].c[1];
         p->energy = energy;
-        p->c[0] = y0;
-        p->c[1] = d0;
         p->c[2] = (3 * (y1 - y0) / h - 2 * d0 - d1) / h;
         p->c[3] = (2 * (y0 - y1) / h + d0 + d1) / (h * h);
         energy += h * (p->c[0] + h * (p->c[1] / 2 + h * (p->c[2] / 3 + h * p->c[3] / 4)));
@@ -49,25 +93,23 @@ sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curv
     int64_t first = foam->curve_ptr[index], count = foam->curve_ptr[index + 1] - first;
     const double *x = &foam->curve_strain[first], *y = &foam->curve_stress[first];
     *curve = (sf_curve){0};
+    if (check_points(index, count, x, err) != SF_OK)
+        return err->status;
     curve->start = foam->densification_start > 0 ? foam->densification_start : x[count - 1];
     if (curve->start > x[count - 1])
         return SF_FAIL(err, SF_ERR_INPUT, "densification starts at strain %g, but the curve ends at %g", curve->start,
                        x[count - 1]);
     curve->step = curve->start / SF_CURVE_INTERVALS;
     curve->piece = sf_alloc(err, SF_CURVE_INTERVALS, sizeof *curve->piece, "curve table");
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    gsl_interp *interp = gsl_interp_alloc(gsl_interp_steffen, (size_t)count);
-    if (err->status == SF_OK && (!interp || gsl_interp_init(interp, x, y, (size_t)count) != GSL_SUCCESS))
-        SF_FAIL(err, SF_ERR_LIBRARY, "GSL cannot interpolate compression curve %lld", (long long)index);
+    double *slopes = sf_alloc(err, (unsigned long)count, sizeof *slopes, "curve slopes");
     if (err->status == SF_OK) {
-        double stress = gsl_interp_eval(interp, x, y, curve->start, NULL);
-        double slope = gsl_interp_eval_deriv(interp, x, y, curve->start, NULL);
-        build_pieces(interp, x, y, curve);
+        double stress, slope;
+        steffen_slopes(count, x, y, slopes);
+        sample_pieces(x, y, slopes, curve, &stress, &slope);
+        build_pieces(stress, slope, curve);
         build_densification(foam, stress, slope, curve, err);
     }
-    if (interp)
-        gsl_interp_free(interp);
-    gsl_set_error_handler(handler);
+    free(slopes);
     if (err->status != SF_OK)
         sf_curve_free(curve);
     return err->status;

@@ -2,8 +2,9 @@
 /* The compression curve of a foam as the solver evaluates it: nominal stress, slope and strain energy against
  * engineering strain, compression positive.
  *
- * Inside the data: Steffen's monotone interpolant (Steffen 1990, GSL), resampled to a uniform table of cubic Hermite
- * pieces whose integral is exact, so that stress is the derivative of energy to rounding. Beyond the densification
+ * Inside the data: Steffen's monotone interpolant (Steffen 1990, the slopes of the ends by parabolas), resampled to a uniform
+ * table of cubic Hermite pieces, monotone too, whose integral is exact, so that stress is the derivative of energy to
+ * rounding. Beyond the densification
  * start eps_e: sigma = A + B / (eps_L - eps)^m, continuous with its slope there ("Du Bois extrapolation"; theory,
  * section "Densification"). Rule H1 is eps_L = 1; without an exponent m is the one that makes A vanish. */
 #ifndef SF_CORE_CURVE_H
@@ -32,8 +33,8 @@ typedef struct sf_curve {
     sf_curve_piece *piece; /* [SF_CURVE_INTERVALS] owned */
 } sf_curve;
 
-/* Builds curve `index` of the card. Errors: densification start beyond the data, a slope at the start that is not
- * positive, eps_L not beyond the start. */
+/* Builds curve `index` of the card. Errors: fewer than 3 points, strains that do not ascend, densification start beyond
+ * the data, a slope at the start that is not positive, eps_L not beyond the start. */
 sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curve, sf_error *err);
 void sf_curve_free(sf_curve *curve);
 

@@ -51,7 +51,7 @@ static void put_style(FILE *g, const sf_results *r, const sf_figures *f, const s
     fprintf(g, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", time[0], time[1], value[0], value[1]);
     fputs("set grid back lt 1 lc rgb '#c8c8c8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
           "set tics nomirror out scale 0.6\nset xzeroaxis lw 1 lc rgb '#808080'\n"
-          "set key bmargin center horizontal maxcols 2 Left reverse samplen 2.5 width 2\n",
+          "set key below center horizontal maxcols 3 Left reverse samplen 2 width 1 spacing 1.2\n",
           g);
 }
 

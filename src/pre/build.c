@@ -141,6 +141,24 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
     return SF_OK;
 }
 
+/* Surfaces on a smooth anvil: held along their normal. */
+static sf_status mark_sliding(const sf_case *c, const sf_mesh *mesh, const sf_model *m, uint8_t *mask, uint8_t *base,
+                              sf_error *err) {
+    for (int g = 0; g < c->sliding_count; g++) {
+        const sf_node_set *set = need_set(mesh, "pad.sliding", c->sliding_group[g], err);
+        if (!set)
+            return err->status;
+        int axis = plane_axis(m, set);
+        if (axis < 0)
+            return SF_FAIL(err, SF_ERR_INPUT, "the sliding group \"%s\" is not a plane normal to x, y or z", set->name);
+        for (int64_t k = 0; k < set->count; k++) {
+            mask[set->node[k]] |= (uint8_t)(1 << axis);
+            base[set->node[k]] = 1;
+        }
+    }
+    return SF_OK;
+}
+
 /* Groups to constrained nodes (with their components) and contact points. */
 static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf_error *err) {
     uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
@@ -156,6 +174,8 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, 
             base[set->node[k]] = 1;
         }
     }
+    if (mark_sliding(c, mesh, m, mask, base, err) != SF_OK)
+        goto done;
     for (int64_t i = 0; i < m->node_count; i++)
         m->fixed_count += mask[i] != 0;
     const sf_node_set *contact = need_set(mesh, "pad.contact", c->contact_group, err);

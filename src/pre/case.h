@@ -37,6 +37,8 @@ typedef struct sf_case {
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */
     int fixed_count;                       /* physical surface groups held in all components */
     char fixed_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    int sliding_count;                 /* plane physical surface groups held along their normal */
+    char sliding_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     int symmetry_count; /* physical surface groups that are symmetry planes; planes absent from the geometry
                            are allowed only if the key was not given */
     bool symmetry_given;

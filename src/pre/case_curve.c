@@ -25,10 +25,10 @@ typedef struct csv {
     columns columns;
     int64_t capacity;
     int64_t read; /* points in the file */
-    sf_curve *curve;
+    sf_case_curve *curve;
 } csv;
 
-void sf_curve_free(sf_curve *curve) {
+void sf_case_curve_free(sf_case_curve *curve) {
     free(curve->strain);
     free(curve->stress);
     memset(curve, 0, sizeof *curve);
@@ -105,7 +105,7 @@ static sf_status read_number(const csv *file, const char *name, const char *text
 }
 
 static sf_status append(csv *file, double strain, double stress, sf_error *err) {
-    sf_curve *curve = file->curve;
+    sf_case_curve *curve = file->curve;
     if (curve->count == file->capacity) {
         int64_t capacity = file->capacity ? 2 * file->capacity : 64;
         double *e = realloc(curve->strain, (size_t)capacity * sizeof *e);
@@ -126,7 +126,7 @@ static sf_status append(csv *file, double strain, double stress, sf_error *err) 
 /* Sentences quote the cells as written, so that the user finds them in the file. */
 static sf_status check_point(const csv *file, double strain, double stress, const char *strain_text,
                              const char *stress_text, sf_error *err) {
-    const sf_curve *curve = file->curve;
+    const sf_case_curve *curve = file->curve;
     const char *path = file->path;
     int line = file->line;
     if (strain < 0.0)
@@ -205,7 +205,7 @@ static sf_status read_lines(csv *file, FILE *stream, sf_error *err) {
     return status;
 }
 
-sf_status sf_curve_read(const char *path, sf_curve *curve, sf_error *err) {
+sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err) {
     memset(curve, 0, sizeof *curve);
     struct stat info;
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
@@ -217,6 +217,6 @@ sf_status sf_curve_read(const char *path, sf_curve *curve, sf_error *err) {
     sf_status status = read_lines(&file, stream, err);
     fclose(stream);
     if (status != SF_OK)
-        sf_curve_free(curve);
+        sf_case_curve_free(curve);
     return status;
 }

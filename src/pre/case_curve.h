@@ -11,15 +11,15 @@
 
 enum { SF_CURVE_MIN_POINTS = 4 };
 
-typedef struct sf_curve {
+typedef struct sf_case_curve {
     int64_t count;
     double *strain; /* [count] -, strictly increasing from 0, below 1; owned */
     double *stress; /* [count] Pa, from 0, non-decreasing, finite; owned */
     bool extended;  /* the file began above zero strain and (0, 0) was put before it */
-} sf_curve;
+} sf_case_curve;
 
 /* Reads and checks a curve; SF_ERR_INPUT names file, line and value. On failure `*curve` is zeroed. */
-sf_status sf_curve_read(const char *path, sf_curve *curve, sf_error *err);
-void sf_curve_free(sf_curve *curve);
+sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err);
+void sf_case_curve_free(sf_case_curve *curve);
 
 #endif

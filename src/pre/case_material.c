@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Appends a curve to the card's lists. */
-static sf_status add_curve(sf_foam_card *foam, double rate, const sf_curve *curve, sf_error *err) {
+static sf_status add_curve(sf_foam_card *foam, double rate, const sf_case_curve *curve, sf_error *err) {
     size_t curves = (size_t)foam->curve_count, points = (size_t)foam->curve_points,
            more = (size_t)curve->count;
     double *rates = sf_alloc(err, curves + 1, sizeof *rates, "curve rates");
@@ -55,9 +55,9 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     char *path = sf_case_resolve(reader, setting, text, err);
     if (!path)
         return err->status;
-    sf_curve curve = {0};
+    sf_case_curve curve = {0};
     sf_error inner = SF_ERROR_INIT;
-    sf_status status = sf_curve_read(path, &curve, &inner);
+    sf_status status = sf_case_curve_read(path, &curve, &inner);
     if (status != SF_OK) {
         SF_FAIL(err, status, "%s (named at %s)", inner.text, sf_case_where(reader, setting, where));
     } else {
@@ -67,7 +67,7 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
                     curve.strain[1]);
         status = add_curve(&reader->out->foam, rate, &curve, err);
     }
-    sf_curve_free(&curve);
+    sf_case_curve_free(&curve);
     free(path);
     return status;
 }

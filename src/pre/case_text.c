@@ -90,8 +90,13 @@ static sf_status copy_text(const char *path, const char *from, int line, const c
                        strerror(errno));
     char *text = NULL, *copy = NULL;
     size_t size = 0;
+    ssize_t length;
     sf_status status = SF_OK;
-    for (int number = 1; status == SF_OK && getline(&text, &size, in) >= 0; number++) {
+    for (int number = 1; status == SF_OK && (length = getline(&text, &size, in)) >= 0; number++) {
+        if (strlen(text) != (size_t)length) {
+            status = SF_FAIL(err, SF_ERR_INPUT, "%s%s:%d: a zero byte: this is not a text file", where, path, number);
+            break;
+        }
         copy = strdup(text);
         char *name = copy ? include_name(copy) : NULL;
         char *included = NULL;
@@ -103,7 +108,7 @@ static sf_status copy_text(const char *path, const char *from, int line, const c
             status = copy_text(included, path, number, folder, depth + 1, out, err);
         } else {
             fputs(text, out);
-            if (text[strlen(text) - 1] != '\n')
+            if (text[length - 1] != '\n')
                 fputc('\n', out);
         }
         free(included);

@@ -55,9 +55,10 @@ static void book_work(const sf_model *m, sf_state *s) {
             mean[r] = 0.5 * (q[r] + old[r]);
             slip[r] = e[r] * travel - s->contact_motion[3 * c + r];
         }
-        double normal = sf_dot3(mean, n) * sf_dot3(slip, n);
+        double lost = sf_dot3(mean, slip);
+        double normal = m->missile.friction > 0 ? sf_dot3(mean, n) * sf_dot3(slip, n) : lost;
         s->ledger.contact += normal;
-        s->ledger.friction += sf_dot3(mean, slip) - normal;
+        s->ledger.friction += lost - normal;
     }
 }
 

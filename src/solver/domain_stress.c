@@ -2,6 +2,7 @@
 #include "solver/domain_stress.h"
 
 #include "core/stability.h"
+#include "solver/time_step.h"
 #include <math.h>
 #include <string.h>
 
@@ -53,12 +54,18 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
         }
         s->energy[i] = b->energy[l];
         s->stiffness[i] = b->stiffness[l];
-        s->tangent[i] = b->tangent[l] + b->viscosity[l] * inverse;
+        s->tangent[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            double a = b->direction_tangent[k][l], eta = b->direction_viscosity[k][l];
+            s->tangent[i] = fmax(s->tangent[i], a + eta * inverse);
+            sum->step = fmin(sum->step, sf_stability_step(c, a, eta));
+        }
+        for (int k = 0; k < 6 && b->directions; k++)
+            s->directional[6 * i + k] = b->directional[k][l];
         sf_foam_energies(&op->foam, b->energy[l], b->peak[l], &stored, &lost);
         sum->stored += v * stored;
         sum->hysteresis += v * lost;
         sum->viscous += v * b->work[l];
-        sum->step = fmin(sum->step, sf_stability_step(c, b->tangent[l], b->viscosity[l]));
         sum->load = fmax(sum->load, op->stability[i] * s->tangent[i]);
         sum->shortest = fmin(sum->shortest, fmin(b->stretch[0][l], fmin(b->stretch[1][l], b->stretch[2][l])));
         if (!(b->jacobian[l] >= sum->jacobian) && !isnan(sum->jacobian)) { /* NaN is kept */
@@ -75,7 +82,7 @@ void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {
         *sum = (sf_partial){.step = INFINITY, .jacobian = INFINITY, .shortest = INFINITY};
         for (int64_t block = chunk * (SF_CHUNK / SF_LANES);
              block < (chunk + 1) * (SF_CHUNK / SF_LANES) && block * SF_LANES < m->node_count; block++) {
-            sf_foam_batch batch;
+            sf_foam_batch batch = {.directions = sf_time_step_due(s)};
             int64_t left = m->node_count - block * SF_LANES;
             int count = left < SF_LANES ? (int)left : SF_LANES;
             load_batch(m, op, s, block, count, &batch);

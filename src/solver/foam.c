@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/foam.h"
 
+#include "solver/foam_tangent.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,10 +50,18 @@ void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *s
 
 /* Principal law of one point: nominal stress, slope and energy of each stretch. */
 typedef struct principal {
-    double t[3];     /* Pa */
-    double slope[3]; /* Pa */
-    double energy;   /* J m-3 */
+    double t[3];        /* Pa */
+    double slope[3];    /* Pa */
+    double steepest[3]; /* Pa, the same; at rest, where tension meets compression, the larger of both sides */
+    double energy;      /* J m-3 */
 } principal;
+
+static const double REST = 1e-6; /* strain below which a direction counts as at rest */
+
+/* The larger modulus of tension and of compression, Pa. */
+static double rest_stiffness(const sf_foam *foam) {
+    return fmax(foam->modulus, foam->curve[0].piece[0].c[1]);
+}
 
 static principal base_law(const sf_foam *foam, const double stretch[3]) {
     principal law = {.energy = 0};
@@ -71,25 +80,12 @@ static principal base_law(const sf_foam *foam, const double stretch[3]) {
             law.slope[i] = 0;
             energy = foam->cutoff * (-strain - 0.5 * yield);
         }
+        law.steepest[i] = law.slope[i];
+        if (fabs(strain) < REST)
+            law.steepest[i] = rest_stiffness(foam);
         law.energy += energy;
     }
     return law;
-}
-
-/* Bound on the elastic tangent in principal axes: uncoupled slopes with the rank-one term of unloading, and the two
- * shear moduli of each pair (theory eq. 18). `softening` is d(factor)/dW. */
-static double elastic_tangent(const principal *law, const double stretch[3], double factor, double softening) {
-    double bound = 0, square = 0;
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3;
-        double gap = stretch[i] - stretch[j];
-        double difference =
-            fabs(gap) > 1e-7 ? (law->t[i] - law->t[j]) / gap : fmax(law->slope[i], law->slope[j]);
-        double sum = (law->t[i] + law->t[j]) / (stretch[i] + stretch[j]);
-        bound = fmax(bound, fmax(law->slope[i], fmax(difference, sum)));
-        square += law->t[i] * law->t[i];
-    }
-    return factor * bound + softening * square;
 }
 
 /* Rate overstress sigma(eps, rate) - sigma(eps, slowest), interpolated over the logarithm of the rate. */
@@ -111,10 +107,11 @@ static double overstress(const sf_foam *foam, double strain, double rate, double
     return low + x * (high - low) - base;
 }
 
-/* Adds the rate overstress of lane l to the principal second Piola-Kirchhoff stress s; returns its stiffness. */
+/* Adds the rate overstress of lane l to the principal second Piola-Kirchhoff stress s; returns a bound on its tangent:
+ * slopes, the shear moduli between directions, and what a change of the filtered rate does to all three. */
 static double add_overstress(const sf_foam *foam, double dt, sf_foam_batch *b, int l, double v[9][SF_LANES],
                              const double rate_of_e[6], double s[3]) {
-    double bound = 0, fastest = 0, shortest = INFINITY;
+    double bound = 0, rates = 0, fastest = 0, shortest = INFINITY, extra[3];
     for (int i = 0; i < 3; i++) {
         double quadratic = 0;
         for (int p = 0; p < 3; p++)
@@ -128,11 +125,17 @@ static double add_overstress(const sf_foam *foam, double dt, sf_foam_batch *b, i
     b->rate[l] += -expm1(-dt / foam->filter_time) * (fastest - b->rate[l]);
     for (int i = 0; i < 3; i++) {
         double slope, rate_slope;
-        double extra = overstress(foam, 1 - b->stretch[i][l], b->rate[l], &slope, &rate_slope);
-        s[i] -= extra / b->stretch[i][l];
-        bound = fmax(bound, slope + rate_slope / foam->filter_time);
+        extra[i] = overstress(foam, 1 - b->stretch[i][l], b->rate[l], &slope, &rate_slope);
+        s[i] -= extra[i] / b->stretch[i][l];
+        bound = fmax(bound, slope);
+        rates += rate_slope * rate_slope;
     }
-    return bound;
+    for (int i = 0; i < 3; i++) {
+        double gap = b->stretch[(i + 1) % 3][l] - b->stretch[i][l];
+        if (fabs(gap) > 1e-7)
+            bound = fmax(bound, (extra[i] - extra[(i + 1) % 3]) / gap);
+    }
+    return bound + sqrt(rates) / foam->filter_time;
 }
 
 /* C = Ft F as (xx, yy, zz, xy, yz, xz). */
@@ -161,6 +164,42 @@ static void cofactor(sf_foam_batch *b, double a[9][SF_LANES]) {
         b->jacobian[l] = b->f[0][l] * a[0][l] + b->f[1][l] * a[1][l] + b->f[2][l] * a[2][l];
 }
 
+/* out = sum of value[i] N_i N_i^T, N_i the columns of v. */
+static void compose(const double value[3][SF_LANES], double v[9][SF_LANES], double out[6][SF_LANES]) {
+    for (int i = 0; i < 3; i++)
+        for (int j = i; j < 3; j++) {
+            double *restrict sum = out[SYM[i][j]];
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                sum[l] = value[0][l] * v[3 * i][l] * v[3 * j][l] +
+                         value[1][l] * v[3 * i + 1][l] * v[3 * j + 1][l] +
+                         value[2][l] * v[3 * i + 2][l] * v[3 * j + 2][l];
+        }
+}
+
+/* Viscosity of DAMP (theory eq. 21), Pa s. */
+static double damp_viscosity(const sf_foam *foam, const sf_foam_batch *b, int l) {
+    return foam->damp * b->length[l] * sqrt(foam->density * b->stiffness[l]);
+}
+
+/* Bounds by direction of lane l; `extra` is what the overstress adds to each. */
+static void bound_tangent(const sf_foam *foam, const principal *law, double softening, double extra, sf_foam_batch *b,
+                          int l) {
+    sf_foam_principal point = {.factor = b->factor[l], .softening = softening};
+    double a[3], eta[3];
+    for (int i = 0; i < 3; i++) {
+        point.stretch[i] = b->stretch[i][l];
+        point.stress[i] = law->t[i];
+        point.slope[i] = law->steepest[i];
+    }
+    sf_foam_tangent_elastic(&point, foam->maxwell, a);
+    sf_foam_tangent_viscous(point.stretch, foam->kelvin, damp_viscosity(foam, b, l), eta);
+    for (int i = 0; i < 3; i++) {
+        b->direction_tangent[i][l] = a[i] + extra;
+        b->direction_viscosity[i][l] = eta[i];
+    }
+}
+
 /* Elastic part of every lane: second Piola-Kirchhoff stress into s [6][lane], with energies and bounds. */
 static void elastic_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double c[6][SF_LANES],
                            double rate_of_e[6][SF_LANES], double s[6][SF_LANES]) {
@@ -185,7 +224,7 @@ static void elastic_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
         b->factor[l] = factor;
         for (int i = 0; i < 3; i++)
             part[i] = factor * law.t[i] / stretch[i];
-        b->stiffness[l] = fmax(foam->modulus, fmax(law.slope[0], fmax(law.slope[1], law.slope[2])));
+        b->stiffness[l] = fmax(rest_stiffness(foam), fmax(law.slope[0], fmax(law.slope[1], law.slope[2])));
         if (foam->curve_count > 1 && dt > 0) {
             double e[6];
             for (int k = 0; k < 6; k++)
@@ -202,22 +241,21 @@ static void elastic_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
         } else {
             b->work[l] = 0;
         }
-        b->tangent[l] = elastic_tangent(&law, stretch, factor, softening) + extra;
+        bound_tangent(foam, &law, softening, extra, b, l);
         for (int i = 0; i < 3; i++)
             principal_s[i][l] = part[i];
     }
-    for (int i = 0; i < 3; i++)
-        for (int j = i; j < 3; j++) {
-            double *restrict out = s[SYM[i][j]];
-#pragma omp simd
+    compose(principal_s, v, s);
+    if (b->directions) {
+        double inverse = dt > 0 ? 2 / dt : 0, effective[3][SF_LANES];
+        for (int i = 0; i < 3; i++)
             for (int l = 0; l < SF_LANES; l++)
-                out[l] = principal_s[0][l] * v[3 * i][l] * v[3 * j][l] +
-                         principal_s[1][l] * v[3 * i + 1][l] * v[3 * j + 1][l] +
-                         principal_s[2][l] * v[3 * i + 2][l] * v[3 * j + 2][l];
-        }
+                effective[i][l] = b->direction_tangent[i][l] + inverse * b->direction_viscosity[i][l];
+        compose(effective, v, b->directional);
+    }
 }
 
-/* Maxwell branch and Kelvin viscosity on the Green strain, added to s; their work and bounds. The Maxwell stress is
+/* Maxwell branch and Kelvin viscosity on the Green strain, added to s, and their work; closes the bounds. The Maxwell stress is
  * integrated exactly for a constant rate over the step. */
 static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double rate_of_e[6][SF_LANES],
                            double s[6][SF_LANES]) {
@@ -226,6 +264,7 @@ static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
     double norm[SF_LANES] = {0}, work[SF_LANES] = {0};
     for (int k = 0; k < 6; k++) {
         double *restrict m = b->maxwell[k], *restrict out = s[k], *restrict rate = rate_of_e[k];
+        double *restrict geometric = b->directional[k];
         double twice = k < 3 ? 1 : 2;
 #pragma omp simd
         for (int l = 0; l < SF_LANES; l++) {
@@ -233,19 +272,24 @@ static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
             m[l] = decay * old + gain * rate[l];
             out[l] += m[l] + kelvin;
             work[l] += twice * (0.5 * (old + m[l]) + kelvin) * rate[l] * dt;
-            norm[l] += twice * m[l] * m[l];
+            norm[l] += twice * (m[l] + kelvin) * (m[l] + kelvin);
+            geometric[l] += m[l] + kelvin; /* dF S: exactly of the directional form */
         }
     }
 #pragma omp simd
     for (int l = 0; l < SF_LANES; l++) {
-        double largest = fmax(b->stretch[0][l], fmax(b->stretch[1][l], b->stretch[2][l]));
+        double geometric = sqrt(norm[l]);
         b->work[l] += work[l];
-        b->tangent[l] += foam->maxwell * largest * largest + sqrt(norm[l]);
-        b->viscosity[l] = foam->kelvin * largest * largest;
+        b->tangent[l] = b->viscosity[l] = 0;
+        for (int i = 0; i < 3; i++) {
+            b->direction_tangent[i][l] += geometric;
+            b->tangent[l] = fmax(b->tangent[l], b->direction_tangent[i][l]);
+            b->viscosity[l] = fmax(b->viscosity[l], b->direction_viscosity[i][l]);
+        }
     }
 }
 
-/* DAMP: sigma = DAMP rho c L D with everything current (theory eq. 21), added to p; its work and bound. */
+/* DAMP: sigma = DAMP rho c L D with everything current (theory eq. 21), added to p, and its work. */
 static void damping_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double a[9][SF_LANES]) {
     double inverse = 1 / dt, rate[9][SF_LANES], jd[9][SF_LANES], eta[SF_LANES];
     for (int k = 0; k < 9; k++)
@@ -253,12 +297,8 @@ static void damping_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
         for (int l = 0; l < SF_LANES; l++)
             rate[k][l] = (b->f[k][l] - b->f_old[k][l]) * inverse;
 #pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
-        double x = b->stretch[0][l] * b->stretch[1][l], y = b->stretch[1][l] * b->stretch[2][l],
-               z = b->stretch[2][l] * b->stretch[0][l], largest = fmax(x, fmax(y, z));
-        eta[l] = foam->damp * b->length[l] * sqrt(foam->density * b->stiffness[l]);
-        b->viscosity[l] += eta[l] * largest * largest;
-    }
+    for (int l = 0; l < SF_LANES; l++)
+        eta[l] = damp_viscosity(foam, b, l);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++)
 #pragma omp simd

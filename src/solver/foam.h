@@ -35,6 +35,7 @@ typedef struct sf_foam_batch {
     double f[9][SF_LANES];     /* deformation gradient at the end of the step */
     double f_old[9][SF_LANES]; /* at its start */
     double length[SF_LANES];   /* m, L of DAMP */
+    bool directions;           /* fill `directional`? Only the power iteration needs it */
     /* history, in and out */
     double maxwell[6][SF_LANES]; /* Pa, second Piola-Kirchhoff stress of the Maxwell branch */
     double peak[SF_LANES];       /* J m-3, largest W so far */
@@ -45,9 +46,13 @@ typedef struct sf_foam_batch {
     double jacobian[SF_LANES];   /* - */
     double energy[SF_LANES];     /* J m-3, W of the loading curve */
     double factor[SF_LANES];     /* -, hysteresis factor */
-    double stiffness[SF_LANES];  /* Pa, largest slope of the loading curve in the principal directions, at least E */
-    double tangent[SF_LANES];    /* Pa, bound on the tangent dP/dF */
-    double viscosity[SF_LANES];  /* Pa s, bound on dP/d(rate of F) */
+    double stiffness[SF_LANES];  /* Pa, largest slope of the loading curve in the principal directions, at least E and
+                                    its first slope: directions across the load are at rest, on either side by rounding */
+    double direction_tangent[3][SF_LANES];   /* Pa, bounds on the tangent dP/dF by principal direction (foam_tangent.h) */
+    double direction_viscosity[3][SF_LANES]; /* Pa s, the same on dP/d(rate of F) */
+    double tangent[SF_LANES];    /* Pa, the largest of them: bound on the tangent */
+    double viscosity[SF_LANES];  /* Pa s */
+    double directional[6][SF_LANES]; /* Pa, A with dF : dP <= trace(dF A dF^T), of a + 2 eta / dt, if `directions` */
     double work[SF_LANES];       /* J m-3, viscous work of the step */
 } sf_foam_batch;
 

@@ -194,14 +194,14 @@ sf_status sf_snapshot_write(const sf_model *m, const sf_snapshot *snapshot, cons
 }
 
 sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, const char *path,
-                         double *scratch, sf_h5 *file, sf_error *err) {
+                         sf_h5 *file, sf_error *err) {
     sf_frame frame = take_frame(m, s);
     write_frame(&frame, path, file, err);
     for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++) {
         if (!(m->run.output_fields >> k & 1))
             continue;
-        take_field(m, op, s, k, scratch);
-        write_field(m, k, path, scratch, file, err);
+        take_field(m, op, s, k, s->scratch);
+        write_field(m, k, path, s->scratch, file, err);
     }
     return err->status;
 }

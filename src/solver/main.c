@@ -21,6 +21,14 @@ static void request_stop(int signal_number) {
     stop_requested = 1;
 }
 
+/* Waiting threads spin for billions of cycles by default, which costs a factor of ten and more as soon as another
+ * process wants a processor. The OpenMP runtimes read their policy from the environment before main, so the program starts
+ * itself once more with the passive one; what the user has set stands. */
+static void limit_spinning(char **argv) {
+    if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
+        execv("/proc/self/exe", argv); /* returns only if it cannot: then the run is merely slower */
+}
+
 typedef struct options {
     const char *model;
     const char *output;
@@ -137,6 +145,7 @@ int main(int argc, char **argv) {
     static const struct argp argp = {.options = list, .parser = parse, .args_doc = "MODEL",
                                      .doc = "Solves the drop in MODEL (from softfall-pre). Ctrl-C ends the run after the "
                                             "present step with readable results."};
+    limit_spinning(argv);
     options o = {.threads = omp_get_max_threads()};
     sf_error err = SF_ERROR_INIT;
     argp_parse(&argp, argc, argv, 0, NULL, &o);

@@ -5,6 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Behind the rim of an open surface a point counts as inside only straight behind it: the part of its ray across the
+ * rim's normal may be this much of the part along it, as on the rim of a quarter missile, whose normal is tilted by half the
+ * angle between facets, and this much of the reach, as predicted positions waver about a symmetry plane. */
+static const double RIM_TILT = 0.2, RIM_WIDTH = 0.01;
+
 static void subtract(const double *a, const double *b, double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = a[k] - b[k];
@@ -76,6 +81,8 @@ static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf
                 sum[c] += s->normal[3 * (edge[end].slot / 3) + c];
         for (int64_t k = first; k < end; k++)
             memcpy(&s->edge_normal[3 * edge[k].slot], sum, sizeof sum);
+        if (end == first + 1)
+            s->rim_edge[edge[first].slot] = s->rim_vertex[edge[first].low] = s->rim_vertex[edge[first].high] = 1;
     }
     free(edge);
     return SF_OK;
@@ -142,6 +149,8 @@ sf_status sf_missile_surface_build(const sf_model *m, sf_missile_surface *s, sf_
     s->edge_normal = sf_alloc(err, 9 * (unsigned long)triangles, sizeof *s->edge_normal, "missile normals");
     s->vertex_normal = sf_alloc(err, 3 * (unsigned long)m->surface_node_count, sizeof *s->vertex_normal,
                                 "missile normals");
+    s->rim_edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *s->rim_edge, "missile rim");
+    s->rim_vertex = sf_alloc(err, (unsigned long)m->surface_node_count, sizeof *s->rim_vertex, "missile rim");
     if (err->status == SF_OK) {
         build_normals(s, triangles);
         if (build_edge_normals(s, triangles, err) == SF_OK)
@@ -156,6 +165,8 @@ void sf_missile_surface_free(sf_missile_surface *s) {
     free(s->normal);
     free(s->vertex_normal);
     free(s->edge_normal);
+    free(s->rim_edge);
+    free(s->rim_vertex);
     free(s->start);
     free(s->member);
     memset(s, 0, sizeof *s);
@@ -220,9 +231,16 @@ static const double *feature_normal(const sf_missile_surface *s, int64_t triangl
     return &s->vertex_normal[3 * (int64_t)s->triangle[3 * triangle + feature]];
 }
 
+static bool feature_on_rim(const sf_missile_surface *s, int64_t triangle, int feature) {
+    if (feature == 6)
+        return false;
+    return feature >= 3 ? s->rim_edge[3 * triangle + feature - 3] : s->rim_vertex[s->triangle[3 * triangle + feature]];
+}
+
 static bool triangles_gap(const sf_missile_surface *s, const double x[3], double *gap, double normal[3]) {
     double best = s->reach * s->reach, ray[3] = {0};
     const double *outward = NULL;
+    bool rim = false;
     for (int a = 0; a < 2; a++)
         if (x[a] < s->low[a] - s->reach || x[a] > s->low[a] + s->reach * (double)(s->bins[a] + 1))
             return false;
@@ -238,10 +256,16 @@ static bool triangles_gap(const sf_missile_surface *s, const double x[3], double
         best = sf_dot3(r, r);
         memcpy(ray, r, sizeof ray);
         outward = feature_normal(s, t, feature);
+        rim = feature_on_rim(s, t, feature);
     }
     if (!outward)
         return false;
-    double side = sf_dot3(ray, outward) < 0 ? -1 : 1;
+    double along = sf_dot3(ray, outward), side = along < 0 ? -1 : 1;
+    if (rim && along < 0) {
+        double depth = -along / sqrt(sf_dot3(outward, outward)), across = sqrt(fmax(0, best - depth * depth));
+        if (across > RIM_TILT * depth + RIM_WIDTH * s->reach)
+            return false;
+    }
     *gap = side * sqrt(best);
     /* The direction to the nearest point is the normal, except on the surface, where it is rounding noise. */
     bool near = best < 1e-12 * s->reach * s->reach;

@@ -18,6 +18,8 @@ typedef struct sf_missile_surface {
     double *normal;          /* [triangles][3] unit, outward */
     double *vertex_normal;   /* [nodes][3] angle-weighted pseudo-normal (Baerentzen, Aanaes 2005) */
     double *edge_normal;     /* [triangles][3 edges][3] sum of the two faces' normals, edge k from vertex k to k+1 */
+    uint8_t *rim_edge;       /* [triangles][3 edges] 1 = no second face */
+    uint8_t *rim_vertex;     /* [nodes] 1 = end of such an edge */
     double reach;            /* m, gaps beyond this are not looked for */
     double low[2];
     int64_t bins[2];
@@ -29,7 +31,8 @@ sf_status sf_missile_surface_build(const sf_model *model, sf_missile_surface *su
 void sf_missile_surface_free(sf_missile_surface *surface);
 
 /* Signed distance of `x` (negative inside the missile) and outward normal at the nearest surface point. Returns false
- * when the surface is farther than its reach, or the nearest point lies beyond the sphere cap's rim. */
+ * when the surface is farther than its reach, when the nearest point lies beyond the sphere cap's rim, and when x is
+ * behind triangles that end there, beside their rim. */
 bool sf_missile_surface_gap(const sf_missile_surface *surface, const double x[3], double *gap, double normal[3]);
 
 #endif

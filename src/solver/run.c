@@ -16,7 +16,6 @@ static const double PROGRESS_INTERVAL = 5;  /* s of wall time between plain line
 /* What a run carries from step to step beside the state. */
 typedef struct recorder {
     sf_history *history;
-    double *scratch; /* [n][9], for the fields of a frame */
     sf_snapshot peak;
     int64_t frames;
     double next_frame;   /* s */
@@ -37,11 +36,14 @@ static void print_progress(const sf_model *m, const sf_state *s, sf_run *run, re
     r->last_line = now;
     double done = s->time / m->run.end_time, spent = now - r->start;
     fprintf(run->log, "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  a %6.1f g  indentation %5.1f mm  compression %.3f  "
-                      "energy %+.3f %%  left <= %.0f s%s",
+                      "energy %+.3f %%",
             run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
             -s->missile.acceleration / 9.80665, 1e3 * (s->missile.displacement - m->missile.gap),
-            s->largest_compression, 100 * s->ledger.error, done > 0 ? spent * (1 - done) / done : 0.0,
-            run->terminal && !last ? "  " : "\n");
+            s->largest_compression, 100 * s->ledger.error);
+    if (done > 0 && !last)
+        fprintf(run->log, "  left <= %.0f s  ", spent * (1 - done) / done);
+    if (!run->terminal || last)
+        fputc('\n', run->log);
     fflush(run->log);
 }
 
@@ -49,7 +51,7 @@ static sf_status write_frame(const sf_model *m, const sf_operators *op, const sf
                              sf_error *err) {
     char path[32];
     snprintf(path, sizeof path, "/frames/%06lld", (long long)r->frames++);
-    if (sf_frame_write(m, op, s, path, r->scratch, file, err) != SF_OK ||
+    if (sf_frame_write(m, op, s, path, file, err) != SF_OK ||
         sf_history_write(r->history, file, err) != SF_OK)
         return err->status;
     return sf_h5_flush(file, err);
@@ -148,7 +150,6 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     recorder r = {.start = wall_clock()};
     sf_error late = SF_ERROR_INIT;
     r.history = sf_alloc(err, 1, sizeof *r.history, "history");
-    r.scratch = sf_alloc(err, 9 * (unsigned long)m->node_count, sizeof *r.scratch, "frame");
     if (err->status != SF_OK || sf_snapshot_create(m, &r.peak, err) != SF_OK || sf_history_create(file, err) != SF_OK)
         goto done;
     run_steps(m, op, s, run, &r, file, err);
@@ -165,7 +166,6 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     }
 done:
     free(r.history);
-    free(r.scratch);
     sf_snapshot_free(&r.peak);
     return err->status;
 }

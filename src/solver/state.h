@@ -8,6 +8,8 @@
 #include "core/model.h"
 #include "solver/foam.h"
 
+enum { SF_POWER_BASIS = 8 }; /* Lanczos vectors kept, at most 9 */
+
 enum { SF_CHUNK = 64 }; /* nodes per partial sum: fixes the order of every sum, whatever the threads */
 
 /* Partial results of a chunk of nodes. */
@@ -72,11 +74,13 @@ typedef struct sf_state {
     double *energy;    /* [n] J m-3, W */
     double *stiffness; /* [n] Pa */
     double *tangent;   /* [n] Pa, effective: a + 2 eta / dt of the last step */
+    double *directional; /* [n][6] Pa, the same by direction (foam.h), when sf_time_step_due */
 
     /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, and the stiffness it was last used with. */
     double *pair_sum;       /* [n] m3 */
     double *pair_stiffness; /* [n] Pa */
     double *mode;           /* [n] vector of the power iteration */
+    double *scratch;        /* [n][9]: the Lanczos vectors [SF_POWER_BASIS][n] of it, or a field on its way to a file */
     double *mode_work;      /* [n][4] its gradient */
     double *power_couple;   /* [n][3] couples of the product */
     double *power_out;      /* [n] the product */
@@ -103,7 +107,10 @@ typedef struct sf_state {
     int64_t jacobian_node;
     double bound_step;            /* s, guaranteed by the partition bound now */
     double bound_load;            /* s-2, the bound on omega^2 it came from */
-    int64_t power_iterations;     /* spent so far */
+    int64_t measured_at;          /* step of the last power iteration */
+    double measured_load;         /* s-2, bound_load then */
+    double ceiling;               /* s, smallest bound_step since */
+    int64_t power_iterations;     /* products spent so far */
 
     int64_t chunk_count;
     sf_partial *partial; /* [chunks] */

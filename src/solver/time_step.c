@@ -4,12 +4,17 @@
 #include <math.h>
 
 enum {
-    POWER_INTERVAL = 25, /* steps between power iterations */
-    POWER_FIRST = 80,    /* iterations of the first estimate */
-    POWER_WARM = 8,      /* of the later ones */
+    POWER_INTERVAL = 25, /* steps between measurements at most */
+    POWER_PAUSE = 5,     /* and at least, when the bound moves */
+    POWER_FIRST = 80,    /* products of the first measurement */
+    POWER_WARM = SF_POWER_BASIS, /* of the later ones */
 };
-/* The power iteration converges from below; its estimate of the frequency squared is raised by this factor. */
+static const double POWER_CHANGE = 0.1; /* of the bound on the frequency squared, that calls for a measurement */
+/* The iteration converges from below; its estimate of the frequency squared is raised by this factor. */
 static const double POWER_MARGIN = 1.08;
+/* The ratio is rounded up to a multiple of 1 / POWER_ROUNDING: what rounding errors do to the iteration stays out of the
+ * time steps, and so out of the results. */
+static const double POWER_ROUNDING = 16384;
 static const double GROWTH = 1.02;
 
 /* mode_work: gradient of the mode in every domain. */
@@ -50,10 +55,14 @@ static void apply_operator(const sf_model *m, const sf_operators *op, sf_state *
     mode_gradients(m, s);
 #pragma omp parallel for default(none) shared(m, op, s, couples, out) schedule(static)
     for (int64_t i = 0; i < m->node_count; i++) {
-        double couple[3];
+        double couple[3], flux[3];
+        const double *a = &s->directional[6 * i], *g = &s->mode_work[4 * i];
         out[i] = mode_pairs(m, op, s, i, couple);
+        flux[0] = a[0] * g[0] + a[3] * g[1] + a[5] * g[2];
+        flux[1] = a[3] * g[0] + a[1] * g[1] + a[4] * g[2];
+        flux[2] = a[5] * g[0] + a[4] * g[1] + a[2] * g[2];
         for (int c = 0; c < 3; c++)
-            couples[3 * i + c] = couple[c] + m->volume[i] * s->tangent[i] * s->mode_work[4 * i + c];
+            couples[3 * i + c] = couple[c] + m->volume[i] * flux[c];
     }
 #pragma omp parallel for default(none) shared(m, op, couples, out) schedule(static)
     for (int64_t i = 0; i < m->node_count; i++) {
@@ -66,23 +75,72 @@ static void apply_operator(const sf_model *m, const sf_operators *op, sf_state *
     }
 }
 
-double sf_time_step_power(const sf_model *m, const sf_operators *op, sf_state *s, int iterations) {
-    int64_t n = m->node_count;
-    double *out = s->power_out, estimate = 0;
-    for (int k = 0; k < iterations; k++) {
-        double norm = 0, rayleigh = 0;
-        for (int64_t i = 0; i < n; i++)
-            norm += m->mass[i] * s->mode[i] * s->mode[i];
-        double scale = norm > 0 ? 1 / sqrt(norm) : 0;
-        for (int64_t i = 0; i < n; i++)
-            s->mode[i] *= scale;
-        apply_operator(m, op, s);
-        for (int64_t i = 0; i < n; i++) {
-            rayleigh += s->mode[i] * out[i];
-            s->mode[i] = out[i] / m->mass[i];
-        }
-        estimate = fmax(estimate, rayleigh);
+/* Largest eigenvalue of the tridiagonal matrix (diagonal alpha, off-diagonal beta) and its eigenvector z, by bisection on
+ * the signs of the pivots: beyond the largest eigenvalue all are negative, and back-substitution is stable. */
+static double tridiagonal_top(int size, const double *alpha, const double *beta, double *z) {
+    double low = alpha[0], high = 0, pivot[SF_POWER_BASIS];
+    for (int j = 0; j < size; j++) {
+        low = fmax(low, alpha[j]);
+        high = fmax(high, alpha[j] + (j > 0 ? beta[j - 1] : 0) + (j + 1 < size ? beta[j] : 0));
     }
+    high *= 1 + 1e-14;
+    for (int pass = 0; pass < 60; pass++) {
+        double value = pass == 0 ? high : 0.5 * (low + high);
+        bool above = true;
+        for (int j = 0; j < size && above; j++) {
+            pivot[j] = alpha[j] - value - (j > 0 ? beta[j - 1] * beta[j - 1] / pivot[j - 1] : 0);
+            above = pivot[j] < 0;
+        }
+        *(above ? &high : &low) = value;
+    }
+    for (int j = 0; j < size; j++)
+        pivot[j] = alpha[j] - high - (j > 0 ? beta[j - 1] * beta[j - 1] / pivot[j - 1] : 0);
+    z[size - 1] = 1;
+    for (int j = size - 2; j >= 0; j--)
+        z[j] = -beta[j] * z[j + 1] / pivot[j];
+    return high;
+}
+
+/* Up to `products` <= SF_POWER_BASIS Lanczos steps from the mode, in the inner product of the masses; the mode becomes
+ * the Ritz vector of the largest Ritz value, which is returned. */
+static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state *s, int products) {
+    int64_t n = m->node_count;
+    double alpha[SF_POWER_BASIS], beta[SF_POWER_BASIS] = {0}, z[SF_POWER_BASIS], *out = s->power_out, norm = 0;
+    int size = 0;
+    for (int64_t i = 0; i < n; i++)
+        norm += m->mass[i] * s->mode[i] * s->mode[i];
+    if (!(norm > 0))
+        return 0;
+    for (double length = sqrt(norm); size < products; length = beta[size - 1]) {
+        double *q = &s->scratch[size * n], *before = size > 0 ? q - n : NULL;
+        for (int64_t i = 0; i < n; i++)
+            q[i] = s->mode[i] /= length;
+        apply_operator(m, op, s);
+        alpha[size] = norm = 0;
+        for (int64_t i = 0; i < n; i++)
+            alpha[size] += q[i] * out[i];
+        for (int64_t i = 0; i < n; i++) {
+            double r = out[i] / m->mass[i] - alpha[size] * q[i] - (before ? length * before[i] : 0);
+            s->mode[i] = r;
+            norm += m->mass[i] * r * r;
+        }
+        beta[size++] = sqrt(norm);
+        if (!(beta[size - 1] > 1e-7 * fabs(alpha[size - 1]))) /* converged */
+            break;
+    }
+    double value = tridiagonal_top(size, alpha, beta, z);
+    for (int64_t i = 0; i < n; i++) {
+        s->mode[i] = 0;
+        for (int j = 0; j < size; j++)
+            s->mode[i] += z[j] * s->scratch[j * n + i];
+    }
+    return value;
+}
+
+double sf_time_step_power(const sf_model *m, const sf_operators *op, sf_state *s, int iterations) {
+    double estimate = 0;
+    for (int left = iterations; left > 0; left -= SF_POWER_BASIS)
+        estimate = fmax(estimate, lanczos_cycle(m, op, s, left < SF_POWER_BASIS ? left : SF_POWER_BASIS));
     s->power_iterations += iterations;
     return estimate;
 }
@@ -111,14 +169,27 @@ static void merge_bounds(sf_state *s) {
     }
 }
 
+bool sf_time_step_due(const sf_state *s) {
+    int64_t since = s->step - s->measured_at;
+    return s->step == 0 || since >= POWER_INTERVAL ||
+           (since >= POWER_PAUSE && fabs(s->bound_load - s->measured_load) > POWER_CHANGE * s->measured_load);
+}
+
 void sf_time_step_choose(const sf_model *m, const sf_operators *op, sf_state *s) {
+    bool due = sf_time_step_due(s);
     merge_bounds(s);
-    if (s->step % POWER_INTERVAL == 0) {
+    if (due) {
         seed_mode(m, op, s);
         double power = sf_time_step_power(m, op, s, s->step == 0 ? POWER_FIRST : POWER_WARM);
-        double old = s->tightness;
-        s->tightness = POWER_MARGIN * power / s->bound_load;
-        s->bound_step *= sqrt(old / s->tightness); /* to first order in the damping; exact from the next step on */
+        double tightness = ceil(POWER_ROUNDING * POWER_MARGIN * power / s->bound_load) / POWER_ROUNDING;
+        double change = s->tightness / tightness;
+        s->tightness = tightness;
+        s->bound_step *= fmin(change, sqrt(change)); /* safe with any damping; exact from the next step on */
+        s->measured_at = s->step;
+        s->measured_load = s->bound_load;
+        s->ceiling = INFINITY;
+    } else { /* a bound that falls says nothing about the rest of the pad */
+        s->ceiling = s->bound_step = fmin(s->bound_step, s->ceiling);
     }
     double dt = fmin(m->run.step_safety * s->bound_step, m->run.step_limit);
     s->dt = s->step == 0 ? dt : fmin(dt, GROWTH * s->dt_old);

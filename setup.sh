@@ -1,0 +1,140 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs what is missing, builds, and runs the main example or the tests.
+set -euo pipefail
+
+usage() {
+    cat <<'TEXT'
+usage: ./setup.sh WORD [--force] [--no-install]
+
+  demo     build, then run examples/eva50-v4.5 through all three programs into out/eva50-v4.5
+  test     build, then run the tests (all but the slow ones)
+  slow     build, then run the slow tests
+  build    build only: the programs are in build/bin
+
+  --force        demo: run the drop again though its results are up to date
+  --no-install   install nothing; say which packages are missing and go on
+TEXT
+}
+
+fail() {
+    printf 'setup.sh: %s\n' "$*" >&2
+    exit 1
+}
+
+# Packages of the named sections of packages.txt.
+packages_of() {
+    awk -v wanted=" $* " '
+        /^# section / { name = $3; sub(/:$/, "", name); take = index(wanted, " " name " ") > 0; next }
+        { sub(/#.*/, "") }
+        take && NF { print $1 }' packages.txt
+}
+
+missing_packages() {
+    local package state
+    for package in $(packages_of "$@"); do
+        state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) || state=absent
+        [ "$state" = installed ] || printf '%s ' "$package"
+    done
+}
+
+# install_packages SECTION...: apt-get runs only if something is missing.
+install_packages() {
+    local missing as_root=() log
+    if ! command -v dpkg-query >/dev/null; then
+        echo "This is not Debian: packages.txt names what is needed; going on with what is here."
+        return
+    fi
+    missing=$(missing_packages "$@")
+    [ -n "$missing" ] || return 0
+    if [ "$install" = no ]; then
+        echo "Missing packages, not installed: $missing"
+        return
+    fi
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null ||
+            fail "packages are missing, and neither root nor sudo is at hand. As root: apt-get install --no-install-recommends $missing"
+        as_root=(sudo)
+        [ -t 0 ] || as_root=(sudo -n)
+    fi
+    as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300)
+    log=$(mktemp)
+    echo "Installing (some minutes on a bare machine; log in $log): $missing"
+    # Word splitting of $missing is wanted.
+    # shellcheck disable=SC2086
+    if ! { "${as_root[@]}" update && "${as_root[@]}" install -y --no-install-recommends $missing; } >"$log" 2>&1; then
+        tail -n 20 "$log" >&2
+        fail "apt-get could not install them: the lines above say why, $log has all of them"
+    fi
+    rm -f "$log"
+}
+
+# build [CMAKE OPTION]...: the preset "default" in build/. Ninja itself configures again when a CMakeLists.txt changes.
+build() {
+    if [ ! -f build/build.ninja ] || [ CMakePresets.json -nt build/build.ninja ]; then
+        cmake --preset default
+    fi
+    cmake --build build --parallel "$(nproc)" "$@"
+}
+
+build_programs() {
+    build --target softfall-pre softfall-solve softfall-post
+}
+
+demo() {
+    local dir=out/eva50-v4.5 report=out/eva50-v4.5/report.txt
+    if [ "$force" = no ] && [ -f "$report" ] &&
+        [ -z "$(find build/bin geo examples -type f -newer "$report" -print -quit)" ]; then
+        echo "The results in $dir are up to date; ./setup.sh demo --force runs the drop again."
+        cat "$report"
+    else
+        tools/run_case.sh examples/eva50-v4.5/case.cfg "$dir"
+    fi
+    echo "  $dir/model.h5           the model of softfall-pre"
+    echo "  $dir/results.h5         everything that softfall-solve computed"
+    echo "  $report         the lines above"
+    echo "All of them are in $PWD. Next: README.md says how to read and change them."
+}
+
+run_tests() {
+    ctest --test-dir build --output-on-failure --no-tests=error --no-label-summary "$@"
+}
+
+word='' force=no install=yes
+for argument in "$@"; do
+    case $argument in
+    --force) force=yes ;;
+    --no-install) install=no ;;
+    -h | --help | help) usage && exit 0 ;;
+    -*) usage >&2 && fail "unknown option $argument" ;;
+    *)
+        [ -z "$word" ] || { usage >&2 && fail "one word at a time: $argument is one too many"; }
+        word=$argument
+        ;;
+    esac
+done
+cd "$(dirname "${BASH_SOURCE[0]}")"
+case $word in
+demo)
+    install_packages build run
+    build_programs
+    demo
+    ;;
+test)
+    install_packages build run test
+    build
+    # One test per core and one thread per test: those that are about threads ask for their own number.
+    OMP_NUM_THREADS=1 run_tests --label-exclude slow --parallel "$(nproc)"
+    ;;
+slow)
+    install_packages build run test slow
+    build
+    run_tests --label-regex slow # one by one, each with every core
+    ;;
+build)
+    install_packages build run
+    build_programs
+    ;;
+'') usage >&2 && exit 2 ;;
+*) usage >&2 && fail "unknown word $word" ;;
+esac

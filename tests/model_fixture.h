@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Models in memory for the tests of the discretisation and the solver: the real pad through gmsh, or a block
+ * of hexahedra made here. Everything starts from examples/eva50-v4.5/case.cfg (SF_SOURCE_DIR). Any failure
+ * ends the running test with the program's own sentence. Structs are filled by the functions and released by
+ * fixture_free or the modules' own free functions. */
+#ifndef SF_TESTS_MODEL_FIXTURE_H
+#define SF_TESTS_MODEL_FIXTURE_H
+
+#include "pre/build.h"
+#include "solver/operators.h"
+#include "solver/state.h"
+
+/* A lattice of hexahedra over [0, cells x spacing] in x, y and z, with the node sets base, top, sides (all
+ * four), plane_x (x = 0) and plane_y (y = 0). */
+typedef struct fixture_block {
+    int cells[3];
+    double spacing;        /* m */
+    double jitter;         /* largest shift of an interior node, in spacings */
+    double surface_jitter; /* the same of a node on the surface, within its plane or along its edge */
+    double flatness;       /* factor on z; 0 = 1 */
+} fixture_block;
+
+typedef struct fixture {
+    sf_model model;
+    sf_build_report report;
+    sf_operators operators;
+    sf_state state;
+} fixture;
+
+/* Evenly distributed over [-1, 1); the same numbers on every machine. */
+double fixture_random(uint64_t *seed);
+
+/* SF_SOURCE_DIR/name, valid until the fourth call after this one. */
+const char *fixture_source(const char *name);
+
+/* Reads the example case; `overrides` as of --set, up to NULL. */
+void fixture_case(sf_case *c, const char *const *overrides);
+
+/* Replaces the foam by a linear elastic one without losses: stress = E strain up to 80 %. */
+void fixture_make_linear(sf_case *c);
+/* Keeps the curve, without hysteresis or any viscosity. */
+void fixture_make_elastic(sf_case *c);
+/* Holds exactly these node sets, up to NULL; no symmetry planes. */
+void fixture_hold(sf_case *c, const char *const *names);
+
+/* Pad and missile surface of the case's geometry. */
+void fixture_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface);
+void fixture_block_mesh(const fixture_block *block, sf_mesh *mesh);
+/* A square plate facing down, side `side` (m), its centre over (x, y). */
+void fixture_plate(double side, double x, double y, sf_surface *surface);
+/* The lower half of a sphere, its pole over (x, y), in `rings` rings of triangles with their vertices on the
+ * sphere. */
+void fixture_dome(double radius, int rings, double x, double y, sf_surface *surface);
+
+/* Builds the model; case, mesh and surface are released. The solver's parts stay empty until fixture_start.
+ */
+void fixture_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, fixture *out);
+/* The real pad with `overrides` of the example case. */
+void fixture_pad(const char *const *overrides, fixture *out);
+/* A block under a plate, all its surface held. */
+void fixture_held_block(const fixture_block *block, fixture *out);
+/* Operators and a fresh state; may be called again after a change of the model. */
+void fixture_start(fixture *f);
+void fixture_free(fixture *f);
+
+/* Forces without contact and constraints at the present coefficients: domains, stabilisation, internal
+ * forces. */
+void fixture_forces(fixture *f);
+/* d = gradient X + shift. */
+void fixture_set_affine(fixture *f, const double gradient[9], const double shift[3]);
+/* One evaluated step; fails the test with the solver's sentence. */
+void fixture_step(fixture *f);
+
+#endif

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "program_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+enum { COMMAND_SIZE = 4096 };
+
+void program_set_up(program_place *place) {
+    const char *root = getenv("TMPDIR");
+    snprintf(place->folder, sizeof place->folder, "%s/softfall-test-XXXXXX", root && *root ? root : "/tmp");
+    if (!mkdtemp(place->folder))
+        fail_msg("cannot make %s", place->folder);
+}
+
+void program_tear_down(const program_place *place) {
+    char command[600];
+    snprintf(command, sizeof command, "rm -rf '%s'", place->folder);
+    if (system(command) != 0)
+        fail_msg("cannot remove %s", place->folder);
+}
+
+const char *program_path(const program_place *place, const char *name) {
+    static char path[8][1024];
+    static int turn;
+    turn = (turn + 1) % 8;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", place->folder, name);
+    return path[turn];
+}
+
+static void read_text(const char *path, char *text, size_t size) {
+    FILE *file = fopen(path, "r");
+    size_t length = file ? fread(text, 1, size - 1, file) : 0;
+    text[length] = '\0';
+    if (file)
+        fclose(file);
+}
+
+static program_result run_command(const program_place *place, const char *command) {
+    program_result result = {.code = -1};
+    char line[COMMAND_SIZE + 1200];
+    snprintf(line, sizeof line, "cd '%s' && ( %s ) > .stdout 2> .stderr", place->folder, command);
+    int status = system(line);
+    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    read_text(program_path(place, ".stdout"), result.out, sizeof result.out);
+    read_text(program_path(place, ".stderr"), result.err, sizeof result.err);
+    if (strstr(result.err, "AddressSanitizer") || strstr(result.err, "runtime error:"))
+        fail_msg("%s: %s", command, result.err);
+    return result;
+}
+
+program_result program_shell(const program_place *place, const char *format, ...) {
+    char command[COMMAND_SIZE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(command, sizeof command, format, args);
+    va_end(args);
+    return run_command(place, command);
+}
+
+static void program_command(char command[COMMAND_SIZE], const char *name, const char *format, va_list args) {
+    const char *programs = getenv("SF_BIN_DIR");
+    if (!programs)
+        fail_msg("SF_BIN_DIR is not set: it names the folder of the programs");
+    size_t used = (size_t)snprintf(command, COMMAND_SIZE, "'%s/softfall-%s' ", programs, name);
+    if (used < COMMAND_SIZE)
+        vsnprintf(command + used, COMMAND_SIZE - used, format, args);
+}
+
+program_result program_run(const program_place *place, const char *name, const char *format, ...) {
+    char command[COMMAND_SIZE];
+    va_list args;
+    va_start(args, format);
+    program_command(command, name, format, args);
+    va_end(args);
+    return run_command(place, command);
+}
+
+program_result program_succeed(const program_place *place, const char *name, const char *format, ...) {
+    char command[COMMAND_SIZE];
+    va_list args;
+    va_start(args, format);
+    program_command(command, name, format, args);
+    va_end(args);
+    program_result result = run_command(place, command);
+    if (result.code != 0)
+        fail_msg("exit code %d from %s: %s", result.code, command, result.err);
+    return result;
+}
+
+const char *program_coarse(double spacing) {
+    static char options[256];
+    snprintf(options, sizeof options,
+             "--set geometry.parameters.fine_spacing=%.1f --set geometry.parameters.outer_spacing=20.0 "
+             "--set geometry.missile_parameters.element_size=20.0",
+             spacing);
+    return options;
+}
+
+program_bytes program_read_file(const char *path) {
+    program_bytes bytes = {0};
+    FILE *file = fopen(path, "rb");
+    if (!file || fseek(file, 0, SEEK_END) != 0)
+        fail_msg("cannot read %s", path);
+    bytes.size = (size_t)ftell(file);
+    bytes.data = malloc(bytes.size + 1);
+    rewind(file);
+    if (!bytes.data || fread(bytes.data, 1, bytes.size, file) != bytes.size)
+        fail_msg("cannot read %s", path);
+    fclose(file);
+    return bytes;
+}
+
+void program_write_file(const char *path, const void *data, size_t size) {
+    FILE *file = fopen(path, "wb");
+    if (!file || fwrite(data, 1, size, file) != size || fclose(file) != 0)
+        fail_msg("cannot write %s", path);
+}
+
+void program_assert_unchanged(const char *path, program_bytes *before) {
+    program_bytes after = program_read_file(path);
+    if (after.size != before->size || memcmp(after.data, before->data, after.size) != 0)
+        fail_msg("%s has changed", path);
+    free(after.data);
+    free(before->data);
+    *before = (program_bytes){0};
+}

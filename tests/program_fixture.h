@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The three programs as a user runs them, in a folder of their own. The programs are those of SF_BIN_DIR; any
+ * failure of the machinery ends the running test. */
+#ifndef SF_TESTS_PROGRAM_FIXTURE_H
+#define SF_TESTS_PROGRAM_FIXTURE_H
+
+#include <stddef.h>
+
+typedef struct program_place {
+    char folder[512]; /* absolute, removed by program_tear_down */
+} program_place;
+
+typedef struct program_result {
+    int code;        /* exit code; 128 + signal if a signal ended the program */
+    char out[16384]; /* stdout, cut */
+    char err[8192];  /* stderr, cut */
+} program_result;
+
+/* A copy of a file. */
+typedef struct program_bytes {
+    char *data; /* owned: free */
+    size_t size;
+} program_bytes;
+
+void program_set_up(program_place *place);
+void program_tear_down(const program_place *place);
+
+/* folder/name, valid until the eighth call after this one. */
+const char *program_path(const program_place *place, const char *name);
+
+/* Runs a shell command in the folder. */
+program_result program_shell(const program_place *place, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* Runs softfall-`name` in the folder with the words of `format`. */
+program_result program_run(const program_place *place, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* The same, and fails the test with the program's words unless it exits with 0. */
+program_result program_succeed(const program_place *place, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* --set options that make the example case coarse: `spacing` mm in the zone, 20 mm outside; valid until the
+ * next call. */
+const char *program_coarse(double spacing);
+
+program_bytes program_read_file(const char *path);
+void program_write_file(const char *path, const void *data, size_t size);
+/* Fails if the file at `path` is not byte by byte what `before` is; releases `before`. */
+void program_assert_unchanged(const char *path, program_bytes *before);
+
+#endif

@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Wrong command lines, wrong cases, damaged files: each is refused with one sentence that says what is wrong
+ * and a code that is not 0, and files from before stay as they were, byte by byte. */
+#include "model_fixture.h"
+#include "program_fixture.h"
+
+#include "io/model_io.h"
+#include <errno.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
+
+/* good.cfg (the example, with geo and materials beside it), model.h5 and results.h5 of 1 ms, out/. */
+static int set_up(void **state) {
+    program_place *p = calloc(1, sizeof *p);
+    *state = p;
+    program_set_up(p);
+    program_result text = program_shell(
+        p,
+        "cp -r '%s' '%s' . && sed 's|\\.\\./\\.\\./geo|geo|; s|\\.\\./materials|materials|' '%s' > good.cfg",
+        fixture_source("geo"), fixture_source("examples/materials"), fixture_source(EXAMPLE));
+    assert_int_equal(text.code, 0);
+    program_succeed(p, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
+    program_succeed(p, "solve", "model.h5 -o results.h5 --threads 1");
+    program_succeed(p, "post", "results.h5 -o out");
+    return 0;
+}
+
+static int tear_down(void **state) {
+    program_tear_down(*state);
+    free(*state);
+    return 0;
+}
+
+/* Not 0, no signal; one line on stderr (argp adds a second one that points to --help), with `part` in it. */
+static void assert_refused(const program_result *r, const char *part) {
+    int lines = 0;
+    for (const char *c = r->err; *c; c++)
+        lines += *c == '\n';
+    if (r->code <= 0 || r->code >= 128)
+        fail_msg("exit code %d where \"%s\" was expected: %s", r->code, part, r->err);
+    if (!strstr(r->err, part))
+        fail_msg("\"%s\" is missing in: %s", part, r->err);
+    if (lines != 1 && !(lines == 2 && strstr(r->err, "--help")))
+        fail_msg("%d lines: %s", lines, r->err);
+    if (strncmp(r->err, "softfall-", 9) != 0 && !strstr(r->err, "/softfall-"))
+        fail_msg("the program's name is missing: %s", r->err);
+}
+
+static void command_lines_that_cannot_be_meant_are_refused(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        const char *program, *words, *part;
+    } lines[] = {
+        {"pre", "", "-o model.h5"},
+        {"pre", "good.cfg", "-o model.h5"},
+        {"pre", "good.cfg good.cfg -o new.h5", "one too many"},
+        {"pre", "good.cfg -o new.h5 --speed 3", "unrecognized option"},
+        {"pre", "good.cfg -o new.h5 --set velocity=3", "group.key=value"},
+        {"pre", "good.cfg -o new.h5 --set missile.velocity", "group.key=value"},
+        {"pre", "good.cfg -o new.h5 --set missile.speed='3 m/s'", "velocity"}, /* what exists */
+        {"pre", "good.cfg -o new.h5 --set rocket.speed='3 m/s'", "missile"},
+        {"pre", "good.cfg -o new.h5 --set missile.velocity='3 kg'", "3 kg"},
+        {"pre", "good.cfg -o new.h5 --set missile.velocity=3", "missile.velocity"},
+        {"pre", "good.cfg -o new.h5 --set missile.mass='-1 kg'", "missile.mass"},
+        {"pre", "good.cfg -o", "requires an argument"},
+        {"solve", "", "-o results.h5"},
+        {"solve", "model.h5", "-o results.h5"},
+        {"solve", "model.h5 model.h5 -o new.h5", "one too many"},
+        {"solve", "model.h5 -o new.h5 --threads 0", "1 to 1024"},
+        {"solve", "model.h5 -o new.h5 --threads two", "two"},
+        {"solve", "model.h5 -o new.h5 --gpu", "unrecognized option"},
+        {"post", "", "results"},
+        {"post", "results.h5", "-o"},
+        {"post", "results.h5 results.h5 -o new", "results.h5"},
+        {"post", "results.h5 -o new --filter 77", "1000"},
+        {"post", "results.h5 -o new --window 3,4", "--reference"},
+        {"post", "results.h5 -o new --reference none.csv", "none.csv"},
+    };
+    for (size_t k = 0; k < sizeof lines / sizeof lines[0]; k++) {
+        program_result result = program_run(p, lines[k].program, "%s", lines[k].words);
+        assert_refused(&result, lines[k].part);
+    }
+    assert_int_equal(program_shell(p, "ls new new.h5 2>/dev/null | grep -c .").code, 1); /* none was begun */
+}
+
+static void files_that_are_missing_or_of_another_kind_are_refused(void **state) {
+    const program_place *p = *state;
+    program_shell(p, "echo 'This is a text.' > text.h5; : > empty.h5; mkdir -p folder.h5; "
+                     "echo 'geometry = {' > broken.cfg; echo 'strain' > curve.csv");
+    static const struct {
+        const char *program, *words, *part;
+    } inputs[] = {
+        {"pre", "none.cfg", "none.cfg"},        {"pre", "folder.h5", "folder.h5"},
+        {"pre", "broken.cfg", "broken.cfg"},    {"pre", "empty.h5", "empty.h5"},
+        {"pre", "model.h5", "not a text file"}, {"solve", "none.h5", "none.h5"},
+        {"solve", "text.h5", "text.h5"},        {"solve", "empty.h5", "empty.h5"},
+        {"solve", "folder.h5", "folder.h5"},    {"solve", "results.h5", "softfall-model"},
+        {"solve", "out/pad.h5", "out/pad.h5"},  {"post", "none.h5", "none.h5"},
+        {"post", "text.h5", "text.h5"},         {"post", "empty.h5", "empty.h5"},
+        {"post", "folder.h5", "folder.h5"},     {"post", "model.h5", "softfall-results"},
+        {"post", "out/pad.h5", "out/pad.h5"},
+    };
+    for (size_t k = 0; k < sizeof inputs / sizeof inputs[0]; k++) {
+        program_result result = program_run(p, inputs[k].program, "%s -o new.h5", inputs[k].words);
+        assert_refused(&result, inputs[k].part);
+        assert_int_equal(program_shell(p, "ls new.h5*").code, 2);
+    }
+}
+
+static void places_that_cannot_be_written_are_refused(void **state) {
+    const program_place *p = *state;
+    char pre[512];
+    snprintf(pre, sizeof pre, "good.cfg %s", program_coarse(20));
+    const struct {
+        const char *program, *words;
+    } inputs[] = {{"pre", pre}, {"solve", "model.h5"}, {"post", "results.h5"}};
+    static const char *const places[] = {"none/below/new", "good.cfg/new", "/proc/softfall-new"};
+    for (size_t k = 0; k < 3; k++)
+        for (size_t q = 0; q < 3; q++) {
+            program_result result =
+                program_run(p, inputs[k].program, "%s -o '%s' --force", inputs[k].words, places[q]);
+            assert_refused(&result, places[q]);
+        }
+    program_bytes before = program_read_file(program_path(p, "good.cfg"));
+    program_result over = program_run(p, "post", "results.h5 -o good.cfg --force"); /* a file, not a folder */
+    assert_refused(&over, "good.cfg");
+    program_assert_unchanged(program_path(p, "good.cfg"), &before);
+}
+
+static void cases_that_contradict_their_geometry_are_refused(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        const char *set, *part;
+    } cases[] = {
+        {"pad.fixed='[\"floor\"]'", "\"base\""}, /* what exists */
+        {"pad.contact=lid", "\"top\""},
+        {"pad.group=mattress", "pad"},
+        {"pad.symmetry='[\"top\"]'", "not a plane normal to x or y"},
+        {"missile.group=nose", "missile_surface"},
+        {"geometry.parameters.colour=3.0", "colour"},
+        {"geometry.parameters.zone_side=900.0", "zone_side"},
+        {"geometry.file=none.geo", "none.geo"},
+        {"geometry.length_unit=kg", "kg"},
+        {"material.curve=none.csv", "none.csv"},
+        {"material.curve=curve.csv", "curve.csv"},
+        {"material.HU=2.0", "HU"},
+        {"missile.direction='[0.0, 0.0, 1.0]'", "direction"},
+        {"kernel.support_ratio=0.5", "support_ratio"},
+        {"solver.end_time='0 s'", "end_time"},
+        {"output.fields='[\"colour\"]'", "colour"},
+    };
+    program_bytes before = program_read_file(program_path(p, "model.h5"));
+    program_shell(p, "echo 'strain' > curve.csv");
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        program_result result = program_run(p, "pre", "good.cfg -o model.h5 --force %s --set %s",
+                                            program_coarse(20), cases[k].set);
+        assert_refused(&result, cases[k].part);
+    }
+    program_assert_unchanged(program_path(p, "model.h5"), &before);
+}
+
+/* Shapes the case cannot be meant to have: no file at all is left behind by a refused model. */
+static void truncated_files_are_refused(void **state) {
+    const program_place *p = *state;
+    static const double shares[] = {0.001, 0.1, 0.5, 0.9, 0.999};
+    for (int k = 0; k < 2; k++) {
+        program_bytes whole = program_read_file(program_path(p, k ? "results.h5" : "model.h5"));
+        for (size_t q = 0; q < sizeof shares / sizeof shares[0]; q++) {
+            program_write_file(program_path(p, "cut.h5"), whole.data,
+                               (size_t)(shares[q] * (double)whole.size));
+            program_result result =
+                k ? program_run(p, "post", "cut.h5 -o new") : program_run(p, "solve", "cut.h5 -o new.h5");
+            assert_refused(&result, "cut.h5");
+        }
+        free(whole.data);
+    }
+    assert_int_equal(program_shell(p, "ls new new.h5").code, 2);
+}
+
+typedef void (*damage)(sf_model *m);
+
+static void nan_in_position(sf_model *m) {
+    m->position[7] = NAN;
+}
+static void infinite_gradient(sf_model *m) {
+    m->domain_b[m->domain_nnz] = INFINITY;
+}
+static void domain_beyond_nodes(sf_model *m) {
+    m->domain_node[m->domain_ptr[3]] = (int32_t)m->node_count;
+}
+static void negative_domain_index(sf_model *m) {
+    m->domain_node[0] = -1;
+}
+static void rows_out_of_order(sf_model *m) {
+    m->domain_ptr[5] = m->domain_ptr[7] + 1;
+}
+static void rows_beyond_the_end(sf_model *m) {
+    m->phi_ptr[m->node_count] += 1;
+}
+static void shape_of_no_node(sf_model *m) {
+    m->phi_node[m->phi_nnz - 1] = 1 << 30;
+}
+static void edge_out_of_range(sf_model *m) {
+    m->edge_node[0] = -5;
+}
+static void negative_volume(sf_model *m) {
+    m->volume[11] = -m->volume[11];
+}
+static void no_mass(sf_model *m) {
+    m->mass[0] = 0;
+}
+static void falling_curve(sf_model *m) {
+    m->foam.curve_stress[m->foam.curve_points - 1] = 0;
+}
+static void long_direction(sf_model *m) {
+    m->missile.direction[2] = -2;
+}
+static void held_node_out_of_range(sf_model *m) {
+    m->fixed_node[m->fixed_count - 1] = INT32_MAX;
+}
+static void contact_nodes_out_of_order(sf_model *m) {
+    m->contact_node[1] = m->contact_node[0];
+}
+static void triangle_out_of_range(sf_model *m) {
+    m->surface_triangle[0] = (int32_t)m->surface_node_count;
+}
+static void cell_of_no_type(sf_model *m) {
+    m->cell_type[0] = 42;
+}
+static void cell_beyond_nodes(sf_model *m) {
+    m->cell_node[m->cell_nnz - 1] = (int32_t)m->node_count;
+}
+static void no_hysteresis_unit(sf_model *m) {
+    m->foam.hysteresis_hu = 0;
+}
+static void fast_missile(sf_model *m) {
+    m->missile.speed = -4.5;
+}
+static void no_contact_points(sf_model *m) {
+    m->contact_count = 0;
+}
+
+static void damaged_models_are_refused_with_what_is_wrong(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        damage spoil;
+        const char *part;
+    } cases[] = {
+        {nan_in_position, "/cloud/position"},
+        {infinite_gradient, "/domain/b"},
+        {domain_beyond_nodes, "smoothing domains"},
+        {negative_domain_index, "smoothing domains"},
+        {rows_out_of_order, "smoothing domains"},
+        {rows_beyond_the_end, "shape functions"},
+        {shape_of_no_node, "shape functions"},
+        {edge_out_of_range, "edges"},
+        {negative_volume, "node 11 has volume"},
+        {no_mass, "node 0 has volume"},
+        {falling_curve, "does not rise"},
+        {long_direction, "direction"},
+        {held_node_out_of_range, "constrained nodes"},
+        {contact_nodes_out_of_order, "contact nodes"},
+        {triangle_out_of_range, "missile triangle 0"},
+        {cell_of_no_type, "background cell 0"},
+        {cell_beyond_nodes, "background cells"},
+        {no_hysteresis_unit, "HU"},
+        {fast_missile, "missile speed"},
+        {no_contact_points, "no contact points"},
+    };
+    program_bytes before = program_read_file(program_path(p, "results.h5"));
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_model m;
+        sf_provenance provenance = {.program = "test"};
+        assert_int_equal(sf_model_read(program_path(p, "model.h5"), &m, NULL, &err), SF_OK);
+        cases[k].spoil(&m);
+        if (sf_model_write(program_path(p, "bad.h5"), &m, &provenance, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        sf_model_free(&m);
+        program_result result = program_run(p, "solve", "bad.h5 -o results.h5 --force");
+        assert_refused(&result, cases[k].part);
+        assert_non_null(strstr(result.err, "bad.h5"));
+    }
+    program_assert_unchanged(program_path(p, "results.h5"), &before);
+}
+
+/* A file of a newer format, and one that has the right name on it and nothing else in it. */
+static void files_of_newer_formats_or_without_content_are_refused(void **state) {
+    const program_place *p = *state;
+    for (int k = 0; k < 4; k++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_h5 *file = NULL;
+        bool model = k < 2, newer = k % 2;
+        assert_int_equal(sf_h5_create(program_path(p, "odd.h5"), &file, &err), SF_OK);
+        sf_h5_set_attribute(file, "/", "format", model ? "softfall-model" : "softfall-results", &err);
+        sf_h5_set_attribute_i64(file, "/", "format_version",
+                                newer ? SF_FORMAT_VERSION + 1 : SF_FORMAT_VERSION, &err);
+        sf_h5_close(&file, &err);
+        assert_int_equal(err.status, SF_OK);
+        program_result result =
+            model ? program_run(p, "solve", "odd.h5 -o new.h5") : program_run(p, "post", "odd.h5 -o new");
+        assert_refused(&result, newer ? "version" : "/");
+        assert_true(strstr(result.err, "odd.h5") || !newer);
+    }
+}
+
+/* Single bytes changed anywhere in the file: whatever the programs make of it, they end by themselves. */
+static void flipped_bytes_never_crash_a_program(void **state) {
+    const program_place *p = *state;
+    uint64_t seed = 12;
+    int refused = 0;
+    for (int k = 0; k < 2; k++) {
+        program_bytes whole = program_read_file(program_path(p, k ? "results.h5" : "model.h5"));
+        for (int trial = 0; trial < 40; trial++) {
+            /* Half of them in the first 4 kB, where the structure of the file stands. */
+            size_t range = trial % 2 ? whole.size : 4096;
+            size_t at = (size_t)(0.5 * (fixture_random(&seed) + 1) * (double)range);
+            char kept = whole.data[at];
+            whole.data[at] = (char)(kept ^ (1 << (trial % 8)));
+            program_write_file(program_path(p, "flip.h5"), whole.data, whole.size);
+            whole.data[at] = kept;
+            program_result result =
+                program_shell(p,
+                              k ? "timeout 20 '%s/softfall-post' flip.h5 -o flip --force"
+                                : "timeout 20 '%s/softfall-solve' flip.h5 -o flip.h5.out --force",
+                              getenv("SF_BIN_DIR"));
+            if (result.code >= 124)
+                fail_msg("byte %zu of %s: exit code %d, %s", at, k ? "results.h5" : "model.h5", result.code,
+                         result.err);
+            refused += result.code != 0;
+        }
+        free(whole.data);
+    }
+    assert_true(refused > 5);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(command_lines_that_cannot_be_meant_are_refused),
+        cmocka_unit_test(files_that_are_missing_or_of_another_kind_are_refused),
+        cmocka_unit_test(places_that_cannot_be_written_are_refused),
+        cmocka_unit_test(cases_that_contradict_their_geometry_are_refused),
+        cmocka_unit_test(truncated_files_are_refused),
+        cmocka_unit_test(damaged_models_are_refused_with_what_is_wrong),
+        cmocka_unit_test(files_of_newer_formats_or_without_content_are_refused),
+        cmocka_unit_test(flipped_bytes_never_crash_a_program),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

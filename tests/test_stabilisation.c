@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The stabilisation: it sees the sawtooth that nodal integration is blind to, leaves smooth fields alone, and
+ * its forces are the gradient of its energy. */
+#include "model_fixture.h"
+
+#include "solver/domain_stress.h"
+#include "solver/stabilisation.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+
+/* Layers of nodes between node i and the surface of the block. */
+static int depth_of(const fixture *f, const fixture_block *b, int64_t i) {
+    int depth = 1000;
+    for (int c = 0; c < 3; c++) {
+        int place = (int)lround(f->model.position[3 * i + c] / b->spacing);
+        int low = place < b->cells[c] - place ? place : b->cells[c] - place;
+        depth = low < depth ? low : depth;
+    }
+    return depth;
+}
+
+/* Sum of 1/2 pair |e|^2 g over the nodes at `depth` or deeper, with stiffness g = E. */
+static double pair_energy(const fixture *f, const fixture_block *b, int depth) {
+    const sf_state *s = &f->state;
+    double sum = 0;
+    for (int64_t i = 0; i < f->model.node_count; i++)
+        if (depth_of(f, b, i) >= depth)
+            sum += f->model.foam.modulus * s->pair_sum[i];
+    return sum;
+}
+
+/* d = -+ a along z by the parity of the lattice place, and its forces. */
+static void set_sawtooth(fixture *f, const fixture_block *b, double amplitude) {
+    fixture_start(f);
+    for (int64_t i = 0; i < f->model.node_count; i++) {
+        long parity = 0;
+        for (int c = 0; c < 3; c++)
+            parity += lround(f->model.position[3 * i + c] / b->spacing);
+        f->state.d[3 * i + 2] = parity % 2 ? amplitude : -amplitude;
+    }
+    fixture_forces(f);
+}
+
+/* F = I in the bulk, yet every edge is stretched or shortened by 2 a. */
+static void sawtooth_is_invisible_to_the_strain_but_costs_energy(void **state) {
+    (void)state;
+    const fixture_block block = {.cells = {10, 10, 10}, .spacing = 0.005};
+    const double amplitude = 0.0004;
+    fixture f;
+    fixture_held_block(&block, &f);
+    f.model.foam.modulus *= 2; /* above the curve's slope: one stiffness on both sides of zero strain */
+    set_sawtooth(&f, &block, amplitude);
+    double modulus = f.model.foam.modulus;
+    int64_t bulk = 0;
+    for (int64_t i = 0; i < f.model.node_count; i++) {
+        if (depth_of(&f, &block, i) < 4)
+            continue;
+        bulk++;
+        for (int k = 0; k < 9; k++)
+            assert_close(f.state.f[9 * i + k], k % 4 == 0, 1e-13);
+        assert_close(f.state.energy[i] / modulus, 0, 1e-24);
+        /* Six edges of pair = coefficient V / (6 h2), |e| = 2 a: the sum of 1/2 pair |e|2 is 2 c h a2. */
+        double expected = 2 * f.model.run.stabilisation * block.spacing * amplitude * amplitude;
+        assert_relative(f.state.pair_sum[i], expected, 1e-10);
+        /* Each of the six neighbours pulls back with 2 a pair (g + g). */
+        double pull = -6 * (f.model.run.stabilisation * block.spacing / 6) * 2 * f.state.stiffness[i] * 2 *
+                      f.state.d[3 * i + 2];
+        assert_relative(f.state.force[3 * i + 2], pull, 1e-9);
+    }
+    assert_int_equal(bulk, 27);
+
+    double pull = f.state.stiffness[0] * block.spacing * amplitude;
+    f.model.run.stabilisation = 0; /* plain nodal integration: nothing holds the sawtooth */
+    set_sawtooth(&f, &block, amplitude);
+    for (int64_t i = 0; i < f.model.node_count; i++)
+        if (depth_of(&f, &block, i) >= 4)
+            assert_close(f.state.force[3 * i + 2] / pull, 0, 1e-11);
+    fixture_free(&f);
+}
+
+static void affine_field_has_no_stabilisation_energy(void **state) {
+    (void)state;
+    const fixture_block block = {.cells = {6, 5, 4}, .spacing = 0.005, .jitter = 0.25, .surface_jitter = 0.2};
+    const double gradient[9] = {0.1, 0.2, -0.05, 0.02, -0.1, 0.07, 0.03, -0.2, -0.4}, shift[3] = {1, 2, 3};
+    fixture f;
+    fixture_held_block(&block, &f);
+    fixture_start(&f);
+    fixture_set_affine(&f, gradient, shift);
+    fixture_forces(&f);
+    for (int64_t i = 0; i < f.model.node_count; i++)
+        assert_close(f.state.pair_sum[i] / (f.model.run.stabilisation * pow(block.spacing, 3)), 0, 1e-22);
+    fixture_free(&f);
+}
+
+/* A smooth field on a cube of 40 mm with `cells` a side; energies of all nodes and of the middle. */
+static void smooth_energy(int cells, double *all, double *middle) {
+    const fixture_block block = {.cells = {cells, cells, cells}, .spacing = 0.04 / cells};
+    fixture f;
+    fixture_held_block(&block, &f);
+    fixture_start(&f);
+    for (int64_t i = 0; i < f.model.node_count; i++) {
+        const double *x = &f.model.position[3 * i];
+        f.state.d[3 * i] = 1e-3 * sin(60 * x[0] + 20 * x[2]);
+        f.state.d[3 * i + 1] = 1e-3 * cos(50 * x[1] + 30 * x[0]);
+        f.state.d[3 * i + 2] = 1e-3 * sin(70 * x[2] - 40 * x[1]);
+    }
+    fixture_forces(&f);
+    *all = pair_energy(&f, &block, 0);
+    *middle = pair_energy(&f, &block, cells / 4);
+    fixture_free(&f);
+}
+
+/* e is of third order in the bulk and of second order at the surface: energy h4 and h3. */
+static void energy_of_a_smooth_field_vanishes_with_refinement(void **state) {
+    (void)state;
+    double all[3], middle[3];
+    for (int k = 0; k < 3; k++)
+        smooth_energy(8 << k, &all[k], &middle[k]);
+    for (int k = 0; k < 2; k++) {
+        double order = log2(all[k] / all[k + 1]), bulk_order = log2(middle[k] / middle[k + 1]);
+        if (!(order > 2.5 && bulk_order > 3.7))
+            fail_msg("orders %.2f (all) and %.2f (middle)", order, bulk_order);
+    }
+}
+
+/* Total stabilisation energy at fixed stiffness, by the pairs alone. */
+static double frozen_energy(fixture *f, const double *stiffness) {
+    const sf_model *m = &f->model;
+    double sum = 0, force[3], couple[9];
+    sf_domain_stress(m, &f->operators, &f->state); /* F of the present d */
+    for (int64_t i = 0; i < m->node_count; i++)
+        sum += stiffness[i] * sf_stabilisation_node(m, f->operators.pair, f->state.d, f->state.f, stiffness,
+                                                    i, force, couple);
+    return sum;
+}
+
+/* At frozen stiffness the energy is quadratic in d: central differences are exact but for rounding. */
+static void forces_are_the_negative_gradient_of_the_energy(void **state) {
+    (void)state;
+    const fixture_block block = {.cells = {4, 4, 3}, .spacing = 0.01, .jitter = 0.25, .surface_jitter = 0.1};
+    fixture f;
+    uint64_t seed = 3;
+    fixture_held_block(&block, &f);
+    fixture_start(&f);
+    sf_state *s = &f.state;
+    const sf_model *m = &f.model;
+    int64_t n = m->node_count;
+    double *stiffness = malloc((size_t)n * sizeof *stiffness), *force = calloc(3 * (size_t)n, sizeof *force);
+    for (int64_t i = 0; i < n; i++)
+        stiffness[i] = m->foam.modulus * (2 + fixture_random(&seed)); /* as it differs from node to node */
+    for (int64_t q = 0; q < 3 * n; q++)
+        s->d[q] = 0.1 * block.spacing * fixture_random(&seed);
+    sf_domain_stress(m, &f.operators, s);
+    double scale = 0;
+    for (int64_t i = 0; i < n; i++) {
+        double pull[3], couple[9];
+        sf_stabilisation_node(m, f.operators.pair, s->d, s->f, stiffness, i, pull, couple);
+        for (int r = 0; r < 3; r++)
+            force[3 * i + r] += pull[r];
+        for (int64_t k = m->domain_ptr[i]; k < m->domain_ptr[i + 1]; k++)
+            for (int r = 0; r < 3; r++)
+                for (int c = 0; c < 3; c++)
+                    force[3 * (int64_t)m->domain_node[k] + r] -= couple[3 * r + c] * m->domain_b[3 * k + c];
+    }
+    for (int64_t q = 0; q < 3 * n; q++)
+        scale = fmax(scale, fabs(force[q]));
+    for (int64_t q = 0; q < 3 * n; q += 7) {
+        double kept = s->d[q], h = 0.1 * block.spacing;
+        s->d[q] = kept + h;
+        double high = frozen_energy(&f, stiffness);
+        s->d[q] = kept - h;
+        double low = frozen_energy(&f, stiffness);
+        s->d[q] = kept;
+        assert_close(-(high - low) / (2 * h) / scale, force[q] / scale, 1e-11);
+    }
+    free(stiffness);
+    free(force);
+    fixture_free(&f);
+}
+
+/* Stiffness that follows the tangent: stiffness never below E, and the couple and force scale with the
+ * coefficient. */
+static void force_is_proportional_to_the_coefficient_and_tied_to_the_tangent(void **state) {
+    (void)state;
+    const fixture_block block = {.cells = {4, 4, 4}, .spacing = 0.01};
+    const double squeeze[9] = {[8] = -0.7}, still[3] = {0};
+    fixture f;
+    fixture_held_block(&block, &f);
+    double energy[2], coefficient = f.model.run.stabilisation;
+    for (int k = 0; k < 2; k++) {
+        uint64_t seed = 5;
+        f.model.run.stabilisation = (k + 1) * coefficient;
+        fixture_start(&f);
+        fixture_set_affine(&f, squeeze, still);
+        for (int64_t q = 0; q < 3 * f.model.node_count; q++)
+            f.state.d[q] += 0.01 * block.spacing * fixture_random(&seed);
+        fixture_forces(&f);
+        energy[k] = 0;
+        for (int64_t chunk = 0; chunk < f.state.chunk_count; chunk++)
+            energy[k] += f.state.partial[chunk].stabilisation;
+    }
+    assert_relative(energy[1], 2 * energy[0], 1e-12);
+    for (int64_t i = 0; i < f.model.node_count; i++) /* at 70 % the curve is some ten times stiffer than E */
+        assert_true(f.state.stiffness[i] > 5 * f.model.foam.modulus);
+    fixture_free(&f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sawtooth_is_invisible_to_the_strain_but_costs_energy),
+        cmocka_unit_test(affine_field_has_no_stabilisation_energy),
+        cmocka_unit_test(energy_of_a_smooth_field_vanishes_with_refinement),
+        cmocka_unit_test(forces_are_the_negative_gradient_of_the_energy),
+        cmocka_unit_test(force_is_proportional_to_the_coefficient_and_tied_to_the_tangent),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs every drop of examples/ into out/NAME and prints the table of results that stands in README.md.
+#
+#     tools/run_examples.sh            some minutes
+#     tools/run_examples.sh --table    only the table, of the results that are there
+#     tools/run_examples.sh --readme   the same, and put it into README.md
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+case ${1:-} in
+'' | --table | --readme) ;;
+*) echo 'usage: tools/run_examples.sh [--table | --readme]' >&2 && exit 2 ;;
+esac
+directories=()
+for example in examples/*; do
+    [ -f "$example/case.cfg" ] || continue
+    directory=out/$(basename "$example")
+    directories+=("$directory")
+    [ $# -gt 0 ] || tools/run_case.sh "$example/case.cfg" "$directory" >&2
+done
+python3 tools/results_table.py "${directories[@]}"
+[ "${1:-}" != --readme ] || python3 tools/results_table.py --into README.md "${directories[@]}"

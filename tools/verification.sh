@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs the verification studies and writes docs/verification.md from what they print.
+#   tools/verification.sh            all studies (the long ones take most of an hour on two cores)
+#   tools/verification.sh NAME...    only these; the sections of the others stay as they are
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+order="exactness wave mms material time_step contact calculix mesh sensitivity reproducibility"
+build=${BUILD_DIR:-build}
+sections=docs/images/verification
+[ $# -gt 0 ] || set -- $order
+mkdir -p "$sections"
+export SF_BIN_DIR="$PWD/$build/bin" SF_SOURCE_DIR="$PWD"
+
+failed=""
+for name in "$@"; do
+    program="$build/verify/study_$name"
+    [ -x "$program" ] || { echo "no study $name in $build: build first" >&2; exit 1; }
+    echo "== $name"
+    status=0
+    "$program" "$sections" >"$sections/$name.log" || status=$?
+    tail -n 1 "$sections/$name.log"
+    rm "$sections/$name.log"
+    if [ $status -eq 77 ]; then
+        echo "skipped: the independent code is not installed"
+    elif [ $status -ne 0 ]; then
+        failed="$failed $name"
+    fi
+done
+
+{
+    cat <<'TEXT'
+# Verification
+
+Every table and plot below is printed by a study in `verify/` and put here by
+
+    tools/verification.sh            # all, or: tools/verification.sh NAME...
+
+A study measures, compares with the bound that is required, and fails if one is missed. `ctest -L verify` runs the short
+ones with every test run, `ctest -L slow` the long ones (calculix, mesh, sensitivity). Equation numbers are those of
+[theory.md](theory.md). Wall times depend on the machine; everything else repeats to the last digit on one machine.
+
+TEXT
+    for name in $order; do
+        [ -f "$sections/$name.md" ] && cat "$sections/$name.md" && echo
+    done
+} >docs/verification.md.partial
+mv docs/verification.md.partial docs/verification.md
+echo "written: docs/verification.md"
+[ -z "$failed" ] || { echo "failed:$failed" >&2; exit 1; }

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Quarter of a square pad as a lattice of hexahedra: the mesh that the comparison with CalculiX gives to both codes.
+// Lengths in millimetres. Base at z = 0, top at z = thickness, axis of the indentation at x = y = 0.
+
+DefineConstant[
+  side = {200, Min 40, Max 1000, Step 10, Name "Pad/1 Side of the whole pad [mm]"},
+  thickness = {50, Min 10, Max 200, Step 5, Name "Pad/2 Thickness [mm]"},
+  layers = {5, Min 1, Max 100, Step 1, Name "Pad/3 Layers through the thickness"},
+  half_cells = {10, Min 1, Max 400, Step 1, Name "Pad/4 Cells along half the side"}
+];
+
+b = side / 2;
+Point(1) = {0, 0, 0};
+Point(2) = {b, 0, 0};
+Point(3) = {b, b, 0};
+Point(4) = {0, b, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Transfinite Curve {1, 2, 3, 4} = half_cells + 1;
+Transfinite Surface {1};
+Recombine Surface {1};
+
+// body[0] the top, body[1] the volume, then the sides over the lines 1 to 4.
+body[] = Extrude {0, 0, thickness} { Surface{1}; Layers{layers}; Recombine; };
+
+Physical Volume("pad") = {body[1]};
+Physical Surface("base") = {1};
+Physical Surface("top") = {body[0]};
+Physical Surface("symmetry_y") = {body[2]}; // the plane y = 0
+Physical Surface("sides") = {body[3], body[4]};
+Physical Surface("symmetry_x") = {body[5]}; // the plane x = 0
