@@ -9,11 +9,13 @@ static sf_status build_densification(const sf_foam_card *foam, double stress, do
                                      sf_error *err) {
     curve->limit = foam->densification_limit;
     if (!(curve->limit > curve->start))
-        return SF_FAIL(err, SF_ERR_INPUT, "the densification limit %g is not beyond its start %g", curve->limit,
-                       curve->start);
+        return SF_FAIL(err, SF_ERR_INPUT, "the densification limit %g is not beyond its start %g",
+                       curve->limit, curve->start);
     if (!(slope > 0 && stress > 0))
-        return SF_FAIL(err, SF_ERR_INPUT, "the compression curve is flat (stress %g Pa, slope %g Pa) at the strain %g "
-                       "where densification starts", stress, slope, curve->start);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "the compression curve is flat (stress %g Pa, slope %g Pa) at the strain %g "
+                       "where densification starts",
+                       stress, slope, curve->start);
     double room = curve->limit - curve->start;
     curve->exponent = foam->densification_exponent > 0 ? foam->densification_exponent : room * slope / stress;
     curve->factor = slope * pow(room, curve->exponent + 1) / curve->exponent;
@@ -21,12 +23,14 @@ static sf_status build_densification(const sf_foam_card *foam, double stress, do
     return SF_OK;
 }
 
-/* Steffen's slopes at the points. Those of the ends come from the parabola through three points, as in the paper; GSL takes
- * the secant of the last interval, which is of first order and would hand a wrong exponent to the densification. */
+/* Steffen's slopes at the points. Those of the ends come from the parabola through three points, as in the
+ * paper; GSL takes the secant of the last interval, which is of first order and would hand a wrong exponent
+ * to the densification. */
 static void steffen_slopes(int64_t count, const double *x, const double *y, double *slope) {
     for (int64_t i = 0; i < count; i++) {
         bool first = i == 0, last = i + 1 == count;
-        int64_t k = last ? i - 1 : i, n = first ? 1 : k - 1; /* the interval at the point, and the next or other one */
+        int64_t k = last ? i - 1 : i,
+                n = first ? 1 : k - 1; /* the interval at the point, and the next or other one */
         double h = x[k + 1] - x[k], g = x[n + 1] - x[n], s = (y[k + 1] - y[k]) / h, r = (y[n + 1] - y[n]) / g;
         if (first || last)
             slope[i] = fmax(0, fmin(s + (s - r) * h / (h + g), 2 * s));
@@ -41,16 +45,18 @@ static sf_status check_points(int64_t index, int64_t count, const double *x, sf_
                        (long long)index, (long long)count);
     for (int64_t i = 1; i < count; i++)
         if (!(x[i] > x[i - 1]))
-            return SF_FAIL(err, SF_ERR_INPUT, "the strains of compression curve %lld are not ascending: %g after %g",
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "the strains of compression curve %lld are not ascending: %g after %g",
                            (long long)index, x[i], x[i - 1]);
     return SF_OK;
 }
 
-/* Stress and slope of the interpolant at the ends of the pieces, into c[0] and c[1] of the piece that begins there, and at
- * the end of the last. Data denser than the table can be steeper at an end than the table's secants: slopes within three
- * times both secants keep every cubic piece rising (Fritsch, Carlson 1980, doi:10.1137/0717021). */
-static void sample_pieces(const double *x, const double *y, const double *slope, sf_curve *curve, double *end_stress,
-                          double *end_slope) {
+/* Stress and slope of the interpolant at the ends of the pieces, into c[0] and c[1] of the piece that begins
+ * there, and at the end of the last. Data denser than the table can be steeper at an end than the table's
+ * secants: slopes within three times both secants keep every cubic piece rising (Fritsch, Carlson 1980,
+ * doi:10.1137/0717021). */
+static void sample_pieces(const double *x, const double *y, const double *slope, sf_curve *curve,
+                          double *end_stress, double *end_slope) {
     sf_curve_piece *p = curve->piece;
     int64_t i = 0;
     for (int k = 0; k <= SF_CURVE_INTERVALS; k++) {
@@ -79,7 +85,8 @@ static void build_pieces(double end_stress, double end_slope, sf_curve *curve) {
         bool last = k + 1 == SF_CURVE_INTERVALS;
         sf_curve_piece *p = &curve->piece[k];
         double h = (last ? curve->start : (k + 1) * curve->step) - k * curve->step;
-        double y0 = p->c[0], d0 = p->c[1], y1 = last ? end_stress : p[1].c[0], d1 = last ? end_slope : p[1].c[1];
+        double y0 = p->c[0], d0 = p->c[1], y1 = last ? end_stress : p[1].c[0],
+               d1 = last ? end_slope : p[1].c[1];
         p->energy = energy;
         p->c[2] = (3 * (y1 - y0) / h - 2 * d0 - d1) / h;
         p->c[3] = (2 * (y0 - y1) / h + d0 + d1) / (h * h);
@@ -97,8 +104,8 @@ sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curv
         return err->status;
     curve->start = foam->densification_start > 0 ? foam->densification_start : x[count - 1];
     if (curve->start > x[count - 1])
-        return SF_FAIL(err, SF_ERR_INPUT, "densification starts at strain %g, but the curve ends at %g", curve->start,
-                       x[count - 1]);
+        return SF_FAIL(err, SF_ERR_INPUT, "densification starts at strain %g, but the curve ends at %g",
+                       curve->start, x[count - 1]);
     curve->step = curve->start / SF_CURVE_INTERVALS;
     curve->piece = sf_alloc(err, SF_CURVE_INTERVALS, sizeof *curve->piece, "curve table");
     double *slopes = sf_alloc(err, (unsigned long)count, sizeof *slopes, "curve slopes");

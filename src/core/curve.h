@@ -2,11 +2,11 @@
 /* The compression curve of a foam as the solver evaluates it: nominal stress, slope and strain energy against
  * engineering strain, compression positive.
  *
- * Inside the data: Steffen's monotone interpolant (Steffen 1990, the slopes of the ends by parabolas), resampled to a uniform
- * table of cubic Hermite pieces, monotone too, whose integral is exact, so that stress is the derivative of energy to
- * rounding. Beyond the densification
- * start eps_e: sigma = A + B / (eps_L - eps)^m, continuous with its slope there ("Du Bois extrapolation"; theory,
- * section "Densification"). Rule H1 is eps_L = 1; without an exponent m is the one that makes A vanish. */
+ * Inside the data: Steffen's monotone interpolant (Steffen 1990, the slopes of the ends by parabolas),
+ * resampled to a uniform table of cubic Hermite pieces, monotone too, whose integral is exact, so that stress
+ * is the derivative of energy to rounding. Beyond the densification start eps_e: sigma = A + B / (eps_L -
+ * eps)^m, continuous with its slope there ("Du Bois extrapolation"; theory, section "Densification"). Rule H1
+ * is eps_L = 1; without an exponent m is the one that makes A vanish. */
 #ifndef SF_CORE_CURVE_H
 #define SF_CORE_CURVE_H
 
@@ -22,24 +22,24 @@ typedef struct sf_curve_piece {
 } sf_curve_piece;
 
 typedef struct sf_curve {
-    double step;          /* -, width of a piece */
-    double start;         /* -, eps_e */
-    double limit;         /* -, eps_L */
-    double exponent;      /* -, m */
-    double constant;      /* Pa, A */
-    double factor;        /* Pa, B (with (eps_L - eps) dimensionless) */
-    double start_energy;  /* J m-3, energy at eps_e */
-    double largest_slope; /* Pa, of the table */
+    double step;           /* -, width of a piece */
+    double start;          /* -, eps_e */
+    double limit;          /* -, eps_L */
+    double exponent;       /* -, m */
+    double constant;       /* Pa, A */
+    double factor;         /* Pa, B (with (eps_L - eps) dimensionless) */
+    double start_energy;   /* J m-3, energy at eps_e */
+    double largest_slope;  /* Pa, of the table */
     sf_curve_piece *piece; /* [SF_CURVE_INTERVALS] owned */
 } sf_curve;
 
-/* Builds curve `index` of the card. Errors: fewer than 3 points, strains that do not ascend, densification start beyond
- * the data, a slope at the start that is not positive, eps_L not beyond the start. */
+/* Builds curve `index` of the card. Errors: fewer than 3 points, strains that do not ascend, densification
+ * start beyond the data, a slope at the start that is not positive, eps_L not beyond the start. */
 sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curve, sf_error *err);
 void sf_curve_free(sf_curve *curve);
 
-/* Stress (Pa), slope (Pa) and energy (J m-3) at a compressive strain 0 <= strain < limit. At or beyond the limit all
- * three are infinite. */
+/* Stress (Pa), slope (Pa) and energy (J m-3) at a compressive strain 0 <= strain < limit. At or beyond the
+ * limit all three are infinite. */
 void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, double *slope, double *energy);
 
 #endif

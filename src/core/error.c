@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format, ...) {
+sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format,
+                       ...) {
     if (err->status != SF_OK)
         return err->status;
     err->status = status;

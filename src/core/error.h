@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Status codes and the error record that every fallible softfall function fills.
  *
- * A function that can fail returns sf_status and takes an `sf_error *err` as its last argument. The first failure is
- * kept (later calls on the same record do not overwrite it) with a sentence that names the entity, the value and the
- * bound, and with the source line that raised it. `err` may not be NULL. A failing function leaves its outputs
- * released or NULL unless its header says otherwise. Only main() functions turn a status into an exit code. */
+ * A function that can fail returns sf_status and takes an `sf_error *err` as its last argument. The first
+ * failure is kept (later calls on the same record do not overwrite it) with a sentence that names the entity,
+ * the value and the bound, and with the source line that raised it. `err` may not be NULL. A failing function
+ * leaves its outputs released or NULL unless its header says otherwise. Only main() functions turn a status
+ * into an exit code. */
 #ifndef SF_CORE_ERROR_H
 #define SF_CORE_ERROR_H
 
@@ -26,7 +27,8 @@ typedef struct sf_error {
     char text[1024];   /* one sentence, no trailing newline */
 } sf_error;
 
-#define SF_ERROR_INIT {SF_OK, "", 0, ""}
+#define SF_ERROR_INIT                                                                                        \
+    { SF_OK, "", 0, "" }
 
 /* Records a failure (unless one is recorded already) and returns the recorded status. */
 #define SF_FAIL(err, status, ...) sf_error_set((err), (status), __FILE__, __LINE__, __VA_ARGS__)
@@ -38,8 +40,8 @@ sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int l
  * Returns the process exit code that belongs to the status. */
 int sf_error_report(const sf_error *err, const char *program);
 
-/* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release them
- * with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
+/* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
+ * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
 void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);
 
 #endif

@@ -9,16 +9,17 @@ static inline double sf_dot3(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Largest eigenvalue of a symmetric matrix: trigonometric solution of the characteristic equation (Smith 1961,
- * doi:10.1145/355578.366316), accurate to rounding relative to the matrix norm. */
+/* Largest eigenvalue of a symmetric matrix: trigonometric solution of the characteristic equation (Smith
+ * 1961, doi:10.1145/355578.366316), accurate to rounding relative to the matrix norm. */
 static inline double sf_sym3_largest(const double s[6]) {
     double mean = (s[0] + s[1] + s[2]) / 3;
     double x = s[0] - mean, y = s[1] - mean, z = s[2] - mean;
     double p = sqrt((x * x + y * y + z * z + 2 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])) / 6);
     if (!(p > 0))
         return mean;
-    double half_det = (x * (y * z - s[4] * s[4]) - s[3] * (s[3] * z - s[4] * s[5]) + s[5] * (s[3] * s[4] - y * s[5])) /
-                      (2 * p * p * p);
+    double half_det =
+        (x * (y * z - s[4] * s[4]) - s[3] * (s[3] * z - s[4] * s[5]) + s[5] * (s[3] * s[4] - y * s[5])) /
+        (2 * p * p * p);
     double angle = acos(fmax(-1, fmin(1, half_det))) / 3;
     return mean + 2 * p * cos(angle);
 }

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ARRAY(member, type, rows, extra, columns, path, units, text)                                                 \
-    {offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text}
-#define SCALAR(member, type, path, units, text)                                                                      \
-    {offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text}
+#define ARRAY(member, type, rows, extra, columns, path, units, text)                                         \
+    { offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text }
+#define SCALAR(member, type, path, units, text)                                                              \
+    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text }
 #define F64 SF_MODEL_F64
 #define I32 SF_MODEL_I32
 #define I64 SF_MODEL_I64
@@ -24,9 +24,11 @@ static const sf_model_field fields[] = {
     SCALAR(domain_nnz, I64, "/domain/count", "1", "number of (domain, node) pairs"),
     ARRAY(domain_ptr, I64, node_count, 1, 1, "/domain/ptr", "1", "row starts of the smoothed gradient"),
     ARRAY(domain_node, I32, domain_nnz, 0, 1, "/domain/node", "1", "node J of each entry"),
-    ARRAY(domain_b, F64, domain_nnz, 0, 3, "/domain/b", "m-1", "smoothed gradient of the shape function of J"),
+    ARRAY(domain_b, F64, domain_nnz, 0, 3, "/domain/b", "m-1",
+          "smoothed gradient of the shape function of J"),
     SCALAR(phi_nnz, I64, "/shape/count", "1", "number of (node, node) pairs"),
-    ARRAY(phi_ptr, I64, node_count, 1, 1, "/shape/ptr", "1", "row starts of the shape functions at the nodes"),
+    ARRAY(phi_ptr, I64, node_count, 1, 1, "/shape/ptr", "1",
+          "row starts of the shape functions at the nodes"),
     ARRAY(phi_node, I32, phi_nnz, 0, 1, "/shape/node", "1", "node J of each entry"),
     ARRAY(phi_value, F64, phi_nnz, 0, 1, "/shape/value", "1", "shape function of J at node I"),
     SCALAR(edge_nnz, I64, "/edge/count", "1", "number of directed edges"),
@@ -40,13 +42,16 @@ static const sf_model_field fields[] = {
     SCALAR(fixed_count, I64, "/fixed/count", "1", "number of constrained nodes"),
     ARRAY(fixed_node, I32, fixed_count, 0, 1, "/fixed/node", "1", "constrained node"),
     ARRAY(fixed_mask, U8, fixed_count, 0, 1, "/fixed/mask", "1", "held components: bit 0 x, 1 y, 2 z"),
-    ARRAY(fixed_base, U8, fixed_count, 0, 1, "/fixed/base", "1", "1: part of the base, 0: symmetry plane only"),
+    ARRAY(fixed_base, U8, fixed_count, 0, 1, "/fixed/base", "1",
+          "1: part of the base, 0: symmetry plane only"),
     SCALAR(contact_count, I64, "/contact/count", "1", "number of contact points"),
     ARRAY(contact_node, I32, contact_count, 0, 1, "/contact/node", "1", "node that the missile may touch"),
     SCALAR(surface_node_count, I64, "/missile/surface_node_count", "1", "nodes of the missile's surface"),
     SCALAR(surface_triangle_count, I64, "/missile/surface_triangle_count", "1", "triangles of it"),
-    ARRAY(surface_position, F64, surface_node_count, 0, 3, "/missile/surface_position", "m", "position at t = 0"),
-    ARRAY(surface_triangle, I32, surface_triangle_count, 0, 3, "/missile/surface_triangle", "1", "outward triangles"),
+    ARRAY(surface_position, F64, surface_node_count, 0, 3, "/missile/surface_position", "m",
+          "position at t = 0"),
+    ARRAY(surface_triangle, I32, surface_triangle_count, 0, 3, "/missile/surface_triangle", "1",
+          "outward triangles"),
     SCALAR(frame_time_count, I64, "/run/frame_time_count", "1", "number of further frames"),
     ARRAY(frame_time, F64, frame_time_count, 0, 1, "/run/frame_time", "s", "times of further frames"),
     SCALAR(symmetry_factor, I64, "/model/symmetry_factor", "1", "modelled parts that make the whole"),
@@ -63,11 +68,14 @@ static const sf_model_field fields[] = {
     SCALAR(foam.tension_cutoff, F64, "/foam/tension_cutoff", "Pa", "largest tensile nominal stress"),
     SCALAR(foam.densification_start, F64, "/foam/densification_start", "1", "strain, 0: end of the table"),
     SCALAR(foam.densification_limit, F64, "/foam/densification_limit", "1", "strain of infinite stress"),
-    SCALAR(foam.densification_exponent, F64, "/foam/densification_exponent", "1", "exponent, 0: by continuity"),
-    SCALAR(foam.rate_filter_time, F64, "/foam/rate_filter_time", "s", "time constant of the strain-rate filter"),
+    SCALAR(foam.densification_exponent, F64, "/foam/densification_exponent", "1",
+           "exponent, 0: by continuity"),
+    SCALAR(foam.rate_filter_time, F64, "/foam/rate_filter_time", "s",
+           "time constant of the strain-rate filter"),
     SCALAR(foam.curve_count, I64, "/foam/curve_count", "1", "number of compression curves"),
     SCALAR(foam.curve_points, I64, "/foam/curve_points", "1", "number of points of all curves"),
-    ARRAY(foam.curve_rate, F64, foam.curve_count, 0, 1, "/foam/curve_rate", "s-1", "strain rate of each curve"),
+    ARRAY(foam.curve_rate, F64, foam.curve_count, 0, 1, "/foam/curve_rate", "s-1",
+          "strain rate of each curve"),
     ARRAY(foam.curve_ptr, I64, foam.curve_count, 1, 1, "/foam/curve_ptr", "1", "start of each curve"),
     ARRAY(foam.curve_strain, F64, foam.curve_points, 0, 1, "/foam/curve_strain", "1", "engineering strain"),
     ARRAY(foam.curve_stress, F64, foam.curve_points, 0, 1, "/foam/curve_stress", "Pa", "engineering stress"),

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* sf_model: everything about a drop that does not change while it is solved. softfall-pre builds it, model.h5 stores
- * it, softfall-solve reads it and never writes to it.
+/* sf_model: everything about a drop that does not change while it is solved. softfall-pre builds it, model.h5
+ * stores it, softfall-solve reads it and never writes to it.
  *
  * Units are SI throughout. Frame: the geometry's Cartesian axes, the pad's top surface facing +z. Reference
- * configuration = the mesh as read. Arrays are row-major with the shape given in brackets, from sf_alloc, owned by the
- * model. Lists are CSR: the entries of row i are [ptr[i], ptr[i+1]). Nodes are the particles of the cloud. */
+ * configuration = the mesh as read. Arrays are row-major with the shape given in brackets, from sf_alloc,
+ * owned by the model. Lists are CSR: the entries of row i are [ptr[i], ptr[i+1]). Nodes are the particles of
+ * the cloud. */
 #ifndef SF_CORE_MODEL_H
 #define SF_CORE_MODEL_H
 
@@ -22,7 +23,10 @@ enum {
 /* Cell types: values are XDMF's topology codes, so that they can be written as they are. */
 enum { SF_CELL_TETRAHEDRON = 6, SF_CELL_PYRAMID = 7, SF_CELL_PRISM = 8, SF_CELL_HEXAHEDRON = 9 };
 
-enum { SF_SHAPE_SPHERE = 0, SF_SHAPE_SURFACE = 1 }; /* contact with an exact sphere cap, or with the triangles */
+enum {
+    SF_SHAPE_SPHERE = 0,
+    SF_SHAPE_SURFACE = 1
+}; /* contact with an exact sphere cap, or with the triangles */
 
 /* Bits of output_fields. */
 enum {
@@ -37,42 +41,45 @@ enum {
     SF_FIELD_ALL = (1 << 8) - 1,
 };
 
-/* The foam card (docs/theory.md, section "Foam"). Compression curves: `curve_count` of them, in ascending strain rate;
- * points of curve k are [curve_ptr[k], curve_ptr[k+1]). Strain and stress are engineering, positive in compression. */
+/* The foam card (docs/theory.md, section "Foam"). Compression curves: `curve_count` of them, in ascending
+ * strain rate; points of curve k are [curve_ptr[k], curve_ptr[k+1]). Strain and stress are engineering,
+ * positive in compression. */
 typedef struct sf_foam_card {
-    double density;               /* kg m-3, of the undeformed foam */
-    double modulus;               /* Pa, E: tension, and the least stiffness of the stabilisation */
-    double hysteresis_hu;         /* -, HU, 0 < HU <= 1; 1 = no hysteresis */
-    double hysteresis_shape;      /* -, SHAPE > 0 */
-    double damp;                  /* -, DAMP >= 0 */
-    double damp_length;           /* m, L of DAMP; 0 = the spacing of each node */
-    double maxwell_modulus;       /* Pa, ED >= 0; 0 = no Maxwell branch */
-    double maxwell_rate;          /* s-1, BETA1 > 0 */
-    double kelvin_viscosity;      /* Pa s, eta >= 0 */
-    double tension_cutoff;        /* Pa, largest tensile nominal stress; huge = none */
-    double densification_start;   /* -, strain from which the densification law replaces the table; 0 = its end */
-    double densification_limit;   /* -, strain eps_L at which the stress becomes infinite; 1 for rule H1 */
+    double density;          /* kg m-3, of the undeformed foam */
+    double modulus;          /* Pa, E: tension, and the least stiffness of the stabilisation */
+    double hysteresis_hu;    /* -, HU, 0 < HU <= 1; 1 = no hysteresis */
+    double hysteresis_shape; /* -, SHAPE > 0 */
+    double damp;             /* -, DAMP >= 0 */
+    double damp_length;      /* m, L of DAMP; 0 = the spacing of each node */
+    double maxwell_modulus;  /* Pa, ED >= 0; 0 = no Maxwell branch */
+    double maxwell_rate;     /* s-1, BETA1 > 0 */
+    double kelvin_viscosity; /* Pa s, eta >= 0 */
+    double tension_cutoff;   /* Pa, largest tensile nominal stress; huge = none */
+    double
+        densification_start; /* -, strain from which the densification law replaces the table; 0 = its end */
+    double densification_limit;    /* -, strain eps_L at which the stress becomes infinite; 1 for rule H1 */
     double densification_exponent; /* -, exponent; 0 = the one that makes the additive constant vanish */
-    double rate_filter_time;      /* s, time constant of the strain-rate filter when curve_count > 1 */
+    double rate_filter_time;       /* s, time constant of the strain-rate filter when curve_count > 1 */
     int64_t curve_count;
     int64_t curve_points;
-    double *curve_rate;  /* [curve_count] s-1 */
-    int64_t *curve_ptr;  /* [curve_count + 1] */
+    double *curve_rate;   /* [curve_count] s-1 */
+    int64_t *curve_ptr;   /* [curve_count + 1] */
     double *curve_strain; /* [curve_points] - */
     double *curve_stress; /* [curve_points] Pa */
 } sf_foam_card;
 
 typedef struct sf_missile_card {
-    double mass;         /* kg, of the whole missile, whatever the symmetry */
-    double speed;        /* m s-1, at first contact */
-    double direction[3]; /* -, unit vector of motion; the one translational degree of freedom */
-    double friction;     /* -, Coulomb coefficient against the pad */
-    double gravity;      /* m s-2, acts along -z on the missile */
-    double gap;          /* m, distance still to travel along `direction` at t = 0 */
-    int64_t shape;       /* SF_SHAPE_* */
-    double sphere_centre[3]; /* m, at t = 0 (SF_SHAPE_SPHERE) */
-    double sphere_radius;    /* m */
-    double sphere_cap_cosine; /* -, smallest cosine between `direction` and a point of the cap, seen from the centre */
+    double mass;              /* kg, of the whole missile, whatever the symmetry */
+    double speed;             /* m s-1, at first contact */
+    double direction[3];      /* -, unit vector of motion; the one translational degree of freedom */
+    double friction;          /* -, Coulomb coefficient against the pad */
+    double gravity;           /* m s-2, acts along -z on the missile */
+    double gap;               /* m, distance still to travel along `direction` at t = 0 */
+    int64_t shape;            /* SF_SHAPE_* */
+    double sphere_centre[3];  /* m, at t = 0 (SF_SHAPE_SPHERE) */
+    double sphere_radius;     /* m */
+    double sphere_cap_cosine; /* -, smallest cosine between `direction` and a point of the cap, seen from the
+                                 centre */
 } sf_missile_card;
 
 typedef struct sf_run_options {
@@ -95,8 +102,8 @@ typedef struct sf_model {
     double *spacing;  /* [node_count] m, h */
     double *support;  /* [node_count] m, R */
 
-    /* Smoothed gradient: B_J^I for the nodes J that the domain of node I sees (theory eq. 4). Rows hold node I
-     * itself, and are sorted by node. */
+    /* Smoothed gradient: B_J^I for the nodes J that the domain of node I sees (theory eq. 4). Rows hold node
+     * I itself, and are sorted by node. */
     int64_t domain_nnz;
     int64_t *domain_ptr;  /* [node_count + 1] */
     int32_t *domain_node; /* [domain_nnz] J */
@@ -138,8 +145,8 @@ typedef struct sf_model {
     int64_t frame_time_count;
     double *frame_time; /* [frame_time_count] s, ascending */
 
-    int64_t symmetry_factor;  /* 1, 2 or 4: how many times the modelled part makes the whole */
-    double thickness;         /* m, of the pad along z */
+    int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
+    double thickness;        /* m, of the pad along z */
     sf_foam_card foam;
     sf_missile_card missile;
     sf_run_options run;
@@ -152,19 +159,19 @@ void sf_model_free(sf_model *model);
  * results needs it no more. */
 void sf_model_drop_mesh(sf_model *model);
 
-/* True if sizes, index ranges, finiteness, CSR monotonicity and the physical bounds of the cards hold; otherwise
- * records SF_ERR_MODEL with the first violation. Everything that reads a model.h5 calls it. */
+/* True if sizes, index ranges, finiteness, CSR monotonicity and the physical bounds of the cards hold;
+ * otherwise records SF_ERR_MODEL with the first violation. Everything that reads a model.h5 calls it. */
 sf_status sf_model_check(const sf_model *model, sf_error *err);
 
 /* One array or scalar of the model. The table drives reading, writing, checking and release. */
 typedef enum sf_model_type { SF_MODEL_F64, SF_MODEL_I32, SF_MODEL_I64, SF_MODEL_U8 } sf_model_type;
 typedef struct sf_model_field {
-    size_t offset;       /* of the member in sf_model: a pointer (arrays) or the value itself (scalars) */
-    sf_model_type type;  /* of one item; scalars are F64 or I64 */
-    size_t rows_offset;  /* of the int64_t member that counts the rows; SIZE_MAX for a scalar */
-    int rows_extra;      /* 1 for CSR pointers */
-    int columns;         /* 1 or more */
-    const char *path;    /* in model.h5 */
+    size_t offset;      /* of the member in sf_model: a pointer (arrays) or the value itself (scalars) */
+    sf_model_type type; /* of one item; scalars are F64 or I64 */
+    size_t rows_offset; /* of the int64_t member that counts the rows; SIZE_MAX for a scalar */
+    int rows_extra;     /* 1 for CSR pointers */
+    int columns;        /* 1 or more */
+    const char *path;   /* in model.h5 */
     const char *units;
     const char *description;
 } sf_model_field;

@@ -4,8 +4,8 @@
 #include <math.h>
 
 /* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
-static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr, const int32_t *index,
-                           int64_t limit, bool ascending, sf_error *err) {
+static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr,
+                           const int32_t *index, int64_t limit, bool ascending, sf_error *err) {
     if (ptr[0] != 0 || ptr[rows] != nnz)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: row starts run from %lld to %lld, not from 0 to %lld", name,
                        (long long)ptr[0], (long long)ptr[rows], (long long)nnz);
@@ -15,19 +15,21 @@ static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const in
     for (int64_t i = 0; i < rows; i++)
         for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
             if (index[k] < 0 || index[k] >= limit)
-                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld refers to node %d, of 0 to %lld", name, (long long)i,
-                               index[k], (long long)limit - 1);
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld refers to node %d, of 0 to %lld", name,
+                               (long long)i, index[k], (long long)limit - 1);
             if (ascending && k > ptr[i] && index[k] <= index[k - 1])
-                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld is not in ascending order", name, (long long)i);
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld is not in ascending order", name,
+                               (long long)i);
         }
     return SF_OK;
 }
 
-static sf_status check_set(const char *name, int64_t count, const int32_t *node, int64_t limit, sf_error *err) {
+static sf_status check_set(const char *name, int64_t count, const int32_t *node, int64_t limit,
+                           sf_error *err) {
     for (int64_t k = 0; k < count; k++)
         if (node[k] < 0 || node[k] >= limit || (k > 0 && node[k] <= node[k - 1]))
-            return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld (node %d) is out of range or out of order", name,
-                           (long long)k, node[k]);
+            return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld (node %d) is out of range or out of order",
+                           name, (long long)k, node[k]);
     return SF_OK;
 }
 
@@ -40,8 +42,8 @@ static sf_status check_finite(const sf_model *model, sf_error *err) {
         const char *base = (const char *)model;
         bool scalar = field[k].rows_offset == SIZE_MAX;
         int64_t rows = scalar ? 1 : *(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra;
-        const double *data = scalar ? (const double *)(base + field[k].offset)
-                                    : *(double *const *)(base + field[k].offset);
+        const double *data =
+            scalar ? (const double *)(base + field[k].offset) : *(double *const *)(base + field[k].offset);
         for (int64_t i = 0; i < rows * field[k].columns; i++)
             if (!isfinite(data[i]))
                 return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld is not a finite number", field[k].path,
@@ -57,7 +59,8 @@ static sf_status check_bound(const char *name, double value, double low, double 
 }
 
 static sf_status check_curves(const sf_foam_card *foam, sf_error *err) {
-    if (foam->curve_count < 1 || foam->curve_ptr[0] != 0 || foam->curve_ptr[foam->curve_count] != foam->curve_points)
+    if (foam->curve_count < 1 || foam->curve_ptr[0] != 0 ||
+        foam->curve_ptr[foam->curve_count] != foam->curve_points)
         return SF_FAIL(err, SF_ERR_MODEL, "the foam has no usable compression curve");
     for (int64_t c = 0; c < foam->curve_count; c++) {
         int64_t first = foam->curve_ptr[c], last = foam->curve_ptr[c + 1];
@@ -66,12 +69,13 @@ static sf_status check_curves(const sf_foam_card *foam, sf_error *err) {
         if (c > 0 && foam->curve_rate[c] <= foam->curve_rate[c - 1])
             return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld: rates must ascend", (long long)c);
         if (foam->curve_strain[first] != 0 || foam->curve_stress[first] != 0)
-            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not start at (0, 0)", (long long)c);
+            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not start at (0, 0)",
+                           (long long)c);
         for (int64_t k = first + 1; k < last; k++)
             if (foam->curve_strain[k] <= foam->curve_strain[k - 1] ||
                 foam->curve_stress[k] < foam->curve_stress[k - 1] || foam->curve_strain[k] >= 1)
-                return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not rise at strain %g", (long long)c,
-                               foam->curve_strain[k]);
+                return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not rise at strain %g",
+                               (long long)c, foam->curve_strain[k]);
     }
     return SF_OK;
 }
@@ -123,17 +127,17 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
 }
 
 static sf_status check_mesh(const sf_model *m, sf_error *err) {
-    if (check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count, false,
-                  err) != SF_OK)
+    if (check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count,
+                  false, err) != SF_OK)
         return err->status;
     for (int64_t c = 0; c < m->cell_count; c++) {
-        static const int vertices[] = {[SF_CELL_TETRAHEDRON] = 4, [SF_CELL_PYRAMID] = 5, [SF_CELL_PRISM] = 6,
-                                       [SF_CELL_HEXAHEDRON] = 8};
+        static const int vertices[] = {
+            [SF_CELL_TETRAHEDRON] = 4, [SF_CELL_PYRAMID] = 5, [SF_CELL_PRISM] = 6, [SF_CELL_HEXAHEDRON] = 8};
         uint8_t type = m->cell_type[c];
         if (type < SF_CELL_TETRAHEDRON || type > SF_CELL_HEXAHEDRON ||
             m->cell_ptr[c + 1] - m->cell_ptr[c] != vertices[type])
-            return SF_FAIL(err, SF_ERR_MODEL, "background cell %lld has type %d and %lld vertices", (long long)c, type,
-                           (long long)(m->cell_ptr[c + 1] - m->cell_ptr[c]));
+            return SF_FAIL(err, SF_ERR_MODEL, "background cell %lld has type %d and %lld vertices",
+                           (long long)c, type, (long long)(m->cell_ptr[c + 1] - m->cell_ptr[c]));
     }
     for (int64_t k = 0; k < 3 * m->surface_triangle_count; k++)
         if (m->surface_triangle[k] < 0 || m->surface_triangle[k] >= m->surface_node_count)
@@ -151,13 +155,15 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return err->status;
     for (int64_t i = 0; i < m->node_count; i++)
         if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0))
-            return SF_FAIL(err, SF_ERR_MODEL, "node %lld has volume %g m3, mass %g kg, spacing %g m: all must be > 0",
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "node %lld has volume %g m3, mass %g kg, spacing %g m: all must be > 0",
                            (long long)i, m->volume[i], m->mass[i], m->spacing[i]);
-    if (check_csr("smoothing domains", m->node_count, m->domain_nnz, m->domain_ptr, m->domain_node, m->node_count,
-                  true, err) != SF_OK ||
-        check_csr("shape functions", m->node_count, m->phi_nnz, m->phi_ptr, m->phi_node, m->node_count, true, err) !=
+    if (check_csr("smoothing domains", m->node_count, m->domain_nnz, m->domain_ptr, m->domain_node,
+                  m->node_count, true, err) != SF_OK ||
+        check_csr("shape functions", m->node_count, m->phi_nnz, m->phi_ptr, m->phi_node, m->node_count, true,
+                  err) != SF_OK ||
+        check_csr("edges", m->node_count, m->edge_nnz, m->edge_ptr, m->edge_node, m->node_count, true, err) !=
             SF_OK ||
-        check_csr("edges", m->node_count, m->edge_nnz, m->edge_ptr, m->edge_node, m->node_count, true, err) != SF_OK ||
         check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
         check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK)
         return err->status;

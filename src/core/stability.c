@@ -22,7 +22,8 @@ sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err
             if (!(length > 0))
                 continue;
             double weight = share[node] / (model->volume[l] * length * model->mass[node]);
-            const double outer[6] = {b[0] * b[0], b[1] * b[1], b[2] * b[2], b[0] * b[1], b[1] * b[2], b[0] * b[2]};
+            const double outer[6] = {b[0] * b[0], b[1] * b[1], b[2] * b[2],
+                                     b[0] * b[1], b[1] * b[2], b[0] * b[2]};
             for (int q = 0; q < 6; q++)
                 sum[q] += weight * outer[q];
         }

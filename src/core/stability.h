@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The guaranteed bound on the highest frequency of the cloud (theory, section "Time step").
  *
- * Every smoothing domain L is given a share theta_IL m_I of its nodes' masses, with sum_L theta_IL = 1. Then the largest
- * eigenvalue of the whole, omega^2, is at most max_L a_L c_L, where a_L bounds the tangent of the domain (Pa) and
- *     c_L = V_L * largest eigenvalue of sum_J B_J B_J^T / (theta_JL m_J).
- * The bound costs one pass over the domains a step, holds for any field of tangents, and with damping
- * eta_L (Pa s) gives the time step from c_L (a_L dt^2 + 2 eta_L dt) <= 4. */
+ * Every smoothing domain L is given a share theta_IL m_I of its nodes' masses, with sum_L theta_IL = 1. Then
+ * the largest eigenvalue of the whole, omega^2, is at most max_L a_L c_L, where a_L bounds the tangent of the
+ * domain (Pa) and c_L = V_L * largest eigenvalue of sum_J B_J B_J^T / (theta_JL m_J). The bound costs one
+ * pass over the domains a step, holds for any field of tangents, and with damping eta_L (Pa s) gives the time
+ * step from c_L (a_L dt^2 + 2 eta_L dt) <= 4. */
 #ifndef SF_CORE_STABILITY_H
 #define SF_CORE_STABILITY_H
 

@@ -54,7 +54,8 @@ sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
     errno = 0;
     hid_t id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     if (id < 0)
-        return SF_FAIL(err, SF_ERR_IO, "cannot create %s: %s", path, errno ? strerror(errno) : "HDF5 refuses it");
+        return SF_FAIL(err, SF_ERR_IO, "cannot create %s: %s", path,
+                       errno ? strerror(errno) : "HDF5 refuses it");
     return wrap(id, path, file, err);
 }
 
@@ -67,7 +68,8 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "%s is not an HDF5 file", path);
     hid_t id = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (id < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: it is damaged or another program is writing it", path);
+        return SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: it is damaged or another program is writing it",
+                       path);
     return wrap(id, path, file, err);
 }
 
@@ -82,7 +84,8 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
         return SF_OK;
     sf_status status = SF_OK;
     if (H5Fclose((*file)->id) < 0)
-        status = SF_FAIL(err, SF_ERR_IO, "closing %s failed: its last data may be missing (disk full?)", (*file)->path);
+        status = SF_FAIL(err, SF_ERR_IO, "closing %s failed: its last data may be missing (disk full?)",
+                         (*file)->path);
     free((*file)->path);
     free(*file);
     *file = NULL;
@@ -115,10 +118,11 @@ int64_t sf_h5_group_size(const sf_h5 *file, const char *path) {
 
 sf_status sf_h5_group_member(const sf_h5 *file, const char *path, int64_t index, char *name, size_t size,
                              sf_error *err) {
-    ssize_t length = H5Lget_name_by_idx(file->id, path, H5_INDEX_NAME, H5_ITER_INC, (hsize_t)index, name, size,
-                                        H5P_DEFAULT);
+    ssize_t length = H5Lget_name_by_idx(file->id, path, H5_INDEX_NAME, H5_ITER_INC, (hsize_t)index, name,
+                                        size, H5P_DEFAULT);
     if (length < 0 || (size_t)length >= size)
-        return SF_FAIL(err, SF_ERR_IO, "%s: group %s has no readable member %lld", file->path, path, (long long)index);
+        return SF_FAIL(err, SF_ERR_IO, "%s: group %s has no readable member %lld", file->path, path,
+                       (long long)index);
     return SF_OK;
 }
 
@@ -170,7 +174,8 @@ sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int 
     hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
     hid_t set = -1;
     sf_status status = create_dataset(file, info, native_type(type), space, H5P_DEFAULT, &set, err);
-    if (status == SF_OK && !empty && H5Dwrite(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+    if (status == SF_OK && !empty &&
+        H5Dwrite(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
         status = SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
     if (set >= 0)
         H5Dclose(set);
@@ -200,7 +205,8 @@ sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text
 
 static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, sf_error *err) {
     if (!sf_h5_exists(file, path))
-        return SF_FAIL(err, SF_ERR_IO, "%s has no dataset %s: it is incomplete or not of this kind", file->path, path);
+        return SF_FAIL(err, SF_ERR_IO, "%s has no dataset %s: it is incomplete or not of this kind",
+                       file->path, path);
     *set = H5Dopen2(file->id, path, H5P_DEFAULT);
     if (*set < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s is not a dataset", file->path, path);
@@ -221,16 +227,16 @@ static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, int
     *count = 1;
     for (int k = 0; k < rank; k++) {
         if (dims[k] >= 0 && (hsize_t)dims[k] != extent[k])
-            return SF_FAIL(err, SF_ERR_IO, "%s: %s has extent %llu in dimension %d, expected %lld", file->path, path,
-                           (unsigned long long)extent[k], k, (long long)dims[k]);
+            return SF_FAIL(err, SF_ERR_IO, "%s: %s has extent %llu in dimension %d, expected %lld",
+                           file->path, path, (unsigned long long)extent[k], k, (long long)dims[k]);
         dims[k] = (int64_t)extent[k];
         *count *= extent[k];
     }
     return SF_OK;
 }
 
-sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims, void **data,
-                     sf_error *err) {
+sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
+                     void **data, sf_error *err) {
     *data = NULL;
     hid_t set = -1, stored = -1;
     unsigned long count = 0;
@@ -297,7 +303,8 @@ sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_e
     return err->status;
 }
 
-sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text, sf_error *err) {
+sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text,
+                              sf_error *err) {
     hid_t id = H5Oopen(file->id, object, H5P_DEFAULT);
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s has no object %s", file->path, object);
@@ -306,15 +313,16 @@ sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name,
     return status;
 }
 
-static sf_status open_attribute(const sf_h5 *file, const char *object, const char *name, hid_t *id, sf_error *err) {
+static sf_status open_attribute(const sf_h5 *file, const char *object, const char *name, hid_t *id,
+                                sf_error *err) {
     *id = H5Aopen_by_name(file->id, object, name, H5P_DEFAULT, H5P_DEFAULT);
     if (*id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s has no attribute %s", file->path, object, name);
     return SF_OK;
 }
 
-sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char *name, char *text, size_t size,
-                              sf_error *err) {
+sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char *name, char *text,
+                              size_t size, sf_error *err) {
     hid_t id = -1;
     if (open_attribute(file, object, name, &id, err) != SF_OK)
         return err->status;
@@ -330,7 +338,8 @@ sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char 
     return err->status;
 }
 
-sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value, sf_error *err) {
+sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value,
+                                  sf_error *err) {
     hid_t id = H5Oopen(file->id, object, H5P_DEFAULT);
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s has no object %s", file->path, object);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The only door to HDF5. Every dataset carries the attributes `units` (UDUNITS-2 spelling, "1" if dimensionless) and
- * `description`. Numbers are stored in the native types named by sf_h5_type. All functions record failures in `err`
- * and return its status; a failing read returns no buffer. */
+/* The only door to HDF5. Every dataset carries the attributes `units` (UDUNITS-2 spelling, "1" if
+ * dimensionless) and `description`. Numbers are stored in the native types named by sf_h5_type. All functions
+ * record failures in `err` and return its status; a failing read returns no buffer. */
 #ifndef SF_IO_H5_H
 #define SF_IO_H5_H
 
@@ -21,8 +21,8 @@ typedef struct sf_h5_info {
     const char *description; /* one phrase, with the shape's meaning */
 } sf_h5_info;
 
-/* Creates (truncating) or opens read-only. `*file` is owned by the caller: release with sf_h5_close. Opening a file
- * that is missing, unreadable or not HDF5 is SF_ERR_IO with a sentence that says which. */
+/* Creates (truncating) or opens read-only. `*file` is owned by the caller: release with sf_h5_close. Opening
+ * a file that is missing, unreadable or not HDF5 is SF_ERR_IO with a sentence that says which. */
 sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err);
 sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
 /* Brings everything written so far to the file system, so that a reader finds a consistent file. */
@@ -32,9 +32,11 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err);
 
 /* True if a group or dataset of this path exists. */
 bool sf_h5_exists(const sf_h5 *file, const char *path);
-/* Number of members of a group (-1 if there is no such group), and the name of member `index` in name order. */
+/* Number of members of a group (-1 if there is no such group), and the name of member `index` in name order.
+ */
 int64_t sf_h5_group_size(const sf_h5 *file, const char *path);
-sf_status sf_h5_group_member(const sf_h5 *file, const char *path, int64_t index, char *name, size_t size, sf_error *err);
+sf_status sf_h5_group_member(const sf_h5 *file, const char *path, int64_t index, char *name, size_t size,
+                             sf_error *err);
 
 /* Writes a whole dataset, row-major `dims[rank]`. Rank 0 is a scalar. */
 sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank, const int64_t *dims,
@@ -42,20 +44,22 @@ sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int 
 sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, sf_error *err);
 sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text, sf_error *err);
 
-/* Reads a whole dataset. `dims[rank]`: on entry the expected extent or -1 for any, on return the extent found. The
- * rank, every given extent and the type class must agree with the file. `*data` comes from sf_alloc, owned by the
- * caller. No allocation is larger than the dataset's stored extent. */
-sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims, void **data,
-                     sf_error *err);
+/* Reads a whole dataset. `dims[rank]`: on entry the expected extent or -1 for any, on return the extent
+ * found. The rank, every given extent and the type class must agree with the file. `*data` comes from
+ * sf_alloc, owned by the caller. No allocation is larger than the dataset's stored extent. */
+sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
+                     void **data, sf_error *err);
 sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err);
 /* `*text` is NUL-terminated, from malloc, owned by the caller. */
 sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_error *err);
 
 /* Attributes of an existing group or dataset ("/" for the file). */
-sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text, sf_error *err);
-sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char *name, char *text, size_t size,
+sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text,
                               sf_error *err);
-sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value, sf_error *err);
+sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char *name, char *text,
+                              size_t size, sf_error *err);
+sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value,
+                                  sf_error *err);
 sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const char *name, int64_t *value,
                                   sf_error *err);
 

@@ -31,14 +31,16 @@ static sf_status write_fields(sf_h5 *h5, const sf_model *model, sf_error *err) {
             sf_h5_write(h5, &info, h5_type(field[k].type), 0, NULL, member, err);
             continue;
         }
-        int64_t dims[2] = {*(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra, field[k].columns};
+        int64_t dims[2] = {*(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra,
+                           field[k].columns};
         sf_h5_write(h5, &info, h5_type(field[k].type), field[k].columns > 1 ? 2 : 1, dims,
                     *(void *const *)member, err);
     }
     return err->status;
 }
 
-sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance, sf_error *err) {
+sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance,
+                         sf_error *err) {
     char partial[4096];
     sf_h5 *h5 = NULL;
     if ((size_t)snprintf(partial, sizeof partial, "%s.partial", path) >= sizeof partial)
@@ -69,7 +71,8 @@ static sf_status read_field(const sf_h5 *h5, const sf_model_field *field, sf_mod
     if (rows < 0)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: its count is negative", field->path);
     int64_t dims[2] = {rows + field->rows_extra, field->columns};
-    sf_status status = sf_h5_read(h5, field->path, h5_type(field->type), field->columns > 1 ? 2 : 1, dims, &data, err);
+    sf_status status =
+        sf_h5_read(h5, field->path, h5_type(field->type), field->columns > 1 ? 2 : 1, dims, &data, err);
     *(void **)(base + field->offset) = data;
     return status;
 }
@@ -88,7 +91,8 @@ sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_erro
     if (status == SF_OK)
         status = sf_model_check(model, &inner);
     if (status != SF_OK) {
-        SF_FAIL(err, inner.status, inner.status == SF_ERR_MODEL ? "%.200s: %.800s" : "%.0s%.800s", path, inner.text);
+        SF_FAIL(err, inner.status, inner.status == SF_ERR_MODEL ? "%.200s: %.800s" : "%.0s%.800s", path,
+                inner.text);
         sf_model_free(model);
     }
     if (status == SF_OK && file)

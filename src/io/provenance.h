@@ -19,7 +19,8 @@ typedef struct sf_provenance {
 } sf_provenance;
 
 /* Writes /provenance and the root attributes format and format_version. */
-sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenance *provenance, sf_error *err);
+sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenance *provenance,
+                              sf_error *err);
 
 /* Refuses a file that is not of `format` or is of a newer version; `path` is for the sentence. */
 sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *format, sf_error *err);
@@ -27,7 +28,8 @@ sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *f
 /* Copies every text of `from`:/provenance to `to`:/provenance/model. */
 sf_status sf_provenance_copy(const sf_h5 *from, sf_h5 *to, sf_error *err);
 
-/* The words of a command joined by blanks, quoted where a shell would need it; from malloc, owned by the caller. */
+/* The words of a command joined by blanks, quoted where a shell would need it; from malloc, owned by the
+ * caller. */
 char *sf_command_line(int argc, char *const *argv);
 
 #endif

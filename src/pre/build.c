@@ -59,7 +59,8 @@ static void take_domains(sf_domains *d, sf_dual *dual, sf_model *m, sf_build_rep
 }
 
 /* Spacing, supports, domains, masses; the mesh is whole until take_mesh. */
-static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_build_report *report, sf_error *err) {
+static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_build_report *report,
+                             sf_error *err) {
     sf_dual dual = {0};
     sf_domains domains = {0};
     int64_t n = mesh->node_count;
@@ -76,8 +77,8 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_bu
     for (int64_t i = 0; i < n; i++)
         m->support[i] = c->support_ratio * m->spacing[i];
     if (sf_domains_build(mesh, &dual, c->condition_limit, m->support, &domains, err) != SF_OK ||
-        sf_invariants_measure(mesh, &dual, &domains, m->spacing, report->mesh_volume, &report->invariants, err) !=
-            SF_OK ||
+        sf_invariants_measure(mesh, &dual, &domains, m->spacing, report->mesh_volume, &report->invariants,
+                              err) != SF_OK ||
         sf_invariants_check(&report->invariants, err) != SF_OK)
         goto done;
     for (int64_t i = 0; i < n; i++)
@@ -98,9 +99,10 @@ static const sf_node_set *need_set(const sf_mesh *mesh, const char *key, const c
     char known[512] = "";
     size_t used = 0;
     for (int k = 0; k < mesh->set_count && used < sizeof known; k++)
-        used += (size_t)snprintf(known + used, sizeof known - used, "%s\"%s\"", k ? ", " : "", mesh->set[k].name);
-    SF_FAIL(err, SF_ERR_INPUT, "%s names the surface group \"%s\", which the pad does not have; it has %s", key, name,
-            mesh->set_count ? known : "none");
+        used +=
+            (size_t)snprintf(known + used, sizeof known - used, "%s\"%s\"", k ? ", " : "", mesh->set[k].name);
+    SF_FAIL(err, SF_ERR_INPUT, "%s names the surface group \"%s\", which the pad does not have; it has %s",
+            key, name, mesh->set_count ? known : "none");
     return NULL;
 }
 
@@ -118,7 +120,8 @@ static int plane_axis(const sf_model *m, const sf_node_set *set) {
     return -1;
 }
 
-static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *m, uint8_t *mask, sf_error *err) {
+static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *m, uint8_t *mask,
+                               sf_error *err) {
     m->symmetry_factor = 1;
     int seen = 0;
     for (int g = 0; g < c->symmetry_count; g++) {
@@ -129,10 +132,11 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
             return err->status;
         int axis = plane_axis(m, set);
         if (axis != 0 && axis != 1)
-            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is not a plane normal to x or y", set->name);
+            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is not a plane normal to x or y",
+                           set->name);
         if (seen & (1 << axis))
-            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is a second plane normal to %c", set->name,
-                           'x' + axis);
+            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is a second plane normal to %c",
+                           set->name, 'x' + axis);
         seen |= 1 << axis;
         m->symmetry_factor *= 2;
         for (int64_t k = 0; k < set->count; k++)
@@ -142,15 +146,16 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
 }
 
 /* Surfaces on a smooth anvil: held along their normal. */
-static sf_status mark_sliding(const sf_case *c, const sf_mesh *mesh, const sf_model *m, uint8_t *mask, uint8_t *base,
-                              sf_error *err) {
+static sf_status mark_sliding(const sf_case *c, const sf_mesh *mesh, const sf_model *m, uint8_t *mask,
+                              uint8_t *base, sf_error *err) {
     for (int g = 0; g < c->sliding_count; g++) {
         const sf_node_set *set = need_set(mesh, "pad.sliding", c->sliding_group[g], err);
         if (!set)
             return err->status;
         int axis = plane_axis(m, set);
         if (axis < 0)
-            return SF_FAIL(err, SF_ERR_INPUT, "the sliding group \"%s\" is not a plane normal to x, y or z", set->name);
+            return SF_FAIL(err, SF_ERR_INPUT, "the sliding group \"%s\" is not a plane normal to x, y or z",
+                           set->name);
         for (int64_t k = 0; k < set->count; k++) {
             mask[set->node[k]] |= (uint8_t)(1 << axis);
             base[set->node[k]] = 1;
@@ -208,8 +213,8 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     double distance = 0;
     m->missile = c->missile_card;
     if (sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
-        sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance, err) !=
-            SF_OK)
+        sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
+                            err) != SF_OK)
         return err->status;
     double travel = distance - m->missile.gap;
     for (int64_t k = 0; k < 3 * surface->node_count; k++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a case, a mesh and a missile surface to the model: cloud, supports, smoothing domains, masses, constraints,
- * contact points, missile. */
+/* From a case, a mesh and a missile surface to the model: cloud, supports, smoothing domains, masses,
+ * constraints, contact points, missile. */
 #ifndef SF_PRE_BUILD_H
 #define SF_PRE_BUILD_H
 
@@ -13,9 +13,9 @@
 /* What the building found out, for the table that softfall-pre prints. */
 typedef struct sf_build_report {
     char mesh_hash[17];
-    int64_t cells[10];       /* by SF_CELL_* */
+    int64_t cells[10]; /* by SF_CELL_* */
     int64_t orphan_count;
-    double mesh_volume;      /* m3 */
+    double mesh_volume; /* m3 */
     double largest_enlargement;
     int64_t enlarged_count;
     double worst_condition;
@@ -24,9 +24,10 @@ typedef struct sf_build_report {
     sf_invariants invariants;
 } sf_build_report;
 
-/* Builds the model. The mesh is reordered and its cells move into the model; the case's curves and the surface's arrays
- * move as well (the sources stay valid for their free functions). On failure `*model` is empty. */
-sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *model, sf_build_report *report,
-                         sf_error *err);
+/* Builds the model. The mesh is reordered and its cells move into the model; the case's curves and the
+ * surface's arrays move as well (the sources stay valid for their free functions). On failure `*model` is
+ * empty. */
+sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *model,
+                         sf_build_report *report, sf_error *err);
 
 #endif

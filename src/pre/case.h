@@ -10,7 +10,12 @@
 
 enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
 
-enum { SF_CASE_NAME_SIZE = 128, SF_CASE_MAX_GROUPS = 16, SF_CASE_MAX_PARAMETERS = 64, SF_CASE_MAX_TIMES = 256 };
+enum {
+    SF_CASE_NAME_SIZE = 128,
+    SF_CASE_MAX_GROUPS = 16,
+    SF_CASE_MAX_PARAMETERS = 64,
+    SF_CASE_MAX_TIMES = 256
+};
 
 /* A variable of a .geo file set by the case; plain numbers, in the geometry's own length unit. */
 typedef struct sf_geo_parameter {
@@ -37,7 +42,7 @@ typedef struct sf_case {
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */
     int fixed_count;                       /* physical surface groups held in all components */
     char fixed_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
-    int sliding_count;                 /* plane physical surface groups held along their normal */
+    int sliding_count; /* plane physical surface groups held along their normal */
     char sliding_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     int symmetry_count; /* physical surface groups that are symmetry planes; planes absent from the geometry
                            are allowed only if the key was not given */

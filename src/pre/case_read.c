@@ -265,7 +265,8 @@ static sf_status check_case(sf_case_reader *reader, sf_error *err) {
             "%s: geometry.missile_parameters are given but no geometry.missile_file that they belong to",
             where_is(reader, "geometry.missile_parameters", where));
     if (c->fixed_count + c->sliding_count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
                        where_is(reader, "pad.fixed", where));
     if (check_densification(reader, err) != SF_OK || check_direction(reader, err) != SF_OK)
         return err->status;

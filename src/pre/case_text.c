@@ -94,7 +94,8 @@ static sf_status copy_text(const char *path, const char *from, int line, const c
     sf_status status = SF_OK;
     for (int number = 1; status == SF_OK && (length = getline(&text, &size, in)) >= 0; number++) {
         if (strlen(text) != (size_t)length) {
-            status = SF_FAIL(err, SF_ERR_INPUT, "%s%s:%d: a zero byte: this is not a text file", where, path, number);
+            status = SF_FAIL(err, SF_ERR_INPUT, "%s%s:%d: a zero byte: this is not a text file", where, path,
+                             number);
             break;
         }
         copy = strdup(text);

@@ -9,7 +9,7 @@ typedef struct sf_cell_topology {
     int faces;
     int edge[12][2];
     int face_size[6];
-    int face[6][4];      /* vertices, counter-clockwise seen from outside */
+    int face[6][4];       /* vertices, counter-clockwise seen from outside */
     int edge_face[12][2]; /* the face that runs along edge (a, b) from a to b, and the one from b to a */
 } sf_cell_topology;
 

@@ -48,7 +48,8 @@ sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
     for (int64_t i = 0; i < n; i++) {
         order[i].node = (int32_t)i;
         for (int c = 0; c < 3; c++)
-            order[i].key |= spread((uint64_t)((mesh->position[3 * i + c] - low[c]) / extent * 2097151.0)) << c;
+            order[i].key |= spread((uint64_t)((mesh->position[3 * i + c] - low[c]) / extent * 2097151.0))
+                            << c;
     }
     qsort(order, (size_t)n, sizeof *order, by_key);
     for (int64_t i = 0; i < n; i++) {

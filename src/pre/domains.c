@@ -14,9 +14,9 @@ static const double ENLARGEMENT = 1.15;
 /* phi_J integrated over the facets of one edge, for every J that reaches them. */
 typedef struct edge_integral {
     int count;
-    int32_t *node;  /* [count] ascending; one block with sum */
-    double *sum;    /* [count][3] m2, from the low node to the high node */
-    double flux;    /* m3, integral of X . N / 3 */
+    int32_t *node; /* [count] ascending; one block with sum */
+    double *sum;   /* [count][3] m2, from the low node to the high node */
+    double flux;   /* m3, integral of X . N / 3 */
 } edge_integral;
 
 typedef struct builder {
@@ -71,7 +71,8 @@ static int64_t edge_candidates(const builder *b, workspace *w, int64_t e) {
         sf_dual_facet(b->mesh, &b->dual->use[u], t);
         for (int s = 0; s < 2; s++) {
             double *c = t[s].centroid;
-            reach = fmax(reach, sqrt((c[0] - middle[0]) * (c[0] - middle[0]) + (c[1] - middle[1]) * (c[1] - middle[1]) +
+            reach = fmax(reach, sqrt((c[0] - middle[0]) * (c[0] - middle[0]) +
+                                     (c[1] - middle[1]) * (c[1] - middle[1]) +
                                      (c[2] - middle[2]) * (c[2] - middle[2])));
         }
     }
@@ -205,7 +206,8 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
             if (b->poor[i] && round == MAX_ENLARGEMENTS) {
                 const double *x = &b->mesh->position[3 * i];
                 SF_FAIL(err, SF_ERR_MODEL,
-                        "the shape functions near (%.6g, %.6g, %.6g) m stay ill-conditioned (above %.3g) although "
+                        "the shape functions near (%.6g, %.6g, %.6g) m stay ill-conditioned (above %.3g) "
+                        "although "
                         "the support was enlarged %.2f times: the cloud is too flat or too sparse there",
                         x[0], x[1], x[2], b->condition_limit, support[i] / first[i]);
                 break;
@@ -241,7 +243,8 @@ static sf_status shape_at_nodes(builder *b, const double *support, sf_error *err
         if (!evaluate_node(b, w, i)) /* integrate_all found it good with the same supports */
             SF_FAIL(err, SF_ERR_MODEL, "the shape functions at node %lld cannot be evaluated", (long long)i);
         else if (used + w->point.count > capacity)
-            SF_FAIL(err, SF_ERR_MODEL, "more than %lld nodes on average reach a node: support_ratio is too large",
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "more than %lld nodes on average reach a node: support_ratio is too large",
                     (long long)(capacity / n));
         else {
             memcpy(&out->phi_node[used], w->point.node, (size_t)w->point.count * sizeof *out->phi_node);
@@ -258,8 +261,9 @@ static sf_status shape_at_nodes(builder *b, const double *support, sf_error *err
 }
 
 /* Calls `add` for every contribution phi_J N of one boundary face's corner. */
-static void boundary_corner(const sf_mesh *mesh, const sf_boundary_face *face, int corner, const sf_domains *d,
-                            double *flux, void (*add)(void *, int32_t, const double[3]), void *target) {
+static void boundary_corner(const sf_mesh *mesh, const sf_boundary_face *face, int corner,
+                            const sf_domains *d, double *flux, void (*add)(void *, int32_t, const double[3]),
+                            void *target) {
     sf_facet_triangle t[2];
     double weight[2][4];
     sf_dual_boundary(mesh, face, corner, t, weight);
@@ -280,8 +284,8 @@ static void boundary_corner(const sf_mesh *mesh, const sf_boundary_face *face, i
 typedef struct row_sum {
     int32_t *slot;
     int64_t count;
-    int32_t *node;   /* [n] */
-    double *sum;     /* [n][3] */
+    int32_t *node; /* [n] */
+    double *sum;   /* [n][3] */
 } row_sum;
 
 static void row_add(void *target, int32_t node, const double part[3]) {
@@ -319,8 +323,8 @@ static int64_t *list_corners(const builder *b, int64_t **corner, sf_error *err) 
     return ptr;
 }
 
-static void domain_row(const builder *b, const int64_t *corner_ptr, const int64_t *corner, int64_t i, row_sum *row,
-                       double *volume) {
+static void domain_row(const builder *b, const int64_t *corner_ptr, const int64_t *corner, int64_t i,
+                       row_sum *row, double *volume) {
     row->count = 0;
     *volume = 0;
     row_add(row, (int32_t)i, (const double[3]){0, 0, 0});
@@ -330,10 +334,12 @@ static void domain_row(const builder *b, const int64_t *corner_ptr, const int64_
         *volume += sign * edge->flux;
         for (int p = 0; p < edge->count; p++)
             row_add(row, edge->node[p],
-                    (const double[3]){sign * edge->sum[3 * p], sign * edge->sum[3 * p + 1], sign * edge->sum[3 * p + 2]});
+                    (const double[3]){sign * edge->sum[3 * p], sign * edge->sum[3 * p + 1],
+                                      sign * edge->sum[3 * p + 2]});
     }
     for (int64_t k = corner_ptr[i]; k < corner_ptr[i + 1]; k++)
-        boundary_corner(b->mesh, &b->dual->face[corner[k] / 4], (int)(corner[k] % 4), b->out, volume, row_add, row);
+        boundary_corner(b->mesh, &b->dual->face[corner[k] / 4], (int)(corner[k] % 4), b->out, volume, row_add,
+                        row);
 }
 
 /* Writes row i (sorted, divided by the volume) or, when `node` is NULL, only clears the slots. */
@@ -369,8 +375,9 @@ static sf_status assemble_rows(builder *b, sf_error *err) {
         out->ptr[i + 1] = out->ptr[i] + row.count;
         if (!(out->volume[i] > 0)) {
             const double *x = &b->mesh->position[3 * i];
-            SF_FAIL(err, SF_ERR_MODEL, "the smoothing domain of the node at (%.6g, %.6g, %.6g) m has volume %.3g m3",
-                    x[0], x[1], x[2], out->volume[i]);
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "the smoothing domain of the node at (%.6g, %.6g, %.6g) m has volume %.3g m3", x[0], x[1],
+                    x[2], out->volume[i]);
             goto done;
         }
     }
@@ -392,7 +399,10 @@ done:
 sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double condition_limit, double *support,
                            sf_domains *out, sf_error *err) {
     memset(out, 0, sizeof *out);
-    builder b = {.mesh = mesh, .dual = dual, .cloud = {mesh->position, support}, .condition_limit = condition_limit,
+    builder b = {.mesh = mesh,
+                 .dual = dual,
+                 .cloud = {mesh->position, support},
+                 .condition_limit = condition_limit,
                  .out = out};
     b.edge = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge, "edge integrals");
     b.poor = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.poor, "node marks");
@@ -425,7 +435,8 @@ static void sum_add(void *target, int32_t node, const double part[3]) {
         sum[3 * node + c] += part[c];
 }
 
-void sf_domains_boundary_integral(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *domains, double *sum) {
+void sf_domains_boundary_integral(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *domains,
+                                  double *sum) {
     double flux = 0;
     for (int64_t f = 0; f < dual->face_count; f++)
         for (int v = 0; v < dual->face[f].size; v++)

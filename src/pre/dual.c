@@ -112,15 +112,16 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
         while (end < count && memcmp(raw[end].key, raw[k].key, sizeof raw[k].key) == 0)
             end++;
         if (end - k > 2) {
-            SF_FAIL(err, SF_ERR_MODEL, "the mesh has a face that %lld cells share (cells %d, %d, %d): parts overlap",
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "the mesh has a face that %lld cells share (cells %d, %d, %d): parts overlap",
                     (long long)(end - k), raw[k].cell, raw[k + 1].cell, raw[k + 2].cell);
             break;
         }
         if (end - k == 1) {
             sf_boundary_face *face = &dual->face[dual->face_count++];
             const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[raw[k].cell]);
-            *face = (sf_boundary_face){raw[k].cell, raw[k].local, (int8_t)topology->face_size[raw[k].local],
-                                       {-1, -1, -1, -1}};
+            *face = (sf_boundary_face){
+                raw[k].cell, raw[k].local, (int8_t)topology->face_size[raw[k].local], {-1, -1, -1, -1}};
             for (int p = 0; p < face->size; p++)
                 face->node[p] = mesh->cell_node[mesh->cell_ptr[face->cell] + topology->face[face->local][p]];
         }
@@ -133,15 +134,18 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
 static sf_status build_adjacency(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t n = mesh->node_count;
     dual->edge_ptr = sf_alloc(err, (unsigned long)n + 2, sizeof *dual->edge_ptr, "edge adjacency");
-    dual->edge_node = sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_node, "edge adjacency");
-    dual->edge_id = sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_id, "edge adjacency");
+    dual->edge_node =
+        sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_node, "edge adjacency");
+    dual->edge_id =
+        sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_id, "edge adjacency");
     if (err->status != SF_OK)
         return err->status;
     for (int64_t k = 0; k < 2 * dual->edge_count; k++)
         dual->edge_ptr[dual->edge[k] + 2]++;
     for (int64_t i = 0; i < n; i++)
         dual->edge_ptr[i + 2] += dual->edge_ptr[i + 1];
-    /* Edges ascend by (low, high): taking high ends first fills each row with lower neighbours first, in order. */
+    /* Edges ascend by (low, high): taking high ends first fills each row with lower neighbours first, in
+     * order. */
     for (int end = 1; end >= 0; end--)
         for (int64_t e = 0; e < dual->edge_count; e++) {
             int64_t slot = dual->edge_ptr[dual->edge[2 * e + end] + 1]++;
@@ -181,7 +185,8 @@ static void triangle(const double a[3], const double b[3], const double c[3], sf
         out->area[k] = 0.5 * (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
 }
 
-static void mean_of(const sf_mesh *mesh, int count, const int32_t *cell_node, const int *local, double out[3]) {
+static void mean_of(const sf_mesh *mesh, int count, const int32_t *cell_node, const int *local,
+                    double out[3]) {
     out[0] = out[1] = out[2] = 0;
     for (int k = 0; k < count; k++)
         for (int c = 0; c < 3; c++)

@@ -7,7 +7,8 @@
 static const double INVARIANT_BOUND = 1e-10;
 
 /* Both completeness conditions of one domain, with coordinates taken from the node itself. */
-static void measure_domain(const sf_mesh *mesh, const sf_domains *d, int64_t i, double spacing, sf_invariants *out) {
+static void measure_domain(const sf_mesh *mesh, const sf_domains *d, int64_t i, double spacing,
+                           sf_invariants *out) {
     const double *x = &mesh->position[3 * i];
     double unity[3] = {0}, linear[3][3] = {{0}};
     for (int64_t k = d->ptr[i]; k < d->ptr[i + 1]; k++)
@@ -23,7 +24,8 @@ static void measure_domain(const sf_mesh *mesh, const sf_domains *d, int64_t i, 
     }
 }
 
-static void measure_shape(const sf_mesh *mesh, const sf_domains *d, int64_t i, double spacing, sf_invariants *out) {
+static void measure_shape(const sf_mesh *mesh, const sf_domains *d, int64_t i, double spacing,
+                          sf_invariants *out) {
     double sum = -1, moment[3] = {0};
     for (int64_t k = d->phi_ptr[i]; k < d->phi_ptr[i + 1]; k++) {
         sum += d->phi_value[k];
@@ -36,8 +38,8 @@ static void measure_shape(const sf_mesh *mesh, const sf_domains *d, int64_t i, d
         out->shape = fmax(out->shape, fabs(moment[c]) / spacing);
 }
 
-sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *d, const double *spacing,
-                                double volume, sf_invariants *out, sf_error *err) {
+sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *d,
+                                const double *spacing, double volume, sf_invariants *out, sf_error *err) {
     int64_t n = mesh->node_count;
     *out = (sf_invariants){0};
     double *balance = sf_alloc(err, 3 * (unsigned long)n, sizeof *balance, "invariants"), total = 0;
@@ -64,12 +66,16 @@ sf_status sf_invariants_check(const sf_invariants *v, sf_error *err) {
         const char *name;
         double value;
     } item[] = {
-        {"sum of B", v->unity},          {"sum of X B", v->linear},    {"sum of V", v->volume},
-        {"sum of V B against the boundary", v->telescope}, {"completeness of phi", v->shape},
+        {"sum of B", v->unity},
+        {"sum of X B", v->linear},
+        {"sum of V", v->volume},
+        {"sum of V B against the boundary", v->telescope},
+        {"completeness of phi", v->shape},
     };
     for (size_t k = 0; k < sizeof item / sizeof item[0]; k++)
         if (!(item[k].value <= INVARIANT_BOUND))
-            return SF_FAIL(err, SF_ERR_MODEL, "the discretisation breaks an invariant: %s is off by %.3g (bound %.0e)",
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "the discretisation breaks an invariant: %s is off by %.3g (bound %.0e)",
                            item[k].name, item[k].value, INVARIANT_BOUND);
     return SF_OK;
 }

@@ -7,11 +7,11 @@
 #include "pre/domains.h"
 
 typedef struct sf_invariants {
-    double unity;      /* largest |sum_J B_J| h over the domains */
-    double linear;     /* largest entry of |sum_J X_J B_J^T - I| over the domains */
-    double volume;     /* |sum V / mesh volume - 1| */
-    double telescope;  /* largest |sum_L V_L B_I^L - boundary integral of phi_I N| / h^2 over the nodes */
-    double shape;      /* largest |sum phi - 1| and |sum phi X - X| / h at the nodes */
+    double unity;     /* largest |sum_J B_J| h over the domains */
+    double linear;    /* largest entry of |sum_J X_J B_J^T - I| over the domains */
+    double volume;    /* |sum V / mesh volume - 1| */
+    double telescope; /* largest |sum_L V_L B_I^L - boundary integral of phi_I N| / h^2 over the nodes */
+    double shape;     /* largest |sum phi - 1| and |sum phi X - X| / h at the nodes */
 } sf_invariants;
 
 /* Measures them. `volume` is the mesh volume (m3), `spacing` [n] the nodal spacing. */

@@ -94,13 +94,16 @@ done:
 int main(int argc, char **argv) {
     static const struct argp_option list[] = {
         {"output", 'o', "MODEL", 0, "model file to write (HDF5)", 0},
-        {"set", KEY_SET, "GROUP.KEY=VALUE", 0, "override a key of the case, e.g. missile.velocity=\"5.2 m/s\"", 0},
+        {"set", KEY_SET, "GROUP.KEY=VALUE", 0,
+         "override a key of the case, e.g. missile.velocity=\"5.2 m/s\"", 0},
         {"force", 'f', 0, 0, "replace an existing model file", 0},
         {"keys", KEY_KEYS, 0, 0, "list every key of a case file and end", 0},
         {0},
     };
     argp_program_version = "softfall-pre " SF_VERSION " (" SF_GIT_REVISION ")";
-    static const struct argp argp = {.options = list, .parser = parse, .args_doc = "CASE",
+    static const struct argp argp = {.options = list,
+                                     .parser = parse,
+                                     .args_doc = "CASE",
                                      .doc = "Builds the model of a drop from a case file and its geometry."};
     options o = {0};
     sf_error err = SF_ERROR_INIT;

@@ -8,12 +8,13 @@
 static const double SPHERE_TOLERANCE = 1e-6;
 
 /* |x|^2 = 2 c.x + (R^2 - |c|^2) is linear in c and the constant; solved about the nodes' mean, scaled. */
-sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], double *radius, double *deviation,
-                                sf_error *err) {
+sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], double *radius,
+                                double *deviation, sf_error *err) {
     int64_t n = surface->node_count;
     double mean[3] = {0}, scale = 0, chisq;
     if (n < 4)
-        return SF_FAIL(err, SF_ERR_MODEL, "the missile's surface has %lld nodes; a sphere needs 4", (long long)n);
+        return SF_FAIL(err, SF_ERR_MODEL, "the missile's surface has %lld nodes; a sphere needs 4",
+                       (long long)n);
     for (int64_t k = 0; k < 3 * n; k++)
         mean[k % 3] += surface->position[k] / (double)n;
     for (int64_t k = 0; k < 3 * n; k++)
@@ -37,7 +38,8 @@ sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], dou
         gsl_vector_set(rhs, (size_t)i, square);
     }
     size_t rank = 0;
-    if (gsl_multifit_linear_tsvd(a, rhs, 1e-10, x, covariance, &chisq, &rank, work) != GSL_SUCCESS || rank < 4) {
+    if (gsl_multifit_linear_tsvd(a, rhs, 1e-10, x, covariance, &chisq, &rank, work) != GSL_SUCCESS ||
+        rank < 4) {
         SF_FAIL(err, SF_ERR_MODEL, "the missile's surface is flat: no sphere fits it");
         goto done;
     }
@@ -72,9 +74,11 @@ sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_c
     sf_status status = sf_missile_fit_sphere(surface, centre, &radius, &deviation, &quiet);
     if (status != SF_OK || deviation > SPHERE_TOLERANCE) {
         if (rule == 1)
-            return SF_FAIL(err, SF_ERR_MODEL,
-                           "missile.shape is \"sphere\", but the surface deviates from the best sphere by %.3g of its "
-                           "radius (bound %.0e)", deviation, SPHERE_TOLERANCE);
+            return SF_FAIL(
+                err, SF_ERR_MODEL,
+                "missile.shape is \"sphere\", but the surface deviates from the best sphere by %.3g of its "
+                "radius (bound %.0e)",
+                deviation, SPHERE_TOLERANCE);
         return SF_OK;
     }
     card->shape = SF_SHAPE_SPHERE;
@@ -103,8 +107,8 @@ static double sphere_travel(const sf_missile_card *card, const double x[3]) {
     return along - sqrt(square);
 }
 
-/* Travel of a triangle until it touches x: intersection with the line through x along the direction (Moeller and
- * Trumbore 1997), or infinity. */
+/* Travel of a triangle until it touches x: intersection with the line through x along the direction (Moeller
+ * and Trumbore 1997), or infinity. */
 static double triangle_travel(const double *a, const double *b, const double *c, const double direction[3],
                               const double x[3]) {
     double u[3], v[3], r[3], p[3], q[3];
@@ -138,14 +142,16 @@ sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *
         }
         for (int64_t t = 0; t < surface->triangle_count; t++) {
             const int32_t *v = &surface->triangle[3 * t];
-            *distance = fmin(*distance, triangle_travel(&surface->position[3 * v[0]], &surface->position[3 * v[1]],
-                                                        &surface->position[3 * v[2]], card->direction, x));
+            *distance =
+                fmin(*distance, triangle_travel(&surface->position[3 * v[0]], &surface->position[3 * v[1]],
+                                                &surface->position[3 * v[2]], card->direction, x));
         }
     }
     if (!isfinite(*distance))
-        return SF_FAIL(err, SF_ERR_MODEL,
-                       "the missile, moving along (%g, %g, %g), never touches the contact group: check its position "
-                       "over the pad and missile.direction",
-                       card->direction[0], card->direction[1], card->direction[2]);
+        return SF_FAIL(
+            err, SF_ERR_MODEL,
+            "the missile, moving along (%g, %g, %g), never touches the contact group: check its position "
+            "over the pad and missile.direction",
+            card->direction[0], card->direction[1], card->direction[2]);
     return SF_OK;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Moving least squares shape functions: linear basis, cubic B-spline weight with one radius per node (Belytschko, Lu,
- * Gu 1994; theory eq. 1-3). The basis is shifted to the point of evaluation and scaled by the local radius. */
+/* Moving least squares shape functions: linear basis, cubic B-spline weight with one radius per node
+ * (Belytschko, Lu, Gu 1994; theory eq. 1-3). The basis is shifted to the point of evaluation and scaled by
+ * the local radius. */
 #ifndef SF_PRE_MLS_H
 #define SF_PRE_MLS_H
 
@@ -16,14 +17,15 @@ typedef struct sf_mls_cloud {
 
 /* Shape functions at one point. */
 typedef struct sf_mls_point {
-    int count;                         /* nodes whose support covers the point */
-    int32_t node[SF_MLS_MAX_NODES];    /* in the order of the candidates */
-    double value[SF_MLS_MAX_NODES];    /* phi */
-    double condition;                  /* 1-norm condition number of the moment matrix; infinite if singular */
+    int count;                      /* nodes whose support covers the point */
+    int32_t node[SF_MLS_MAX_NODES]; /* in the order of the candidates */
+    double value[SF_MLS_MAX_NODES]; /* phi */
+    double condition;               /* 1-norm condition number of the moment matrix; infinite if singular */
 } sf_mls_point;
 
-/* Evaluates phi at `x` from `count` candidate nodes (those out of reach are skipped). Returns 0, or -1 when the moment
- * matrix is singular or too many nodes reach the point: then only `count` and `condition` are set. */
+/* Evaluates phi at `x` from `count` candidate nodes (those out of reach are skipped). Returns 0, or -1 when
+ * the moment matrix is singular or too many nodes reach the point: then only `count` and `condition` are set.
+ */
 int sf_mls_evaluate(const sf_mls_cloud *cloud, const double x[3], int64_t count, const int32_t *candidate,
                     sf_mls_point *out);
 

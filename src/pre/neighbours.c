@@ -10,10 +10,12 @@ static int64_t bin_of(const sf_grid *grid, int axis, double x) {
 }
 
 static int64_t bin_index(const sf_grid *grid, const double x[3]) {
-    return (bin_of(grid, 0, x[0]) * grid->bins[1] + bin_of(grid, 1, x[1])) * grid->bins[2] + bin_of(grid, 2, x[2]);
+    return (bin_of(grid, 0, x[0]) * grid->bins[1] + bin_of(grid, 1, x[1])) * grid->bins[2] +
+           bin_of(grid, 2, x[2]);
 }
 
-sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, const double *support, sf_error *err) {
+sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, const double *support,
+                        sf_error *err) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     *grid = (sf_grid){.position = position, .support = support};
     for (int64_t i = 0; i < count; i++) {
@@ -23,7 +25,8 @@ sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, co
             high[c] = fmax(high[c], position[3 * i + c]);
         }
     }
-    /* One outsized support would make every bin huge; one tiny one would make too many: bound the number of bins. */
+    /* One outsized support would make every bin huge; one tiny one would make too many: bound the number of
+     * bins. */
     double volume = 1;
     for (int c = 0; c < 3; c++)
         volume *= high[c] - low[c] + grid->width;
@@ -59,7 +62,8 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius, int64_t limit, int32_t *out) {
+int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
+                      int32_t *out) {
     int64_t found = 0, low[3], high[3];
     for (int c = 0; c < 3; c++) {
         low[c] = bin_of(grid, c, centre[c] - radius - grid->width);

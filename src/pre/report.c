@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* Node-steps per second and core, and how much smaller the step becomes on average while the foam densifies: from
- * docs/performance.md, for the estimate only. */
+/* Node-steps per second and core, and how much smaller the step becomes on average while the foam densifies:
+ * from docs/performance.md, for the estimate only. */
 static const double RATE = 2e6, DENSIFICATION = 4;
 
 static void print_range(FILE *out, const char *name, const double *value, int64_t count, double scale,
@@ -36,13 +36,15 @@ static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r)
         mass += m->mass[i];
     fprintf(out, "%-26s%.6f kg modelled; density x volume = %.6f kg (difference %.1e)\n", "pad mass", mass,
             m->foam.density * volume, mass / (m->foam.density * volume) - 1);
-    fprintf(out, "%-26s%.1f x %.6g cm3, thickness %.4g mm\n", "pad volume", whole, 1e6 * volume, 1e3 * m->thickness);
+    fprintf(out, "%-26s%.1f x %.6g cm3, thickness %.4g mm\n", "pad volume", whole, 1e6 * volume,
+            1e3 * m->thickness);
     double speed = m->missile.speed, energy = 0.5 * m->missile.mass * speed * speed;
-    fprintf(out, "%-26s%.4g kg at %.4g m/s: kinetic energy %.4g J, momentum %.4g kg m/s\n", "missile", m->missile.mass,
-            speed, energy, m->missile.mass * speed);
+    fprintf(out, "%-26s%.4g kg at %.4g m/s: kinetic energy %.4g J, momentum %.4g kg m/s\n", "missile",
+            m->missile.mass, speed, energy, m->missile.mass * speed);
     fprintf(out, "%-26s%.4g m in free fall\n", "equivalent drop height", speed * speed / (2 * 9.80665));
     if (m->missile.shape == SF_SHAPE_SPHERE)
-        fprintf(out, "%-26sexact sphere cap, radius %.5g mm\n", "missile contact", 1e3 * m->missile.sphere_radius);
+        fprintf(out, "%-26sexact sphere cap, radius %.5g mm\n", "missile contact",
+                1e3 * m->missile.sphere_radius);
     else
         fprintf(out, "%-26s%lld triangles\n", "missile contact", (long long)m->surface_triangle_count);
 }
@@ -58,7 +60,8 @@ static void print_cost(FILE *out, const sf_model *m, const sf_build_report *r) {
 }
 
 void sf_report_print(FILE *out, const sf_model *m, const sf_build_report *r) {
-    fprintf(out, "%-26s%lld, 1/%lld of the pad\n", "nodes", (long long)m->node_count, (long long)m->symmetry_factor);
+    fprintf(out, "%-26s%lld, 1/%lld of the pad\n", "nodes", (long long)m->node_count,
+            (long long)m->symmetry_factor);
     fprintf(out, "%-26s%lld hexahedra, %lld pyramids, %lld prisms, %lld tetrahedra\n", "cells",
             (long long)r->cells[SF_CELL_HEXAHEDRON], (long long)r->cells[SF_CELL_PYRAMID],
             (long long)r->cells[SF_CELL_PRISM], (long long)r->cells[SF_CELL_TETRAHEDRON]);

@@ -7,11 +7,11 @@
 #include <string.h>
 
 struct sf_constraint_block {
-    int components;      /* how many of x, y, z are held at these nodes */
+    int components; /* how many of x, y, z are held at these nodes */
     int component[3];
     int64_t rows;
-    int32_t *node;       /* [rows] held node */
-    uint8_t *base;       /* [rows] counts for the base reaction */
+    int32_t *node; /* [rows] held node */
+    uint8_t *base; /* [rows] counts for the base reaction */
     cholmod_factor *factor;
     cholmod_dense *rhs, *solution, *work_y, *work_e;
 };
@@ -35,11 +35,12 @@ static bool same_rows(const sf_model *m, int a, int b) {
     return true;
 }
 
-/* Lower triangle of G M^-1 G^T in triplet form: all pairs of rows that share a node. `owner` lists, for each node of
- * the cloud, the rows it supports. */
+/* Lower triangle of G M^-1 G^T in triplet form: all pairs of rows that share a node. `owner` lists, for each
+ * node of the cloud, the rows it supports. */
 static cholmod_triplet *gram_triplets(const sf_model *m, const sf_constraint_block *b, cholmod_common *common,
                                       sf_error *err) {
-    int64_t entries = 0, pairs = 0, *ptr = sf_alloc(err, (unsigned long)m->node_count + 2, sizeof *ptr, "constraints");
+    int64_t entries = 0, pairs = 0,
+            *ptr = sf_alloc(err, (unsigned long)m->node_count + 2, sizeof *ptr, "constraints");
     int32_t *row = NULL;
     double *phi = NULL;
     cholmod_triplet *t = NULL;
@@ -64,7 +65,8 @@ static cholmod_triplet *gram_triplets(const sf_model *m, const sf_constraint_blo
         }
     t = cholmod_l_allocate_triplet((size_t)b->rows, (size_t)b->rows, (size_t)pairs, -1, CHOLMOD_REAL, common);
     if (!t) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the constraint matrix of %lld rows", (long long)b->rows);
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the constraint matrix of %lld rows",
+                (long long)b->rows);
         goto done;
     }
     SuiteSparse_long *ti = t->i, *tj = t->j;
@@ -95,14 +97,18 @@ static sf_status factorize(const sf_model *m, sf_constraint_block *b, cholmod_co
     if (a)
         cholmod_l_free_sparse(&a, common);
     if (!b->factor || common->status < CHOLMOD_OK)
-        return SF_FAIL(err, SF_ERR_MEMORY, "CHOLMOD cannot factor the constraint matrix of %lld rows (status %d)",
+        return SF_FAIL(err, SF_ERR_MEMORY,
+                       "CHOLMOD cannot factor the constraint matrix of %lld rows (status %d)",
                        (long long)b->rows, common->status);
     double condition = cholmod_l_rcond(b->factor, common);
     if (common->status == CHOLMOD_NOT_POSDEF || !(condition > 1e-13))
-        return SF_FAIL(err, SF_ERR_MODEL,
-                       "the constraints of %lld nodes depend on each other (reciprocal condition %.3g): choose a "
-                       "smaller kernel.support_ratio", (long long)b->rows, condition);
-    b->rhs = cholmod_l_allocate_dense((size_t)b->rows, (size_t)b->components, (size_t)b->rows, CHOLMOD_REAL, common);
+        return SF_FAIL(
+            err, SF_ERR_MODEL,
+            "the constraints of %lld nodes depend on each other (reciprocal condition %.3g): choose a "
+            "smaller kernel.support_ratio",
+            (long long)b->rows, condition);
+    b->rhs = cholmod_l_allocate_dense((size_t)b->rows, (size_t)b->components, (size_t)b->rows, CHOLMOD_REAL,
+                                      common);
     if (!b->rhs)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %lld constraints", (long long)b->rows);
     return SF_OK;
@@ -172,8 +178,8 @@ void sf_constraint_free(sf_constraint *c) {
 }
 
 /* G (force / mass) + G v / dt for one component. */
-static void right_side(const sf_model *m, const sf_constraint_block *b, const sf_constraint_step *step, int component,
-                       double *out) {
+static void right_side(const sf_model *m, const sf_constraint_block *b, const sf_constraint_step *step,
+                       int component, double *out) {
     double inverse = 1 / step->dt;
     for (int64_t r = 0; r < b->rows; r++) {
         double sum = 0;
@@ -186,8 +192,8 @@ static void right_side(const sf_model *m, const sf_constraint_block *b, const sf
     }
 }
 
-static void add_reaction(const sf_model *m, const sf_constraint_block *b, sf_constraint_step *step, int component,
-                         const double *lambda) {
+static void add_reaction(const sf_model *m, const sf_constraint_block *b, sf_constraint_step *step,
+                         int component, const double *lambda) {
     for (int64_t r = 0; r < b->rows; r++) {
         for (int64_t k = m->phi_ptr[b->node[r]]; k < m->phi_ptr[b->node[r] + 1]; k++)
             step->reaction[3 * (int64_t)m->phi_node[k] + component] += m->phi_value[k] * lambda[r];
@@ -211,7 +217,8 @@ static void measure_residual(const sf_model *m, const sf_constraint_block *b, sf
     }
 }
 
-sf_status sf_constraint_project(const sf_model *m, const sf_constraint *c, sf_constraint_step *step, sf_error *err) {
+sf_status sf_constraint_project(const sf_model *m, const sf_constraint *c, sf_constraint_step *step,
+                                sf_error *err) {
     cholmod_common *common = common_of(c);
     memset(step->base, 0, sizeof step->base);
     memset(step->all, 0, sizeof step->all);
@@ -226,7 +233,8 @@ sf_status sf_constraint_project(const sf_model *m, const sf_constraint *c, sf_co
         sf_constraint_block *b = c->block[k];
         for (int q = 0; q < b->components; q++)
             right_side(m, b, step, b->component[q], (double *)b->rhs->x + q * b->rows);
-        if (!cholmod_l_solve2(CHOLMOD_A, b->factor, b->rhs, NULL, &b->solution, NULL, &b->work_y, &b->work_e, common))
+        if (!cholmod_l_solve2(CHOLMOD_A, b->factor, b->rhs, NULL, &b->solution, NULL, &b->work_y, &b->work_e,
+                              common))
             return SF_FAIL(err, SF_ERR_LIBRARY, "CHOLMOD cannot solve for the constraint forces (status %d)",
                            common->status);
         for (int q = 0; q < b->components; q++)

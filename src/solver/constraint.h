@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Essential boundary conditions on u_h by the transformation method, as an exact projection (Chen, Pan, Wu, Liu 1996;
- * theory, section "Constraints"): with G the rows phi(X_c) of the held nodes,
- *     (G M^-1 G^T) lambda = G a* + (G v) / dt,    a = a* - M^-1 G^T lambda.
- * Components held at the same nodes share one factor; the factors are sparse LDL^T of CHOLMOD, made once. */
+/* Essential boundary conditions on u_h by the transformation method, as an exact projection (Chen, Pan, Wu,
+ * Liu 1996; theory, section "Constraints"): with G the rows phi(X_c) of the held nodes, (G M^-1 G^T) lambda =
+ * G a* + (G v) / dt,    a = a* - M^-1 G^T lambda. Components held at the same nodes share one factor; the
+ * factors are sparse LDL^T of CHOLMOD, made once. */
 #ifndef SF_SOLVER_CONSTRAINT_H
 #define SF_SOLVER_CONSTRAINT_H
 
@@ -31,7 +31,7 @@ typedef struct sf_constraint_step {
     double residual;     /* m s-1, out: largest |G v| at the next half step */
 } sf_constraint_step;
 
-sf_status sf_constraint_project(const sf_model *model, const sf_constraint *constraint, sf_constraint_step *step,
-                                sf_error *err);
+sf_status sf_constraint_project(const sf_model *model, const sf_constraint *constraint,
+                                sf_constraint_step *step, sf_error *err);
 
 #endif

@@ -9,10 +9,10 @@ static const double SWEEP_TOLERANCE = 1e-10; /* largest change of a force, relat
 
 /* What one solve needs beside the state. */
 typedef struct contact_solve {
-    double mobility;   /* kg-1, symmetry-adjusted inverse mass of the missile */
-    double shift;      /* s2, dt times the distance of the half steps */
-    double free_step;  /* m, the missile's next travel without contact */
-    double along;      /* N, sum of q . e over all points */
+    double mobility;  /* kg-1, symmetry-adjusted inverse mass of the missile */
+    double shift;     /* s2, dt times the distance of the half steps */
+    double free_step; /* m, the missile's next travel without contact */
+    double along;     /* N, sum of q . e over all points */
 } contact_solve;
 
 static double mobility_of(const sf_model *m) {
@@ -47,7 +47,8 @@ static void book_work(const sf_model *m, sf_state *s) {
     const double *e = m->missile.direction;
     double travel = s->missile.displacement - s->missile_old;
     for (int64_t c = 0; c < m->contact_count; c++) {
-        const double *q = &s->contact_force[3 * c], *old = &s->contact_old[3 * c], *n = &s->contact_normal[3 * c];
+        const double *q = &s->contact_force[3 * c], *old = &s->contact_old[3 * c],
+                     *n = &s->contact_normal[3 * c];
         if (sf_dot3(q, q) == 0 && sf_dot3(old, old) == 0)
             continue;
         double mean[3], slip[3];
@@ -86,7 +87,8 @@ static int64_t find_active(const sf_model *m, const sf_operators *op, sf_state *
     return active;
 }
 
-/* Forces carried over: last step's magnitude for active points, turned to the new normal; zero for the others. */
+/* Forces carried over: last step's magnitude for active points, turned to the new normal; zero for the
+ * others. */
 static void start_forces(const sf_model *m, sf_state *s, int64_t active, contact_solve *w) {
     size_t bytes = 3 * (size_t)m->contact_count * sizeof *s->contact_force;
     memcpy(s->contact_old, s->contact_force, bytes);
@@ -103,7 +105,8 @@ static void start_forces(const sf_model *m, sf_state *s, int64_t active, contact
 }
 
 /* One Gauss-Seidel update of the force of point c; returns the size of its change. */
-static double relax_point(const sf_model *m, const sf_contact_gram *gram, sf_state *s, contact_solve *w, int64_t c) {
+static double relax_point(const sf_model *m, const sf_contact_gram *gram, sf_state *s, contact_solve *w,
+                          int64_t c) {
     const double *e = m->missile.direction, *n = &s->contact_normal[3 * c];
     double *q = &s->contact_force[3 * c], moved[3] = {0}, old[3], tangential[3];
     for (int64_t k = gram->ptr[c]; k < gram->ptr[c + 1]; k++)

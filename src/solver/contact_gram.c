@@ -88,8 +88,10 @@ sf_status sf_contact_gram_build(const sf_model *m, sf_contact_gram *gram, sf_err
                 dense[list[k]] = 0;
         }
         if (pass == 0) {
-            gram->index = sf_alloc(err, (unsigned long)gram->ptr[count], sizeof *gram->index, "contact matrix");
-            gram->value = sf_alloc(err, (unsigned long)gram->ptr[count], sizeof *gram->value, "contact matrix");
+            gram->index =
+                sf_alloc(err, (unsigned long)gram->ptr[count], sizeof *gram->index, "contact matrix");
+            gram->value =
+                sf_alloc(err, (unsigned long)gram->ptr[count], sizeof *gram->value, "contact matrix");
         }
     }
 done:

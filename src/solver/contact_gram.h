@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a contact force at one surface point accelerates the others: A = Phi M^-1 Phi^T over the contact points, a sparse
- * symmetric matrix; the same for the three components because the mass is lumped. */
+/* How a contact force at one surface point accelerates the others: A = Phi M^-1 Phi^T over the contact
+ * points, a sparse symmetric matrix; the same for the three components because the mass is lumped. */
 #ifndef SF_SOLVER_CONTACT_GRAM_H
 #define SF_SOLVER_CONTACT_GRAM_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Kinematics and stress of every smoothing domain: F = I + sum d_J B_J^T, foam law, V P (theory eq. 7, section
- * "Foam"). Writes f, stress, history, energy, stiffness, tangent, and the domains' partial sums. */
+/* Kinematics and stress of every smoothing domain: F = I + sum d_J B_J^T, foam law, V P (theory eq. 7,
+ * section "Foam"). Writes f, stress, history, energy, stiffness, tangent, and the domains' partial sums. */
 #ifndef SF_SOLVER_DOMAIN_STRESS_H
 #define SF_SOLVER_DOMAIN_STRESS_H
 

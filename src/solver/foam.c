@@ -107,8 +107,9 @@ static double overstress(const sf_foam *foam, double strain, double rate, double
     return low + x * (high - low) - base;
 }
 
-/* Adds the rate overstress of lane l to the principal second Piola-Kirchhoff stress s; returns a bound on its tangent:
- * slopes, the shear moduli between directions, and what a change of the filtered rate does to all three. */
+/* Adds the rate overstress of lane l to the principal second Piola-Kirchhoff stress s; returns a bound on its
+ * tangent: slopes, the shear moduli between directions, and what a change of the filtered rate does to all
+ * three. */
 static double add_overstress(const sf_foam *foam, double dt, sf_foam_batch *b, int l, double v[9][SF_LANES],
                              const double rate_of_e[6], double s[3]) {
     double bound = 0, rates = 0, fastest = 0, shortest = INFINITY, extra[3];
@@ -156,8 +157,8 @@ static void cofactor(sf_foam_batch *b, double a[9][SF_LANES]) {
             int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
 #pragma omp simd
             for (int l = 0; l < SF_LANES; l++)
-                a[3 * i + j][l] = b->f[3 * i1 + j1][l] * b->f[3 * i2 + j2][l] -
-                                  b->f[3 * i1 + j2][l] * b->f[3 * i2 + j1][l];
+                a[3 * i + j][l] =
+                    b->f[3 * i1 + j1][l] * b->f[3 * i2 + j2][l] - b->f[3 * i1 + j2][l] * b->f[3 * i2 + j1][l];
         }
 #pragma omp simd
     for (int l = 0; l < SF_LANES; l++)
@@ -183,8 +184,8 @@ static double damp_viscosity(const sf_foam *foam, const sf_foam_batch *b, int l)
 }
 
 /* Bounds by direction of lane l; `extra` is what the overstress adds to each. */
-static void bound_tangent(const sf_foam *foam, const principal *law, double softening, double extra, sf_foam_batch *b,
-                          int l) {
+static void bound_tangent(const sf_foam *foam, const principal *law, double softening, double extra,
+                          sf_foam_batch *b, int l) {
     sf_foam_principal point = {.factor = b->factor[l], .softening = softening};
     double a[3], eta[3];
     for (int i = 0; i < 3; i++) {
@@ -255,12 +256,13 @@ static void elastic_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
     }
 }
 
-/* Maxwell branch and Kelvin viscosity on the Green strain, added to s, and their work; closes the bounds. The Maxwell stress is
- * integrated exactly for a constant rate over the step. */
+/* Maxwell branch and Kelvin viscosity on the Green strain, added to s, and their work; closes the bounds. The
+ * Maxwell stress is integrated exactly for a constant rate over the step. */
 static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double rate_of_e[6][SF_LANES],
                            double s[6][SF_LANES]) {
     double decay = exp(-foam->maxwell_rate * dt);
-    double gain = foam->maxwell > 0 ? foam->maxwell / foam->maxwell_rate * -expm1(-foam->maxwell_rate * dt) : 0;
+    double gain =
+        foam->maxwell > 0 ? foam->maxwell / foam->maxwell_rate * -expm1(-foam->maxwell_rate * dt) : 0;
     double norm[SF_LANES] = {0}, work[SF_LANES] = {0};
     for (int k = 0; k < 6; k++) {
         double *restrict m = b->maxwell[k], *restrict out = s[k], *restrict rate = rate_of_e[k];

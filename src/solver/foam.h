@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The foam law at material points (theory, section "Foam"): uncoupled principal nominal stresses from the compression
- * curve, hysteretic unloading, Maxwell branch, Kelvin and DAMP viscosity, rate-dependent loading curves. Pure
- * functions on batches of SF_LANES points; arrays are [component][lane]. Matrices are row-major (9) or symmetric
- * (xx, yy, zz, xy, yz, xz). */
+/* The foam law at material points (theory, section "Foam"): uncoupled principal nominal stresses from the
+ * compression curve, hysteretic unloading, Maxwell branch, Kelvin and DAMP viscosity, rate-dependent loading
+ * curves. Pure functions on batches of SF_LANES points; arrays are [component][lane]. Matrices are row-major
+ * (9) or symmetric (xx, yy, zz, xy, yz, xz). */
 #ifndef SF_SOLVER_FOAM_H
 #define SF_SOLVER_FOAM_H
 
@@ -23,8 +23,8 @@ typedef struct sf_foam {
     double cutoff;       /* Pa */
     double filter_time;  /* s */
     int64_t curve_count;
-    double *curve_rate;  /* [curve_count] s-1, owned */
-    sf_curve *curve;     /* [curve_count] owned */
+    double *curve_rate; /* [curve_count] s-1, owned */
+    sf_curve *curve;    /* [curve_count] owned */
 } sf_foam;
 
 sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err);
@@ -46,14 +46,17 @@ typedef struct sf_foam_batch {
     double jacobian[SF_LANES];   /* - */
     double energy[SF_LANES];     /* J m-3, W of the loading curve */
     double factor[SF_LANES];     /* -, hysteresis factor */
-    double stiffness[SF_LANES];  /* Pa, largest slope of the loading curve in the principal directions, at least E and
-                                    its first slope: directions across the load are at rest, on either side by rounding */
-    double direction_tangent[3][SF_LANES];   /* Pa, bounds on the tangent dP/dF by principal direction (foam_tangent.h) */
+    double stiffness[SF_LANES];  /* Pa, largest slope of the loading curve in the principal directions, at
+                                    least E and  its first slope: directions across the load are at rest, on
+                                    either side by rounding */
+    double direction_tangent[3][SF_LANES];   /* Pa, bounds on the tangent dP/dF by principal direction
+                                                (foam_tangent.h) */
     double direction_viscosity[3][SF_LANES]; /* Pa s, the same on dP/d(rate of F) */
-    double tangent[SF_LANES];    /* Pa, the largest of them: bound on the tangent */
-    double viscosity[SF_LANES];  /* Pa s */
-    double directional[6][SF_LANES]; /* Pa, A with dF : dP <= trace(dF A dF^T), of a + 2 eta / dt, if `directions` */
-    double work[SF_LANES];       /* J m-3, viscous work of the step */
+    double tangent[SF_LANES];                /* Pa, the largest of them: bound on the tangent */
+    double viscosity[SF_LANES];              /* Pa s */
+    double directional[6][SF_LANES];         /* Pa, A with dF : dP <= trace(dF A dF^T), of a + 2 eta / dt, if
+                                                `directions` */
+    double work[SF_LANES];                   /* J m-3, viscous work of the step */
 } sf_foam_batch;
 
 /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
@@ -62,8 +65,8 @@ void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *batch);
 /* Recoverable energy and energy lost to hysteresis (J m-3) at W and its maximum (theory eq. 15, 16). */
 void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost);
 
-/* Eigenvalues of symmetric matrices by cyclic Jacobi: a [6][lane] in, its diagonal = eigenvalues out, v [9][lane]
- * eigenvectors as columns. */
+/* Eigenvalues of symmetric matrices by cyclic Jacobi: a [6][lane] in, its diagonal = eigenvalues out, v
+ * [9][lane] eigenvectors as columns. */
 void sf_foam_eigen(double a[6][SF_LANES], double v[9][SF_LANES]);
 
 #endif

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Batched symmetric eigenproblem. Cyclic Jacobi has no special case for repeated roots and converges quadratically;
- * without branches it vectorises over lanes, so that a point costs about as much as a closed form. */
+/* Batched symmetric eigenproblem. Cyclic Jacobi has no special case for repeated roots and converges
+ * quadratically; without branches it vectorises over lanes, so that a point costs about as much as a closed
+ * form. */
 #include "solver/foam.h"
 
 #include <math.h>
 
 enum { MAX_SWEEPS = 8 };
 
-/* One rotation in the plane (p, q); r is the third index. The columns of v are given by their first row's pointer:
- * element (row, column) of v is v[3 * row + column]. */
-static inline void rotate(double *restrict app, double *restrict aqq, double *restrict apq, double *restrict arp,
-                          double *restrict arq, double v[9][SF_LANES], int p, int q) {
+/* One rotation in the plane (p, q); r is the third index. The columns of v are given by their first row's
+ * pointer: element (row, column) of v is v[3 * row + column]. */
+static inline void rotate(double *restrict app, double *restrict aqq, double *restrict apq,
+                          double *restrict arp, double *restrict arq, double v[9][SF_LANES], int p, int q) {
     double c[SF_LANES], s[SF_LANES];
 #pragma omp simd
     for (int l = 0; l < SF_LANES; l++) {

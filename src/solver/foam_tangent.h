@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bounds by direction on the tangent of the foam law at one point (theory eq. 18): numbers a[i] of the principal directions N_i
- * with dF : dP <= sum over i of a[i] |dF N_i|^2 for every dF. The time step follows the largest of them, the power
- * iteration uses all three. */
+/* Bounds by direction on the tangent of the foam law at one point (theory eq. 18): numbers a[i] of the
+ * principal directions N_i with dF : dP <= sum over i of a[i] |dF N_i|^2 for every dF. The time step follows
+ * the largest of them, the power iteration uses all three. */
 #ifndef SF_SOLVER_FOAM_TANGENT_H
 #define SF_SOLVER_FOAM_TANGENT_H
 
@@ -17,7 +17,8 @@ typedef struct sf_foam_principal {
 /* Elastic part with the Maxwell branch's instantaneous `maxwell` (Pa) into a [3], Pa. */
 void sf_foam_tangent_elastic(const sf_foam_principal *law, double maxwell, double a[3]);
 
-/* Kelvin viscosity `kelvin` and DAMP's `damp` (Pa s): the same bound on dP by a rate of F, into eta [3], Pa s. */
+/* Kelvin viscosity `kelvin` and DAMP's `damp` (Pa s): the same bound on dP by a rate of F, into eta [3], Pa
+ * s. */
 void sf_foam_tangent_viscous(const double stretch[3], double kelvin, double damp, double eta[3]);
 
 #endif

@@ -40,12 +40,13 @@ void sf_snapshot_free(sf_snapshot *snapshot) {
 }
 
 static double determinant(const double *f) {
-    return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
+    return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
+           f[2] * (f[3] * f[7] - f[4] * f[6]);
 }
 
 /* sigma = P F^T / J of one domain, with the stabilisation's couple taken out of the stored stress. */
-static void take_stress(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t i, double sigma[9],
-                        double *mises) {
+static void take_stress(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t i,
+                        double sigma[9], double *mises) {
     double force[3], couple[9], p[9];
     const double *f = &s->f[9 * i];
     double j = determinant(f), square = 0, mean;
@@ -54,7 +55,8 @@ static void take_stress(const sf_model *m, const sf_operators *op, const sf_stat
         p[k] = (s->stress[9 * i + k] - couple[k]) / m->volume[i];
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
-            sigma[3 * r + c] = (p[3 * r] * f[3 * c] + p[3 * r + 1] * f[3 * c + 1] + p[3 * r + 2] * f[3 * c + 2]) / j;
+            sigma[3 * r + c] =
+                (p[3 * r] * f[3 * c] + p[3 * r + 1] * f[3 * c + 1] + p[3 * r + 2] * f[3 * c + 2]) / j;
     mean = (sigma[0] + sigma[4] + sigma[8]) / 3;
     for (int k = 0; k < 9; k++) {
         double deviator = sigma[k] - (k % 4 == 0 ? mean : 0);
@@ -100,7 +102,8 @@ static double hysteresis_factor(const sf_foam *foam, double energy, double peak)
 }
 
 /* One field at one node; the stretches' fields come by block (take_stretches). */
-static void take_node(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, int64_t i, double *out) {
+static void take_node(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, int64_t i,
+                      double *out) {
     double sigma[9], mises;
     switch (kind) {
     case DISPLACEMENT:
@@ -127,7 +130,8 @@ static void take_field(const sf_model *m, const sf_operators *op, const sf_state
     int64_t blocks = (m->node_count + SF_LANES - 1) / SF_LANES;
 #pragma omp parallel for default(none) shared(m, op, s, kind, out, blocks) schedule(static)
     for (int64_t block = 0; block < blocks; block++) {
-        int64_t first = block * SF_LANES, end = first + SF_LANES < m->node_count ? first + SF_LANES : m->node_count;
+        int64_t first = block * SF_LANES,
+                end = first + SF_LANES < m->node_count ? first + SF_LANES : m->node_count;
         double stretch[3 * SF_LANES];
         if (kind == STRETCHES || kind == COMPRESSION)
             take_stretches(m, s, block, stretch);
@@ -169,10 +173,10 @@ static sf_status write_item(sf_h5 *file, const char *group, const char *name, co
 static sf_status write_frame(const sf_frame *frame, const char *path, sf_h5 *file, sf_error *err) {
     const int64_t three = 3;
     if (write_item(file, path, "time", "s", "time", 0, NULL, &frame->time, err) != SF_OK ||
-        write_item(file, path, "acceleration", "m s-2", "of the missile, against its direction of motion", 0, NULL,
-                   &frame->acceleration, err) != SF_OK ||
-        write_item(file, path, "missile_displacement", "m", "translation of the missile since t = 0", 1, &three,
-                   frame->displacement, err) != SF_OK)
+        write_item(file, path, "acceleration", "m s-2", "of the missile, against its direction of motion", 0,
+                   NULL, &frame->acceleration, err) != SF_OK ||
+        write_item(file, path, "missile_displacement", "m", "translation of the missile since t = 0", 1,
+                   &three, frame->displacement, err) != SF_OK)
         return err->status;
     return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three,
                       frame->base_reaction, err);

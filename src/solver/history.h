@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The missile's history: one row per time step, buffered and appended to results.h5:/history, scaled to the whole pad
- * (docs/formats.md). */
+/* The missile's history: one row per time step, buffered and appended to results.h5:/history, scaled to the
+ * whole pad (docs/formats.md). */
 #ifndef SF_SOLVER_HISTORY_H
 #define SF_SOLVER_HISTORY_H
 

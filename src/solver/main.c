@@ -21,9 +21,9 @@ static void request_stop(int signal_number) {
     stop_requested = 1;
 }
 
-/* Waiting threads spin for billions of cycles by default, which costs a factor of ten and more as soon as another
- * process wants a processor. The OpenMP runtimes read their policy from the environment before main, so the program starts
- * itself once more with the passive one; what the user has set stands. */
+/* Waiting threads spin for billions of cycles by default, which costs a factor of ten and more as soon as
+ * another process wants a processor. The OpenMP runtimes read their policy from the environment before main,
+ * so the program starts itself once more with the passive one; what the user has set stands. */
 static void limit_spinning(char **argv) {
     if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
         execv("/proc/self/exe", argv); /* returns only if it cannot: then the run is merely slower */
@@ -68,9 +68,10 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
 }
 
 static void print_model(const sf_model *m, int threads) {
-    printf("%lld nodes, %lld interactions, %lld held nodes, %lld contact points, 1/%lld of the pad, %d threads\n",
-           (long long)m->node_count, (long long)m->domain_nnz, (long long)m->fixed_count, (long long)m->contact_count,
-           (long long)m->symmetry_factor, threads);
+    printf("%lld nodes, %lld interactions, %lld held nodes, %lld contact points, 1/%lld of the pad, %d "
+           "threads\n",
+           (long long)m->node_count, (long long)m->domain_nnz, (long long)m->fixed_count,
+           (long long)m->contact_count, (long long)m->symmetry_factor, threads);
 }
 
 static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run) {
@@ -78,18 +79,19 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
     double whole = (double)m->symmetry_factor;
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    printf("ended: %s at %.3f ms after %lld steps, %.1f s, %.2f million node-steps/s, peak memory %.0f MB\n", run->ending,
-           1e3 * s->time, (long long)s->step, run->wall_time,
+    printf("ended: %s at %.3f ms after %lld steps, %.1f s, %.2f million node-steps/s, peak memory %.0f MB\n",
+           run->ending, 1e3 * s->time, (long long)s->step, run->wall_time,
            (double)m->node_count * (double)s->step / run->wall_time / 1e6, (double)usage.ru_maxrss / 1e3);
-    printf("energies at the end (J, whole pad): missile %.4f  pad %.4f  stored %.4f  hysteresis %.4f  viscous %.4f\n"
+    printf("energies at the end (J, whole pad): missile %.4f  pad %.4f  stored %.4f  hysteresis %.4f  "
+           "viscous %.4f\n"
            "  stabilisation %.4f  contact %.5f  friction %.5f  gravity's work %.4f\n",
            whole * l->kinetic_missile, whole * l->kinetic_pad, whole * l->stored, whole * l->hysteresis,
            whole * l->viscous, whole * l->stabilisation, whole * l->contact, whole * l->friction,
            whole * l->external);
-    printf("energy error %.2e (largest), momentum error %.1e, |G v| %.1e m/s, penetration %.2g mm\n", l->largest_error,
-           run->largest_momentum, run->largest_residual, 1e3 * run->largest_penetration);
-    printf("at the peak of the internal energy (%.3f J): stabilisation %.2f %%, contact %.3f %%\n", run->peak_internal,
-           100 * run->stabilisation_share, 100 * run->contact_share);
+    printf("energy error %.2e (largest), momentum error %.1e, |G v| %.1e m/s, penetration %.2g mm\n",
+           l->largest_error, run->largest_momentum, run->largest_residual, 1e3 * run->largest_penetration);
+    printf("at the peak of the internal energy (%.3f J): stabilisation %.2f %%, contact %.3f %%\n",
+           run->peak_internal, 100 * run->stabilisation_share, 100 * run->contact_share);
     printf("largest acceleration %.2f g at %.3f ms, largest local compression %.4f, rebound %.3f m/s\n",
            run->peak_acceleration / 9.80665, 1e3 * run->peak_time, run->largest_compression,
            fmax(0, -s->missile.velocity_now));
@@ -97,7 +99,8 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
         fprintf(stderr, "softfall-solve: warning: the missile never touched the pad\n");
     if (run->largest_indentation > m->thickness)
         fprintf(stderr,
-                "softfall-solve: warning: the missile went %.4g mm into a pad of %.4g mm: it is smaller than the spacing "
+                "softfall-solve: warning: the missile went %.4g mm into a pad of %.4g mm: it is smaller than "
+                "the spacing "
                 "of the contact points and passed between them\n",
                 1e3 * run->largest_indentation, 1e3 * m->thickness);
 }
@@ -116,11 +119,15 @@ static sf_status solve(const options *o, const char *command, sf_error *err) {
     if (sf_model_read(o->model, &model, &model_file, err) != SF_OK)
         goto done;
     print_model(&model, o->threads);
-    if (sf_operators_build(&model, &operators, err) != SF_OK || sf_state_create(&model, &state, err) != SF_OK ||
+    if (sf_operators_build(&model, &operators, err) != SF_OK ||
+        sf_state_create(&model, &state, err) != SF_OK ||
         sf_results_create(o->output, &model, model_file, &provenance, &file, err) != SF_OK)
         goto done;
     sf_model_drop_mesh(&model);
-    sf_run run = {.stop = &stop_requested, .log = stdout, .terminal = isatty(STDOUT_FILENO), .threads = o->threads,
+    sf_run run = {.stop = &stop_requested,
+                  .log = stdout,
+                  .terminal = isatty(STDOUT_FILENO),
+                  .threads = o->threads,
                   .ending = "failed"};
     sf_run_drop(&model, &operators, &state, &run, file, err);
     sf_h5_close(&file, err);
@@ -142,9 +149,12 @@ int main(int argc, char **argv) {
         {0},
     };
     argp_program_version = "softfall-solve " SF_VERSION " (" SF_GIT_REVISION ")";
-    static const struct argp argp = {.options = list, .parser = parse, .args_doc = "MODEL",
-                                     .doc = "Solves the drop in MODEL (from softfall-pre). Ctrl-C ends the run after the "
-                                            "present step with readable results."};
+    static const struct argp argp = {
+        .options = list,
+        .parser = parse,
+        .args_doc = "MODEL",
+        .doc = "Solves the drop in MODEL (from softfall-pre). Ctrl-C ends the run after the "
+               "present step with readable results."};
     limit_spinning(argv);
     options o = {.threads = omp_get_max_threads()};
     sf_error err = SF_ERROR_INIT;

@@ -5,9 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Behind the rim of an open surface a point counts as inside only straight behind it: the part of its ray across the
- * rim's normal may be this much of the part along it, as on the rim of a quarter missile, whose normal is tilted by half the
- * angle between facets, and this much of the reach, as predicted positions waver about a symmetry plane. */
+/* Behind the rim of an open surface a point counts as inside only straight behind it: the part of its ray
+ * across the rim's normal may be this much of the part along it, as on the rim of a quarter missile, whose
+ * normal is tilted by half the angle between facets, and this much of the reach, as predicted positions waver
+ * about a symmetry plane. */
 static const double RIM_TILT = 0.2, RIM_WIDTH = 0.01;
 
 static void subtract(const double *a, const double *b, double out[3]) {
@@ -45,7 +46,8 @@ static void build_normals(sf_missile_surface *s, int64_t triangles) {
             normalise(v);
             double angle = acos(fmax(-1, fmin(1, sf_dot3(u, v))));
             for (int k = 0; k < 3; k++)
-                s->vertex_normal[3 * (int64_t)s->triangle[3 * t + corner] + k] += angle * s->normal[3 * t + k];
+                s->vertex_normal[3 * (int64_t)s->triangle[3 * t + corner] + k] +=
+                    angle * s->normal[3 * t + k];
         }
     }
 }
@@ -75,14 +77,16 @@ static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf
     qsort(edge, 3 * (size_t)triangles, sizeof *edge, by_ends);
     for (int64_t first = 0, end; first < 3 * triangles; first = end) {
         double sum[3] = {0};
-        for (end = first; end < 3 * triangles && edge[end].low == edge[first].low &&
-                          edge[end].high == edge[first].high; end++)
+        for (end = first;
+             end < 3 * triangles && edge[end].low == edge[first].low && edge[end].high == edge[first].high;
+             end++)
             for (int c = 0; c < 3; c++)
                 sum[c] += s->normal[3 * (edge[end].slot / 3) + c];
         for (int64_t k = first; k < end; k++)
             memcpy(&s->edge_normal[3 * edge[k].slot], sum, sizeof sum);
         if (end == first + 1)
-            s->rim_edge[edge[first].slot] = s->rim_vertex[edge[first].low] = s->rim_vertex[edge[first].high] = 1;
+            s->rim_edge[edge[first].slot] = s->rim_vertex[edge[first].low] = s->rim_vertex[edge[first].high] =
+                1;
     }
     free(edge);
     return SF_OK;
@@ -147,8 +151,8 @@ sf_status sf_missile_surface_build(const sf_model *m, sf_missile_surface *s, sf_
         s->reach = fmax(s->reach, m->spacing[m->contact_node[c]]);
     s->normal = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *s->normal, "missile normals");
     s->edge_normal = sf_alloc(err, 9 * (unsigned long)triangles, sizeof *s->edge_normal, "missile normals");
-    s->vertex_normal = sf_alloc(err, 3 * (unsigned long)m->surface_node_count, sizeof *s->vertex_normal,
-                                "missile normals");
+    s->vertex_normal =
+        sf_alloc(err, 3 * (unsigned long)m->surface_node_count, sizeof *s->vertex_normal, "missile normals");
     s->rim_edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *s->rim_edge, "missile rim");
     s->rim_vertex = sf_alloc(err, (unsigned long)m->surface_node_count, sizeof *s->rim_vertex, "missile rim");
     if (err->status == SF_OK) {
@@ -234,7 +238,8 @@ static const double *feature_normal(const sf_missile_surface *s, int64_t triangl
 static bool feature_on_rim(const sf_missile_surface *s, int64_t triangle, int feature) {
     if (feature == 6)
         return false;
-    return feature >= 3 ? s->rim_edge[3 * triangle + feature - 3] : s->rim_vertex[s->triangle[3 * triangle + feature]];
+    return feature >= 3 ? s->rim_edge[3 * triangle + feature - 3]
+                        : s->rim_vertex[s->triangle[3 * triangle + feature]];
 }
 
 static bool triangles_gap(const sf_missile_surface *s, const double x[3], double *gap, double normal[3]) {

@@ -50,7 +50,8 @@ sf_status sf_operators_build(const sf_model *m, sf_operators *op, sf_error *err)
     if (err->status == SF_OK && sf_foam_build(&m->foam, &op->foam, err) == SF_OK &&
         sf_stability_constants(m, op->stability, err) == SF_OK && transpose_gradient(m, op, err) == SF_OK &&
         build_pairs(m, op, err) == SF_OK && sf_constraint_build(m, &op->constraint, err) == SF_OK &&
-        sf_contact_gram_build(m, &op->gram, err) == SF_OK && sf_missile_surface_build(m, &op->surface, err) == SF_OK)
+        sf_contact_gram_build(m, &op->gram, err) == SF_OK &&
+        sf_missile_surface_build(m, &op->surface, err) == SF_OK)
         for (unsigned long i = 0; i < n; i++)
             op->damp_length[i] = m->foam.damp_length > 0 ? m->foam.damp_length : m->spacing[i];
     if (err->status != SF_OK)

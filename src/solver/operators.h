@@ -15,7 +15,8 @@ typedef struct sf_operators {
     double *damp_length; /* [n] m, L of DAMP */
     double *stability;   /* [n] m kg-1, core/stability.h */
 
-    /* The smoothed gradient by node: B_I^L for the domains L that see node I, so that internal forces are gathered. */
+    /* The smoothed gradient by node: B_I^L for the domains L that see node I, so that internal forces are
+     * gathered. */
     int64_t *force_ptr;    /* [n + 1] */
     int32_t *force_domain; /* [domain_nnz] L */
     double *force_b;       /* [domain_nnz][3] m-1 */

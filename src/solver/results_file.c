@@ -9,24 +9,51 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         int64_t dims[2];
         const void *data;
     } item[] = {
-        {{"/model/position", "m", "reference position of the nodes"}, SF_H5_F64, 2, {m->node_count, 3}, m->position},
-        {{"/model/volume", "m3", "volume of the smoothing domains"}, SF_H5_F64, 1, {m->node_count, 0}, m->volume},
+        {{"/model/position", "m", "reference position of the nodes"},
+         SF_H5_F64,
+         2,
+         {m->node_count, 3},
+         m->position},
+        {{"/model/volume", "m3", "volume of the smoothing domains"},
+         SF_H5_F64,
+         1,
+         {m->node_count, 0},
+         m->volume},
         {{"/model/cell_type", "1", "XDMF topology code"}, SF_H5_U8, 1, {m->cell_count, 0}, m->cell_type},
-        {{"/model/cell_ptr", "1", "start of each cell in cell_node"}, SF_H5_I64, 1, {m->cell_count + 1, 0}, m->cell_ptr},
+        {{"/model/cell_ptr", "1", "start of each cell in cell_node"},
+         SF_H5_I64,
+         1,
+         {m->cell_count + 1, 0},
+         m->cell_ptr},
         {{"/model/cell_node", "1", "vertices in VTK order"}, SF_H5_I32, 1, {m->cell_nnz, 0}, m->cell_node},
-        {{"/model/surface_position", "m", "missile surface at t = 0"}, SF_H5_F64, 2, {m->surface_node_count, 3},
+        {{"/model/surface_position", "m", "missile surface at t = 0"},
+         SF_H5_F64,
+         2,
+         {m->surface_node_count, 3},
          m->surface_position},
-        {{"/model/surface_triangle", "1", "missile surface triangles"}, SF_H5_I32, 2, {m->surface_triangle_count, 3},
+        {{"/model/surface_triangle", "1", "missile surface triangles"},
+         SF_H5_I32,
+         2,
+         {m->surface_triangle_count, 3},
          m->surface_triangle},
-        {{"/model/symmetry_factor", "1", "modelled parts that make the whole"}, SF_H5_I64, 0, {0}, &m->symmetry_factor},
+        {{"/model/symmetry_factor", "1", "modelled parts that make the whole"},
+         SF_H5_I64,
+         0,
+         {0},
+         &m->symmetry_factor},
         {{"/model/thickness", "m", "pad thickness"}, SF_H5_F64, 0, {0}, &m->thickness},
         {{"/model/density", "kg m-3", "density of the foam"}, SF_H5_F64, 0, {0}, &m->foam.density},
         {{"/model/missile_mass", "kg", "mass of the whole missile"}, SF_H5_F64, 0, {0}, &m->missile.mass},
         {{"/model/missile_speed", "m s-1", "speed at t = 0"}, SF_H5_F64, 0, {0}, &m->missile.speed},
-        {{"/model/missile_direction", "1", "direction of motion"}, SF_H5_F64, 1, {3, 0}, m->missile.direction},
+        {{"/model/missile_direction", "1", "direction of motion"},
+         SF_H5_F64,
+         1,
+         {3, 0},
+         m->missile.direction},
     };
     for (size_t k = 0; k < sizeof item / sizeof item[0]; k++)
-        if (sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err) != SF_OK)
+        if (sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err) !=
+            SF_OK)
             return err->status;
     return SF_OK;
 }

@@ -8,8 +8,8 @@
 #include "io/h5.h"
 #include "io/provenance.h"
 
-/* Creates `path` (truncating) with /provenance, the model's provenance from `model_file`, and /model. On success the
- * caller owns `*file`. */
+/* Creates `path` (truncating) with /provenance, the model's provenance from `model_file`, and /model. On
+ * success the caller owns `*file`. */
 sf_status sf_results_create(const char *path, const sf_model *model, const sf_h5 *model_file,
                             const sf_provenance *provenance, sf_h5 **file, sf_error *err);
 

@@ -9,17 +9,17 @@
 #include <stdlib.h>
 #include <time.h>
 
-static const double PEAK_INTERVAL = 50e-6;  /* s, between snapshots of a growing acceleration */
-static const double REBOUND_WAIT = 1e-3;    /* s, without contact before the run may end */
-static const double PROGRESS_INTERVAL = 5;  /* s of wall time between plain lines */
+static const double PEAK_INTERVAL = 50e-6; /* s, between snapshots of a growing acceleration */
+static const double REBOUND_WAIT = 1e-3;   /* s, without contact before the run may end */
+static const double PROGRESS_INTERVAL = 5; /* s of wall time between plain lines */
 
 /* What a run carries from step to step beside the state. */
 typedef struct recorder {
     sf_history *history;
     sf_snapshot peak;
     int64_t frames;
-    double next_frame;   /* s */
-    int64_t next_extra;  /* index in model->frame_time */
+    double next_frame;       /* s */
+    int64_t next_extra;      /* index in model->frame_time */
     double start, last_line; /* s, wall clock */
 } recorder;
 
@@ -35,11 +35,13 @@ static void print_progress(const sf_model *m, const sf_state *s, sf_run *run, re
         return;
     r->last_line = now;
     double done = s->time / m->run.end_time, spent = now - r->start;
-    fprintf(run->log, "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  a %6.1f g  indentation %5.1f mm  compression %.3f  "
-                      "energy %+.3f %%",
-            run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
-            -s->missile.acceleration / 9.80665, 1e3 * (s->missile.displacement - m->missile.gap),
-            s->largest_compression, 100 * s->ledger.error);
+    fprintf(
+        run->log,
+        "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  a %6.1f g  indentation %5.1f mm  compression %.3f  "
+        "energy %+.3f %%",
+        run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
+        -s->missile.acceleration / 9.80665, 1e3 * (s->missile.displacement - m->missile.gap),
+        s->largest_compression, 100 * s->ledger.error);
     if (done > 0 && !last)
         fprintf(run->log, "  left <= %.0f s  ", spent * (1 - done) / done);
     if (!run->terminal || last)
@@ -47,8 +49,8 @@ static void print_progress(const sf_model *m, const sf_state *s, sf_run *run, re
     fflush(run->log);
 }
 
-static sf_status write_frame(const sf_model *m, const sf_operators *op, const sf_state *s, recorder *r, sf_h5 *file,
-                             sf_error *err) {
+static sf_status write_frame(const sf_model *m, const sf_operators *op, const sf_state *s, recorder *r,
+                             sf_h5 *file, sf_error *err) {
     char path[32];
     snprintf(path, sizeof path, "/frames/%06lld", (long long)r->frames++);
     if (sf_frame_write(m, op, s, path, file, err) != SF_OK ||
@@ -62,8 +64,8 @@ static void watch(const sf_model *m, const sf_operators *op, const sf_state *s, 
     double whole = (double)m->symmetry_factor, internal = whole * sf_ledger_internal(&s->ledger);
     double a = -s->missile.acceleration;
     run->largest_compression = fmax(run->largest_compression, s->largest_compression);
-    run->largest_indentation = fmax(run->largest_indentation, -m->missile.direction[2] *
-                                                                  (s->missile.displacement - m->missile.gap));
+    run->largest_indentation =
+        fmax(run->largest_indentation, -m->missile.direction[2] * (s->missile.displacement - m->missile.gap));
     run->largest_penetration = fmax(run->largest_penetration, s->penetration);
     run->largest_residual = fmax(run->largest_residual, s->constraint_residual);
     run->largest_momentum = fmax(run->largest_momentum, fabs(s->ledger.momentum_error));
@@ -112,16 +114,16 @@ static sf_status run_steps(const sf_model *m, const sf_operators *op, sf_state *
         print_progress(m, s, run, r, end || rebound || stop);
         if (end || rebound || stop) {
             run->ending = stop ? "interrupted" : rebound ? "rebound" : "finished";
-            return stop ? SF_FAIL(err, SF_INTERRUPTED, "interrupted at t = %.6g s; results up to there are readable",
-                                  s->time)
+            return stop ? SF_FAIL(err, SF_INTERRUPTED,
+                                  "interrupted at t = %.6g s; results up to there are readable", s->time)
                         : SF_OK;
         }
         sf_step_advance(m, s);
     }
 }
 
-static sf_status write_scalar(sf_h5 *file, const char *path, const char *units, const char *text, double value,
-                              sf_error *err) {
+static sf_status write_scalar(sf_h5 *file, const char *path, const char *units, const char *text,
+                              double value, sf_error *err) {
     sf_h5_info info = {path, units, text};
     return sf_h5_write_scalar(file, &info, value, err);
 }
@@ -139,10 +141,12 @@ static sf_status write_summary(const sf_model *m, const sf_state *s, const sf_ru
         write_count(file, "/summary/threads", "OpenMP threads", run->threads, err) != SF_OK ||
         write_count(file, "/summary/nodes", "nodes", m->node_count, err) != SF_OK ||
         write_count(file, "/summary/interactions", "(domain, node) pairs", m->domain_nnz, err) != SF_OK ||
-        write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) != SF_OK ||
+        write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) !=
+            SF_OK ||
         write_scalar(file, "/summary/wall_time", "s", "time of the run", run->wall_time, err) != SF_OK)
         return err->status;
-    return write_scalar(file, "/summary/contact_time", "s", "first contact, NaN if none", s->missile.contact_time, err);
+    return write_scalar(file, "/summary/contact_time", "s", "first contact, NaN if none",
+                        s->missile.contact_time, err);
 }
 
 sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf_run *run, sf_h5 *file,
@@ -150,7 +154,8 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     recorder r = {.start = wall_clock()};
     sf_error late = SF_ERROR_INIT;
     r.history = sf_alloc(err, 1, sizeof *r.history, "history");
-    if (err->status != SF_OK || sf_snapshot_create(m, &r.peak, err) != SF_OK || sf_history_create(file, err) != SF_OK)
+    if (err->status != SF_OK || sf_snapshot_create(m, &r.peak, err) != SF_OK ||
+        sf_history_create(file, err) != SF_OK)
         goto done;
     run_steps(m, op, s, run, &r, file, err);
     run->wall_time = wall_clock() - r.start;

@@ -32,9 +32,9 @@ typedef struct sf_run {
     const char *ending;         /* "finished", "rebound", "interrupted", "failed" */
 } sf_run;
 
-/* Runs `state` to the end. On a numerical failure or an interruption everything up to the last step is written, with a
- * last frame, and the status says so. `file` holds an open results file without history. */
-sf_status sf_run_drop(const sf_model *model, const sf_operators *operators, sf_state *state, sf_run *run, sf_h5 *file,
-                      sf_error *err);
+/* Runs `state` to the end. On a numerical failure or an interruption everything up to the last step is
+ * written, with a last frame, and the status says so. `file` holds an open results file without history. */
+sf_status sf_run_drop(const sf_model *model, const sf_operators *operators, sf_state *state, sf_run *run,
+                      sf_h5 *file, sf_error *err);
 
 #endif

@@ -38,7 +38,8 @@ void sf_stabilisation(const sf_model *m, const sf_operators *op, sf_state *s) {
         sf_partial *partial = &s->partial[chunk];
         for (int64_t i = chunk * SF_CHUNK; i < (chunk + 1) * SF_CHUNK && i < m->node_count; i++) {
             double couple[9], g = s->stiffness[i];
-            double sum = sf_stabilisation_node(m, op->pair, s->d, s->f, s->stiffness, i, &s->force[3 * i], couple);
+            double sum =
+                sf_stabilisation_node(m, op->pair, s->d, s->f, s->stiffness, i, &s->force[3 * i], couple);
             for (int k = 0; k < 9; k++)
                 s->stress[9 * i + k] += couple[k];
             partial->stabilisation += g * sum;

@@ -6,13 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One list of the arrays: allocation, release and size. Rows: n nodes, b blocks of lanes, c contact points, k chunks. */
+/* One list of the arrays: allocation, release and size. Rows: n nodes, b blocks of lanes, c contact points, k
+ * chunks. */
 static const struct {
     size_t offset;
     char rows;
     int bytes;
 } arrays[] = {
-#define DOUBLES(member, rows, columns) {offsetof(sf_state, member), rows, (columns) * (int)sizeof(double)}
+#define DOUBLES(member, rows, columns)                                                                       \
+    { offsetof(sf_state, member), rows, (columns) * (int)sizeof(double) }
     DOUBLES(d, 'n', 3),
     DOUBLES(v, 'n', 3),
     DOUBLES(force, 'n', 3),
@@ -61,8 +63,8 @@ static int64_t rows_of(const sf_model *model, char rows) {
 sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
     memset(s, 0, sizeof *s);
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
-        *(void **)((char *)s + arrays[k].offset) =
-            sf_alloc(err, (unsigned long)rows_of(model, arrays[k].rows), (unsigned long)arrays[k].bytes, "state");
+        *(void **)((char *)s + arrays[k].offset) = sf_alloc(
+            err, (unsigned long)rows_of(model, arrays[k].rows), (unsigned long)arrays[k].bytes, "state");
     if (err->status != SF_OK) {
         sf_state_free(s);
         return err->status;
@@ -73,7 +75,8 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
         s->pair_stiffness[i] = model->foam.modulus;
     }
     for (int64_t c = 0; c < model->contact_count; c++)
-        memcpy(&s->contact_position[3 * c], &model->position[3 * (int64_t)model->contact_node[c]], 3 * sizeof(double));
+        memcpy(&s->contact_position[3 * c], &model->position[3 * (int64_t)model->contact_node[c]],
+               3 * sizeof(double));
     s->tightness = 1;
     s->missile.velocity = s->missile.velocity_now = model->missile.speed;
     s->missile.contact_time = s->missile.release_time = NAN;

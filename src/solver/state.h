@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* sf_state: everything that changes while a drop is solved. Allocated once; a step allocates nothing. The modelled part
- * only: a quarter model holds a quarter of the pad, and forces and energies of that quarter, unless said otherwise. */
+/* sf_state: everything that changes while a drop is solved. Allocated once; a step allocates nothing. The
+ * modelled part only: a quarter model holds a quarter of the pad, and forces and energies of that quarter,
+ * unless said otherwise. */
 #ifndef SF_SOLVER_STATE_H
 #define SF_SOLVER_STATE_H
 
@@ -30,17 +31,18 @@ typedef struct sf_partial {
 typedef struct sf_ledger {
     double kinetic_missile, kinetic_pad;
     double stored, hysteresis, viscous, stabilisation, contact, friction;
-    double external;         /* work of gravity on the missile */
-    double initial;          /* J, total at t = 0 */
+    double external;            /* work of gravity on the missile */
+    double initial;             /* J, total at t = 0 */
     double stabilisation_drift; /* J, work that changed stiffness put into the pairs, to date */
-    double error;            /* total / initial - 1 */
-    double largest_error;    /* largest |error| so far */
-    double momentum_initial; /* kg m s-1, along the missile's direction */
-    double impulse;          /* N s, of gravity and constraints, along it */
-    double momentum_error;   /* relative to mass x speed */
+    double error;               /* total / initial - 1 */
+    double largest_error;       /* largest |error| so far */
+    double momentum_initial;    /* kg m s-1, along the missile's direction */
+    double impulse;             /* N s, of gravity and constraints, along it */
+    double momentum_error;      /* relative to mass x speed */
 } sf_ledger;
 
-/* The missile: one translational degree of freedom along model->missile.direction. Forces are the modelled part's. */
+/* The missile: one translational degree of freedom along model->missile.direction. Forces are the modelled
+ * part's. */
 typedef struct sf_missile {
     double displacement; /* m */
     double velocity;     /* m s-1, at the half step before `time` until the step ends */
@@ -54,36 +56,37 @@ typedef struct sf_missile {
 
 typedef struct sf_state {
     int64_t step;
-    double time;       /* s */
-    double dt;         /* s, from time to the next */
-    double dt_old;     /* s, from the previous time */
-    double tightness;  /* -, highest frequency squared over its bound, from the power iteration */
+    double time;      /* s */
+    double dt;        /* s, from time to the next */
+    double dt_old;    /* s, from the previous time */
+    double tightness; /* -, highest frequency squared over its bound, from the power iteration */
 
     /* Nodes: coefficients of the approximation, not nodal values. */
-    double *d;         /* [n][3] m */
-    double *v;         /* [n][3] m s-1, at the half step */
-    double *force;     /* [n][3] N, all but constraint reactions */
-    double *reaction;  /* [n][3] N, constraint reactions (G^T lambda) of the last step */
+    double *d;        /* [n][3] m */
+    double *v;        /* [n][3] m s-1, at the half step */
+    double *force;    /* [n][3] N, all but constraint reactions */
+    double *reaction; /* [n][3] N, constraint reactions (G^T lambda) of the last step */
 
     /* Smoothing domains. */
-    double *f;         /* [n][9] F */
-    double *stress;    /* [n][9] J, V P plus the stabilisation's couple */
-    double *maxwell;   /* [blocks][6][SF_LANES] Pa */
-    double *peak;      /* [blocks][SF_LANES] J m-3 */
-    double *rate;      /* [blocks][SF_LANES] s-1 */
-    double *energy;    /* [n] J m-3, W */
-    double *stiffness; /* [n] Pa */
-    double *tangent;   /* [n] Pa, effective: a + 2 eta / dt of the last step */
+    double *f;           /* [n][9] F */
+    double *stress;      /* [n][9] J, V P plus the stabilisation's couple */
+    double *maxwell;     /* [blocks][6][SF_LANES] Pa */
+    double *peak;        /* [blocks][SF_LANES] J m-3 */
+    double *rate;        /* [blocks][SF_LANES] s-1 */
+    double *energy;      /* [n] J m-3, W */
+    double *stiffness;   /* [n] Pa */
+    double *tangent;     /* [n] Pa, effective: a + 2 eta / dt of the last step */
     double *directional; /* [n][6] Pa, the same by direction (foam.h), when sf_time_step_due */
 
     /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, and the stiffness it was last used with. */
     double *pair_sum;       /* [n] m3 */
     double *pair_stiffness; /* [n] Pa */
     double *mode;           /* [n] vector of the power iteration */
-    double *scratch;        /* [n][9]: the Lanczos vectors [SF_POWER_BASIS][n] of it, or a field on its way to a file */
-    double *mode_work;      /* [n][4] its gradient */
-    double *power_couple;   /* [n][3] couples of the product */
-    double *power_out;      /* [n] the product */
+    double
+        *scratch; /* [n][9]: the Lanczos vectors [SF_POWER_BASIS][n] of it, or a field on its way to a file */
+    double *mode_work;    /* [n][4] its gradient */
+    double *power_couple; /* [n][3] couples of the product */
+    double *power_out;    /* [n] the product */
 
     /* Contact points. */
     double *contact_position; /* [contacts][3] m, physical, now */
@@ -100,17 +103,17 @@ typedef struct sf_state {
 
     sf_missile missile;
     sf_ledger ledger;
-    double base_reaction[3];      /* N, of the base on the pad */
-    double constraint_residual;   /* m s-1, largest |G v| */
-    double largest_compression;   /* - */
-    double smallest_jacobian;     /* - */
+    double base_reaction[3];    /* N, of the base on the pad */
+    double constraint_residual; /* m s-1, largest |G v| */
+    double largest_compression; /* - */
+    double smallest_jacobian;   /* - */
     int64_t jacobian_node;
-    double bound_step;            /* s, guaranteed by the partition bound now */
-    double bound_load;            /* s-2, the bound on omega^2 it came from */
-    int64_t measured_at;          /* step of the last power iteration */
-    double measured_load;         /* s-2, bound_load then */
-    double ceiling;               /* s, smallest bound_step since */
-    int64_t power_iterations;     /* products spent so far */
+    double bound_step;        /* s, guaranteed by the partition bound now */
+    double bound_load;        /* s-2, the bound on omega^2 it came from */
+    int64_t measured_at;      /* step of the last power iteration */
+    double measured_load;     /* s-2, bound_load then */
+    double ceiling;           /* s, smallest bound_step since */
+    int64_t power_iterations; /* products spent so far */
 
     int64_t chunk_count;
     sf_partial *partial; /* [chunks] */

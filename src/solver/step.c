@@ -19,10 +19,11 @@ static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *e
         if (p->jacobian > 0 && isfinite(p->step) && p->step > 0)
             continue;
         const double *x = &m->position[3 * p->jacobian_node];
-        return SF_FAIL(err, SF_ERR_NUMERIC,
-                       "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, has collapsed: "
-                       "det F = %.3g. The curve is too soft for this impact there; check its densification",
-                       s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2], p->jacobian);
+        return SF_FAIL(
+            err, SF_ERR_NUMERIC,
+            "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, has collapsed: "
+            "det F = %.3g. The curve is too soft for this impact there; check its densification",
+            s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2], p->jacobian);
     }
     return SF_OK;
 }
@@ -32,20 +33,22 @@ static sf_status check_step(const sf_model *m, const sf_state *s, sf_error *err)
     if (s->dt >= floor)
         return SF_OK;
     const double *x = &m->position[3 * s->jacobian_node];
-    return SF_FAIL(err, SF_ERR_NUMERIC,
-                   "at t = %.6g s the stable time step fell to %.3g s, below %.3g s; most compressed is node %lld at "
-                   "(%.5g, %.5g, %.5g) m, det F = %.3g. The foam has densified beyond what the curve can carry",
-                   s->time, s->dt, floor, (long long)s->jacobian_node, x[0], x[1], x[2], s->smallest_jacobian);
+    return SF_FAIL(
+        err, SF_ERR_NUMERIC,
+        "at t = %.6g s the stable time step fell to %.3g s, below %.3g s; most compressed is node %lld at "
+        "(%.5g, %.5g, %.5g) m, det F = %.3g. The foam has densified beyond what the curve can carry",
+        s->time, s->dt, floor, (long long)s->jacobian_node, x[0], x[1], x[2], s->smallest_jacobian);
 }
 
 /* The energy limit is a stop, not a tolerance: beyond it the run has become unstable. */
 static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *err) {
     if (fabs(s->ledger.error) <= m->run.energy_limit)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_NUMERIC,
-                   "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step %.3g s): "
-                   "the run is unstable or the limit too strict; try a smaller solver.step_safety",
-                   s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt);
+    return SF_FAIL(
+        err, SF_ERR_NUMERIC,
+        "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step %.3g s): "
+        "the run is unstable or the limit too strict; try a smaller solver.step_safety",
+        s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt);
 }
 
 /* v += dt_v (force - reaction) / m, with the kinetic energy at the present time and the momentum after it. */
@@ -69,7 +72,7 @@ static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
 }
 
 sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
-    sf_domain_stress(m, op, s);  /* F, P, history */
+    sf_domain_stress(m, op, s); /* F, P, history */
     if (check_domains(m, s, err) != SF_OK)
         return err->status;
     sf_stabilisation(m, op, s);  /* pair forces, couples */
@@ -77,14 +80,14 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_time_step_choose(m, op, s);
     double dt_v = 0.5 * (s->dt_old + s->dt);
 
-    sf_contact_solve(m, op, s);  /* f += phi^T q; missile's acceleration */
+    sf_contact_solve(m, op, s); /* f += phi^T q; missile's acceleration */
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
     if (sf_constraint_project(m, &op->constraint, &held, err) != SF_OK)
         return err->status;
     memcpy(s->base_reaction, held.base, sizeof held.base);
     s->constraint_residual = held.residual;
 
-    accelerate(m, s, dt_v);      /* v at the next half step */
+    accelerate(m, s, dt_v); /* v at the next half step */
     s->missile.velocity_now = s->missile.velocity + 0.5 * s->dt_old * s->missile.acceleration;
     s->missile.velocity += dt_v * s->missile.acceleration;
     sf_ledger_close(m, s, held.all, dt_v);

@@ -4,16 +4,17 @@
 #include <math.h>
 
 enum {
-    POWER_INTERVAL = 25, /* steps between measurements at most */
-    POWER_PAUSE = 5,     /* and at least, when the bound moves */
-    POWER_FIRST = 80,    /* products of the first measurement */
+    POWER_INTERVAL = 25,         /* steps between measurements at most */
+    POWER_PAUSE = 5,             /* and at least, when the bound moves */
+    POWER_FIRST = 80,            /* products of the first measurement */
     POWER_WARM = SF_POWER_BASIS, /* of the later ones */
 };
-static const double POWER_CHANGE = 0.1; /* of the bound on the frequency squared, that calls for a measurement */
+static const double POWER_CHANGE =
+    0.1; /* of the bound on the frequency squared, that calls for a measurement */
 /* The iteration converges from below; its estimate of the frequency squared is raised by this factor. */
 static const double POWER_MARGIN = 1.08;
-/* The ratio is rounded up to a multiple of 1 / POWER_ROUNDING: what rounding errors do to the iteration stays out of the
- * time steps, and so out of the results. */
+/* The ratio is rounded up to a multiple of 1 / POWER_ROUNDING: what rounding errors do to the iteration stays
+ * out of the time steps, and so out of the results. */
 static const double POWER_ROUNDING = 16384;
 static const double GROWTH = 1.02;
 
@@ -31,7 +32,8 @@ static void mode_gradients(const sf_model *m, sf_state *s) {
 }
 
 /* Pair force of node i, and its couple: what the stabilisation adds for a scalar field. */
-static double mode_pairs(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t i, double couple[3]) {
+static double mode_pairs(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t i,
+                         double couple[3]) {
     double force = 0;
     couple[0] = couple[1] = couple[2] = 0;
     for (int64_t k = m->edge_ptr[i]; k < m->edge_ptr[i + 1]; k++) {
@@ -75,8 +77,9 @@ static void apply_operator(const sf_model *m, const sf_operators *op, sf_state *
     }
 }
 
-/* Largest eigenvalue of the tridiagonal matrix (diagonal alpha, off-diagonal beta) and its eigenvector z, by bisection on
- * the signs of the pivots: beyond the largest eigenvalue all are negative, and back-substitution is stable. */
+/* Largest eigenvalue of the tridiagonal matrix (diagonal alpha, off-diagonal beta) and its eigenvector z, by
+ * bisection on the signs of the pivots: beyond the largest eigenvalue all are negative, and back-substitution
+ * is stable. */
 static double tridiagonal_top(int size, const double *alpha, const double *beta, double *z) {
     double low = alpha[0], high = 0, pivot[SF_POWER_BASIS];
     for (int j = 0; j < size; j++) {
@@ -101,11 +104,12 @@ static double tridiagonal_top(int size, const double *alpha, const double *beta,
     return high;
 }
 
-/* Up to `products` <= SF_POWER_BASIS Lanczos steps from the mode, in the inner product of the masses; the mode becomes
- * the Ritz vector of the largest Ritz value, which is returned. */
+/* Up to `products` <= SF_POWER_BASIS Lanczos steps from the mode, in the inner product of the masses; the
+ * mode becomes the Ritz vector of the largest Ritz value, which is returned. */
 static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state *s, int products) {
     int64_t n = m->node_count;
-    double alpha[SF_POWER_BASIS], beta[SF_POWER_BASIS] = {0}, z[SF_POWER_BASIS], *out = s->power_out, norm = 0;
+    double alpha[SF_POWER_BASIS], beta[SF_POWER_BASIS] = {0}, z[SF_POWER_BASIS], *out = s->power_out,
+                                  norm = 0;
     int size = 0;
     for (int64_t i = 0; i < n; i++)
         norm += m->mass[i] * s->mode[i] * s->mode[i];
@@ -145,8 +149,8 @@ double sf_time_step_power(const sf_model *m, const sf_operators *op, sf_state *s
     return estimate;
 }
 
-/* A little of every node's sawtooth, weighted by how stiff its domain is, so that the iteration finds a new stiff spot
- * even if the old mode vanishes there. */
+/* A little of every node's sawtooth, weighted by how stiff its domain is, so that the iteration finds a new
+ * stiff spot even if the old mode vanishes there. */
 static void seed_mode(const sf_model *m, const sf_operators *op, sf_state *s) {
     double largest = 0;
     for (int64_t i = 0; i < m->node_count; i++)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The time step: a bound that holds in every step (core/stability.h), tightened by the ratio of the true highest
- * frequency to the bound. A warm-started Lanczos iteration measures that ratio when the bound has moved by 10 %, and at
- * least every 25 steps (theory, section "Time step"). Contact and constraints are kinematic and do not limit the step. */
+/* The time step: a bound that holds in every step (core/stability.h), tightened by the ratio of the true
+ * highest frequency to the bound. A warm-started Lanczos iteration measures that ratio when the bound has
+ * moved by 10 %, and at least every 25 steps (theory, section "Time step"). Contact and constraints are
+ * kinematic and do not limit the step. */
 #ifndef SF_SOLVER_TIME_STEP_H
 #define SF_SOLVER_TIME_STEP_H
 
@@ -11,13 +12,15 @@
 /* Is the frequency measured in this step? That needs state->directional. */
 bool sf_time_step_due(const sf_state *state);
 
-/* Chooses state->dt from the partial sums of the domains: shrinks at once; between measurements it does not grow, and from
- * step to step by at most 2 %; never beyond run.step_limit. Updates bound_step, bound_load, tightness. */
+/* Chooses state->dt from the partial sums of the domains: shrinks at once; between measurements it does not
+ * grow, and from step to step by at most 2 %; never beyond run.step_limit. Updates bound_step, bound_load,
+ * tightness. */
 void sf_time_step_choose(const sf_model *model, const sf_operators *operators, sf_state *state);
 
-/* Highest eigenvalue (s-2) of M^-1 K for the scalar operator K = sum V B^T A B plus the stabilisation, with A =
- * state->directional, by Lanczos cycles from state->mode with `iterations` products in all; a Ritz value, which
- * converges from below. */
-double sf_time_step_power(const sf_model *model, const sf_operators *operators, sf_state *state, int iterations);
+/* Highest eigenvalue (s-2) of M^-1 K for the scalar operator K = sum V B^T A B plus the stabilisation, with A
+ * = state->directional, by Lanczos cycles from state->mode with `iterations` products in all; a Ritz value,
+ * which converges from below. */
+double sf_time_step_power(const sf_model *model, const sf_operators *operators, sf_state *state,
+                          int iterations);
 
 #endif
