@@ -38,7 +38,8 @@ Every table and plot below is printed by a study in `verify/` and put here by
     tools/verification.sh            # all, or: tools/verification.sh NAME...
 
 A study measures, compares with the bound that is required, and fails if one is missed. `ctest -L verify` runs the short
-ones with every test run, `ctest -L slow` the long ones (calculix, mesh, sensitivity). Equation numbers are those of
+ones with every test run, `ctest -L slow` the long ones (calculix, mesh, sensitivity); a study that is not below has not
+been run for this document yet. Equation numbers are those of
 [theory.md](theory.md). Wall times depend on the machine; everything else repeats to the last digit on one machine.
 
 TEXT

@@ -15,7 +15,8 @@ static double formula(double strain) {
 
 static double slope(double strain) {
     double x = strain / (1 - strain);
-    return 7.4e3 * 56 * exp(-56 * strain) + (134e3 + 2.8 * 23.3e3 * pow(x, 1.8)) / ((1 - strain) * (1 - strain));
+    return 7.4e3 * 56 * exp(-56 * strain) +
+           (134e3 + 2.8 * 23.3e3 * pow(x, 1.8)) / ((1 - strain) * (1 - strain));
 }
 
 static double exponent(void) {
@@ -23,7 +24,8 @@ static double exponent(void) {
 }
 
 double sf_formula_stress(double strain) {
-    return strain <= DATA_END ? formula(strain) : formula(DATA_END) * pow((1 - DATA_END) / (1 - strain), exponent());
+    return strain <= DATA_END ? formula(strain)
+                              : formula(DATA_END) * pow((1 - DATA_END) / (1 - strain), exponent());
 }
 
 double sf_formula_slope(double strain) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An independent code: the sphere pressed into a pad of hyperelastic foam, softfall against CalculiX (ccx). Exit code 77,
- * "skipped", without ccx. */
+/* An independent code: the sphere pressed into a pad of hyperelastic foam, softfall against CalculiX (ccx).
+ * Exit code 77, "skipped", without ccx. */
 #include "study.h"
 
 #include "calculix/ccx.h"
@@ -15,13 +15,8 @@ enum { MESHES = 3, SKIPPED = 77 };
 static const int layers[MESHES] = {5, 7, 10};
 static const double THICKNESS = 50; /* mm */
 
-static const sf_indentation_case usual = {.layers = 5,
-                                          .depth = 42e-3,
-                                          .interval = 2e-3,
-                                          .speed = 1,
-                                          .modulus = 1,
-                                          .penalty = 100,
-                                          .facet = 3};
+static const sf_indentation_case usual = {
+    .layers = 5, .depth = 42e-3, .interval = 2e-3, .speed = 1, .modulus = 1, .penalty = 100, .facet = 3};
 
 /* Point k of the curves lies at this depth (mm). */
 static double depth_of(int k) {
@@ -46,7 +41,8 @@ static double distance_from_eva(const sf_ogden *law, sf_error *err) {
     return worst;
 }
 
-/* Largest relative difference between the curve that softfall makes of the table and the closed form, 1 to 92 % strain. */
+/* Largest relative difference between the curve that softfall makes of the table and the closed form, 1 to 92
+ * % strain. */
 static double table_error(const sf_indentation *in, sf_error *err) {
     char path[1024];
     double worst = 0;
@@ -75,19 +71,24 @@ static void study_law(sf_study *s, const sf_indentation *in) {
     for (int k = 1; k <= 30; k++)
         bend = fmax(bend, fabs(over_line(law, 1 + 0.01 * k)));
     sf_study_text(s,
-                  "### The law\n\nBoth codes get T(λ) = Σ 2μ/α (λ^(α−1) − 1/λ), separable in the principal stretches: CalculiX as "
-                  "`*HYPERFOAM` with ν = 0, softfall as a table of its compression branch. Two terms, μ = %.1f and %.1f kPa, "
-                  "α = %g and %g, follow the EVA of the examples between 10 and 85 %% strain (the knee below is given up). "
-                  "In tension softfall has the straight line E (λ − 1) with E = 2 Σ μ = %.1f kPa; the law leaves it by %+.1f %% at "
+                  "### The law\n\nBoth codes get T(λ) = Σ 2μ/α (λ^(α−1) − 1/λ), separable in the principal "
+                  "stretches: CalculiX as "
+                  "`*HYPERFOAM` with ν = 0, softfall as a table of its compression branch. Two terms, μ = "
+                  "%.1f and %.1f kPa, "
+                  "α = %g and %g, follow the EVA of the examples between 10 and 85 %% strain (the knee below "
+                  "is given up). "
+                  "In tension softfall has the straight line E (λ − 1) with E = 2 Σ μ = %.1f kPa; the law "
+                  "leaves it by %+.1f %% at "
                   "λ = 1.5 and %+.1f %% at λ = 2.\n\n",
-                  1e-3 * law->mu[0], 1e-3 * law->mu[1], law->alpha[0], law->alpha[1], 1e-3 * sf_ogden_modulus(law),
-                  100 * over_line(law, 1.5), 100 * over_line(law, 2));
+                  1e-3 * law->mu[0], 1e-3 * law->mu[1], law->alpha[0], law->alpha[1],
+                  1e-3 * sf_ogden_modulus(law), 100 * over_line(law, 1.5), 100 * over_line(law, 2));
     if (err.status != SF_OK) {
         sf_study_fail(s, &err);
         return;
     }
     sf_study_check(s, eva, 0, 0.08, "distance of the law from the EVA curve, 10 to 85 %% strain");
-    sf_study_check(s, bend, 0, 0.01, "distance of the law from softfall's straight line in tension, λ to 1.3");
+    sf_study_check(s, bend, 0, 0.01,
+                   "distance of the law from softfall's straight line in tension, λ to 1.3");
     sf_study_check(s, table, 0, 1e-4, "error of softfall's curve against the closed form, 1 to 92 %% strain");
 }
 
@@ -122,7 +123,8 @@ static void study_element(sf_study *s, const sf_indentation *in) {
             sf_ccx_forces_free(&f);
         }
     }
-    sf_study_text(s, "### One element of CalculiX\n\nOne C3D8 with all its nodes prescribed, 50 increments: the force on each face "
+    sf_study_text(s, "### One element of CalculiX\n\nOne C3D8 with all its nodes prescribed, 50 increments: "
+                     "the force on each face "
                      "against T(λ) of its own direction, relative.\n\n");
     if (err.status != SF_OK) {
         sf_study_fail(s, &err);
@@ -181,8 +183,10 @@ static void extrapolate_pair(const pair *p, pair *limit) {
 }
 
 static void print_forces(sf_study *s, const pair *p, const pair *limit) {
-    sf_study_text(s, "Force in N (softfall / CalculiX) and difference; h → 0: the fit F = F₀ + a h² over the three meshes.\n\n"
-                     "| depth | 10 mm | | 7.14 mm | | 5 mm | | h → 0 | |\n|---|---|---|---|---|---|---|---|---|\n");
+    sf_study_text(
+        s, "Force in N (softfall / CalculiX) and difference; h → 0: the fit F = F₀ + a h² over the three "
+           "meshes.\n\n"
+           "| depth | 10 mm | | 7.14 mm | | 5 mm | | h → 0 | |\n|---|---|---|---|---|---|---|---|---|\n");
     for (int k = 0; k < p[MESHES - 1].count; k++) {
         sf_study_text(s, "| %.0f mm", depth_of(k));
         for (int m = 0; m <= MESHES; m++) {
@@ -195,11 +199,13 @@ static void print_forces(sf_study *s, const pair *p, const pair *limit) {
         }
         sf_study_text(s, " |\n");
     }
-    sf_study_text(s, "\n| | cells | softfall, CPU s (pre, solve, post) | CalculiX, CPU s | CalculiX reached |\n|---|---|---|---|---|\n");
+    sf_study_text(s, "\n| | cells | softfall, CPU s (pre, solve, post) | CalculiX, CPU s | CalculiX reached "
+                     "|\n|---|---|---|---|---|\n");
     for (int m = 0; m < MESHES; m++)
         sf_study_text(s, "| %.3g mm | %d | %.1f | %.0f | %.1f mm%s%s |\n", THICKNESS / layers[m],
                       4 * layers[m] * layers[m] * layers[m], p[m].softfall.cpu, p[m].calculix.cpu,
-                      1e3 * p[m].calculix.depth_reached, p[m].calculix.ending[0] ? ": " : "", p[m].calculix.ending);
+                      1e3 * p[m].calculix.depth_reached, p[m].calculix.ending[0] ? ": " : "",
+                      p[m].calculix.ending);
     sf_study_text(s, "\n");
 }
 
@@ -217,16 +223,18 @@ static void write_data(sf_study *s, const pair *p, const pair *limit) {
         fprintf(file, "\n");
     }
     fclose(file);
-    sf_study_plot(s, "force.png", "Force against depth in softfall and CalculiX, and their difference",
-                  "set multiplot layout 2,1\nset key left top\nset ylabel 'force (N)'\nset logscale y\nset format x ''\n"
-                  "f = 'calculix-force.dat'\n"
-                  "plot f u 1:7 w l lw 2 lc 6 t 'CalculiX, 5 mm', f u 1:6 w p pt 6 lc 7 t 'softfall, 5 mm', "
-                  "f u 1:3 w l dt 2 lc 6 t 'CalculiX, 10 mm', f u 1:2 w p pt 1 lc 7 t 'softfall, 10 mm'\n"
-                  "unset logscale\nset format x '%g'\nset xlabel 'depth (mm)'\nset ylabel 'softfall - CalculiX (%)'\n"
-                  "set key right bottom\nset yrange [-15:5]\n"
-                  "plot f u 1:(100*($2/$3-1)) w lp t '10 mm', f u 1:(100*($4/$5-1)) w lp t '7.14 mm', "
-                  "f u 1:(100*($6/$7-1)) w lp t '5 mm', f u 1:(100*($8/$9-1)) w lp lw 2 t 'h to 0', "
-                  "3 lc 0 dt 3 notitle, -3 lc 0 dt 3 notitle\nunset multiplot");
+    sf_study_plot(
+        s, "force.png", "Force against depth in softfall and CalculiX, and their difference",
+        "set multiplot layout 2,1\nset key left top\nset ylabel 'force (N)'\nset logscale y\nset format x "
+        "''\n"
+        "f = 'calculix-force.dat'\n"
+        "plot f u 1:7 w l lw 2 lc 6 t 'CalculiX, 5 mm', f u 1:6 w p pt 6 lc 7 t 'softfall, 5 mm', "
+        "f u 1:3 w l dt 2 lc 6 t 'CalculiX, 10 mm', f u 1:2 w p pt 1 lc 7 t 'softfall, 10 mm'\n"
+        "unset logscale\nset format x '%g'\nset xlabel 'depth (mm)'\nset ylabel 'softfall - CalculiX (%)'\n"
+        "set key right bottom\nset yrange [-15:5]\n"
+        "plot f u 1:(100*($2/$3-1)) w lp t '10 mm', f u 1:(100*($4/$5-1)) w lp t '7.14 mm', "
+        "f u 1:(100*($6/$7-1)) w lp t '5 mm', f u 1:(100*($8/$9-1)) w lp lw 2 t 'h to 0', "
+        "3 lc 0 dt 3 notitle, -3 lc 0 dt 3 notitle\nunset multiplot");
 }
 
 static void check_forces(sf_study *s, const pair *p, const pair *limit) {
@@ -234,16 +242,20 @@ static void check_forces(sf_study *s, const pair *p, const pair *limit) {
     double small = 0;
     int ten = 4; /* index of the depth 10 mm */
     for (int k = 0; k < ten && k < fine->count; k++)
-        small = fmax(small, fabs(fine->softfall.force[k] - fine->calculix.force[k]) / fine->calculix.force[ten]);
-    sf_study_check(s, 1e3 * fine->calculix.depth_reached, 40, INFINITY, "depth that CalculiX reached at 5 mm (mm)");
-    sf_study_check(s, largest_difference(fine->softfall.force, fine->calculix.force, fine->count, 10, 40), 0, 0.03,
+        small =
+            fmax(small, fabs(fine->softfall.force[k] - fine->calculix.force[k]) / fine->calculix.force[ten]);
+    sf_study_check(s, 1e3 * fine->calculix.depth_reached, 40, INFINITY,
+                   "depth that CalculiX reached at 5 mm (mm)");
+    sf_study_check(s, largest_difference(fine->softfall.force, fine->calculix.force, fine->count, 10, 40), 0,
+                   0.03,
                    "difference at 5 mm spacing, every point from 10 to 40 mm (20 to 80 %% of the thickness)");
     sf_study_check(s, small, 0, 0.03, "difference at 5 mm spacing below 10 mm, over the force at 10 mm");
-    sf_study_check(s, largest_difference(limit->softfall.force, limit->calculix.force, limit->count, 10, 40), 0, 0.01,
-                   "difference of the limits h → 0, every point from 10 to 40 mm");
+    sf_study_check(s, largest_difference(limit->softfall.force, limit->calculix.force, limit->count, 10, 40),
+                   0, 0.01, "difference of the limits h → 0, every point from 10 to 40 mm");
     for (int k = 9; k < limit->count && k < 20; k += 5)
         sf_study_check(s, log(difference(&p[0], k) / difference(fine, k)) / log(2.), 1.3, INFINITY,
-                       "order at which the difference falls from 10 to 5 mm spacing, depth %.0f mm", depth_of(k));
+                       "order at which the difference falls from 10 to 5 mm spacing, depth %.0f mm",
+                       depth_of(k));
 }
 
 static sf_status study_pad(sf_study *s, const sf_indentation *in, pair p[MESHES], sf_error *err) {
@@ -258,10 +270,14 @@ static sf_status study_pad(sf_study *s, const sf_indentation *in, pair p[MESHES]
     }
     pair limit;
     extrapolate_pair(p, &limit);
-    sf_study_text(s, "### Indentation\n\nA quarter of a pad 200 × 200 × 50 mm, glued at its base, and the rigid sphere of 160 mm, without "
-                     "friction. The same lattice of hexahedra, node for node: 10, 7.14 and 5 mm. CalculiX: C3D8, static, contact face to "
-                     "face with a linear penalty of 100 N/mm³, triangles of 3 mm for the sphere. softfall: the exact sphere of "
-                     "10⁵ kg at 1 m/s (DAMP 0.05, no other viscosity), force averaged over ±0.25 mm of depth.\n\n");
+    sf_study_text(
+        s, "### Indentation\n\nA quarter of a pad 200 × 200 × 50 mm, glued at its base, and the rigid sphere "
+           "of 160 mm, without "
+           "friction. The same lattice of hexahedra, node for node: 10, 7.14 and 5 mm. CalculiX: C3D8, "
+           "static, contact face to "
+           "face with a linear penalty of 100 N/mm³, triangles of 3 mm for the sphere. softfall: the exact "
+           "sphere of "
+           "10⁵ kg at 1 m/s (DAMP 0.05, no other viscosity), force averaged over ±0.25 mm of depth.\n\n");
     print_forces(s, p, &limit);
     check_forces(s, p, &limit);
     write_data(s, p, &limit);
@@ -277,27 +293,33 @@ static sf_status study_influences(sf_study *s, const sf_indentation *in, const p
     tension.modulus = 1.1;
     stiff.penalty = 10 * usual.penalty;
     sphere.facet = usual.facet / 2;
-    if (sf_indentation_softfall(in, &slow, &a, err) != SF_OK || sf_indentation_softfall(in, &tension, &b, err) != SF_OK ||
-        sf_indentation_calculix(in, &stiff, &c, err) != SF_OK || sf_indentation_calculix(in, &sphere, &d, err) != SF_OK)
+    if (sf_indentation_softfall(in, &slow, &a, err) != SF_OK ||
+        sf_indentation_softfall(in, &tension, &b, err) != SF_OK ||
+        sf_indentation_calculix(in, &stiff, &c, err) != SF_OK ||
+        sf_indentation_calculix(in, &sphere, &d, err) != SF_OK)
         return err->status;
     const double *softfall = coarse->softfall.force, *calculix = coarse->calculix.force;
-    sf_study_text(s, "### What else could matter\n\nChange of the force on the 10 mm mesh, every point from 10 to 40 mm.\n\n");
-    sf_study_check(s, largest_difference(a.force, softfall, a.count, 10, 40), 0, 0.005, "softfall at half the speed");
+    sf_study_text(s, "### What else could matter\n\nChange of the force on the 10 mm mesh, every point from "
+                     "10 to 40 mm.\n\n");
+    sf_study_check(s, largest_difference(a.force, softfall, a.count, 10, 40), 0, 0.005,
+                   "softfall at half the speed");
     sf_study_check(s, largest_difference(b.force, softfall, b.count, 10, 40), 0, 0.02,
                    "softfall with 10 %% more stiffness in tension");
     sf_study_check(s, largest_difference(c.force, calculix, c.count, 10, 40), 0, 0.005,
                    "CalculiX with ten times the contact stiffness (reached %.1f mm)", 1e3 * c.depth_reached);
     sf_study_check(s, largest_difference(d.force, calculix, d.count, 10, 40), 0, 0.005,
-                   "CalculiX with triangles of 1.5 mm for the sphere (reached %.1f mm)", 1e3 * d.depth_reached);
+                   "CalculiX with triangles of 1.5 mm for the sphere (reached %.1f mm)",
+                   1e3 * d.depth_reached);
     return SF_OK;
 }
 
 static void print_stretches(sf_study *s, const sf_indentation_curve *fine) {
     sf_study_text(s, "Tension in softfall at 5 mm spacing:");
     for (int k = 0; k < fine->frames && k < 4; k++)
-        sf_study_text(s, "%s largest principal stretch %.3f at %d mm (above 1.3 in %.2f %% of the volume)", k ? ";" : "",
-                      fine->stretch[k], 10 * (k + 1), 100 * fine->beyond[k]);
-    sf_study_text(s, ". As long as it stays below 1.3 the two laws differ there by less than 1 %%, and the table above says how little "
+        sf_study_text(s, "%s largest principal stretch %.3f at %d mm (above 1.3 in %.2f %% of the volume)",
+                      k ? ";" : "", fine->stretch[k], 10 * (k + 1), 100 * fine->beyond[k]);
+    sf_study_text(s, ". As long as it stays below 1.3 the two laws differ there by less than 1 %%, and the "
+                     "table above says how little "
                      "ten times as much matters; beyond 40 mm this comparison would be one of two laws.\n\n");
 }
 
@@ -308,12 +330,15 @@ static sf_status study_end_of_range(sf_study *s, const sf_indentation *in, sf_er
     deep.depth = 49.5e-3;
     deep.interval = 1.5e-3;
     nodes.nodes = true;
-    if (sf_indentation_calculix(in, &deep, &a, err) != SF_OK || sf_indentation_calculix(in, &nodes, &b, err) != SF_OK)
+    if (sf_indentation_calculix(in, &deep, &a, err) != SF_OK ||
+        sf_indentation_calculix(in, &nodes, &b, err) != SF_OK)
         return err->status;
-    sf_study_text(s, "### Where CalculiX stops\n\nAsked for 49.5 mm (99 %% of the thickness) on the 10 mm mesh, CalculiX reached %.2f mm%s%s%s. With "
-                     "contact node to surface instead of face to face it reached %.2f mm%s%s%s.\n\n",
-                  1e3 * a.depth_reached, a.ending[0] ? " (" : "", a.ending, a.ending[0] ? ")" : "", 1e3 * b.depth_reached,
-                  b.ending[0] ? " (" : "", b.ending, b.ending[0] ? ")" : "");
+    sf_study_text(s,
+                  "### Where CalculiX stops\n\nAsked for 49.5 mm (99 %% of the thickness) on the 10 mm mesh, "
+                  "CalculiX reached %.2f mm%s%s%s. With "
+                  "contact node to surface instead of face to face it reached %.2f mm%s%s%s.\n\n",
+                  1e3 * a.depth_reached, a.ending[0] ? " (" : "", a.ending, a.ending[0] ? ")" : "",
+                  1e3 * b.depth_reached, b.ending[0] ? " (" : "", b.ending, b.ending[0] ? ")" : "");
     return SF_OK;
 }
 
@@ -326,11 +351,15 @@ int main(int argc, char **argv) {
     bool present = sf_ccx_present(version);
     sf_study_begin(&s, "calculix", "An independent code: indentation against CalculiX", argc, argv);
     if (!present) {
-        sf_study_text(&s, "Skipped: CalculiX (the program `ccx`, Debian package calculix-ccx) is not installed.\n\n");
+        sf_study_text(
+            &s, "Skipped: CalculiX (the program `ccx`, Debian package calculix-ccx) is not installed.\n\n");
         sf_study_end(&s);
         return SKIPPED;
     }
-    sf_study_text(&s, "CalculiX %s, an implicit finite element code that shares nothing with softfall but the mesh.\n\n", version);
+    sf_study_text(
+        &s,
+        "CalculiX %s, an implicit finite element code that shares nothing with softfall but the mesh.\n\n",
+        version);
     if (sf_indentation_begin(&in, &err) == SF_OK) {
         study_law(&s, &in);
         study_element(&s, &in);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The foam law in homogeneous compression of a cube, run by the solver's own steps: a heavy plate presses a block on a
- * smooth base at constant speed and withdraws. Domains, missile and base are compared with closed forms of the curve, of
- * hysteresis and of every viscous term. */
+/* The foam law in homogeneous compression of a cube, run by the solver's own steps: a heavy plate presses a
+ * block on a smooth base at constant speed and withdraws. Domains, missile and base are compared with closed
+ * forms of the curve, of hysteresis and of every viscous term. */
 #include "formula.h"
 #include "model_fixture.h"
 #include "solver/step.h"
@@ -12,8 +12,8 @@
 #include <string.h>
 
 enum { CELLS = 3, LEGS = 8 };
-static const double SIDE = 0.3;       /* m, of the cube */
-static const double FLOOR = 1e3;      /* Pa: errors are relative to the stress, but to this at least */
+static const double SIDE = 0.3;         /* m, of the cube */
+static const double FLOOR = 1e3;        /* Pa: errors are relative to the stress, but to this at least */
 static const double STRAIN_STEP = 2e-4; /* largest, of a time step */
 
 /* What a pressing is to do: strains at which the plate turns, one leg after the other, at a constant rate. */
@@ -25,8 +25,8 @@ typedef struct pressing {
 
 /* Where a pressing stands, for the closed forms. */
 typedef struct place {
-    double time, strain;   /* s, - */
-    double velocity;       /* s-1, of the stretch: negative while compressing */
+    double time, strain; /* s, - */
+    double velocity;     /* s-1, of the stretch: negative while compressing */
     int leg;
     double leg_time;       /* s, since the leg began */
     double leg_stretch;    /* -, at its begin */
@@ -49,9 +49,10 @@ static double relative(double value, double expected, double size) {
     return fabs(value - expected) / fmax(size, FLOOR);
 }
 
-/* A jittered cube on rollers under a plate of a thousand tonnes, already moving as one with it. `card` sets the losses. */
-static void build_cube(const sf_foam_card *card, int curves, const double *rates, const double *factors, double rate,
-                       fixture *f) {
+/* A jittered cube on rollers under a plate of a thousand tonnes, already moving as one with it. `card` sets
+ * the losses. */
+static void build_cube(const sf_foam_card *card, int curves, const double *rates, const double *factors,
+                       double rate, fixture *f) {
     const fixture_block block = {
         .cells = {CELLS, CELLS, CELLS}, .spacing = SIDE / CELLS, .jitter = 0.2, .surface_jitter = 0.15};
     sf_case c;
@@ -182,19 +183,23 @@ static double hysteretic(const sf_foam_card *card, place *p, double *memory) {
     return p->size = stress;
 }
 
-/* Maxwell stress after the leg so far, from what it held at its begin: the convolution integral of E' = lambda lambda'
- * for a constant rate of the stretch. memory[0]: S at the leg's begin; memory[1]: S now. */
+/* Maxwell stress after the leg so far, from what it held at its begin: the convolution integral of E' =
+ * lambda lambda' for a constant rate of the stretch. memory[0]: S at the leg's begin; memory[1]: S now. */
 static double with_maxwell(const sf_foam_card *card, place *p, double *memory) {
-    double b = card->maxwell_rate, t = p->time - p->leg_time, v = p->velocity, from = p->leg_stretch, now = from + v * t;
-    memory[1] = memory[0] * exp(-b * t) + card->maxwell_modulus * v / b * (now - v / b - exp(-b * t) * (from - v / b));
+    double b = card->maxwell_rate, t = p->time - p->leg_time, v = p->velocity, from = p->leg_stretch,
+           now = from + v * t;
+    memory[1] = memory[0] * exp(-b * t) +
+                card->maxwell_modulus * v / b * (now - v / b - exp(-b * t) * (from - v / b));
     double stress = hysteretic(card, p, memory);
     p->size += fabs(now * memory[1]);
     return stress - now * memory[1];
 }
 
-/* Kelvin: P = eta lambda^2 lambda'; DAMP: P = DAMP rho c L lambda'. At the very start nothing has moved yet. */
+/* Kelvin: P = eta lambda^2 lambda'; DAMP: P = DAMP rho c L lambda'. At the very start nothing has moved yet.
+ */
 static double with_viscosity(const sf_foam_card *card, place *p, double *memory) {
-    double stretch = 1 - p->strain, g = fmax(fmax(card->modulus, sf_formula_slope(0)), sf_formula_slope(p->strain));
+    double stretch = 1 - p->strain,
+           g = fmax(fmax(card->modulus, sf_formula_slope(0)), sf_formula_slope(p->strain));
     double damp = card->damp * card->damp_length * sqrt(g * card->density);
     double viscous = (card->kelvin_viscosity * stretch * stretch + damp) * p->velocity;
     double stress = hysteretic(card, p, memory);
@@ -204,14 +209,16 @@ static double with_viscosity(const sf_foam_card *card, place *p, double *memory)
 
 static const double CURVE_RATE[3] = {20, 100, 500}, CURVE_FACTOR[3] = {1, 1.25, 1.6};
 
-/* Curves at several rates, each a multiple of the slowest: the factor is piecewise linear in ln r behind the filter. */
+/* Curves at several rates, each a multiple of the slowest: the factor is piecewise linear in ln r behind the
+ * filter. */
 static double with_rates(const sf_foam_card *card, place *p, double *memory) {
     double r = -p->velocity * -expm1(-p->time / card->rate_filter_time), factor = CURVE_FACTOR[0];
     (void)memory;
     for (int k = 0; k < 2; k++)
         if (r > CURVE_RATE[k])
-            factor = CURVE_FACTOR[k] + fmin(1, log(r / CURVE_RATE[k]) / log(CURVE_RATE[k + 1] / CURVE_RATE[k])) *
-                                           (CURVE_FACTOR[k + 1] - CURVE_FACTOR[k]);
+            factor =
+                CURVE_FACTOR[k] + fmin(1, log(r / CURVE_RATE[k]) / log(CURVE_RATE[k + 1] / CURVE_RATE[k])) *
+                                      (CURVE_FACTOR[k + 1] - CURVE_FACTOR[k]);
     return p->size = factor * sf_formula_stress(p->strain);
 }
 
@@ -234,7 +241,8 @@ static const sf_foam_card ELASTIC = {.hysteresis_hu = 1,
 
 static void check_outcome(sf_study *s, const outcome *o, const char *what) {
     sf_study_check(s, o->domains, 0, 1e-3, "%s: stress of every domain, relative error", what);
-    sf_study_check(s, fmax(o->plate, o->base), 0, 1e-3, "%s: force of plate and base per area, relative error", what);
+    sf_study_check(s, fmax(o->plate, o->base), 0, 1e-3,
+                   "%s: force of plate and base per area, relative error", what);
     sf_study_check(s, o->uneven, 0, 1e-9, "%s: difference of F between domains", what);
 }
 
@@ -251,7 +259,8 @@ static void loading_and_unloading(sf_study *s, FILE *data) {
     build_cube(&card, 1, &STILL, &ONE, again.rate, &f);
     o = press(&f, &again, hysteretic, data);
     check_outcome(s, &o, "70 %, 20 %, 90 %, 30 %");
-    sf_study_check(s, o.retrace, 0, 1e-3, "reloading against unloading, relative difference of the plate's force");
+    sf_study_check(s, o.retrace, 0, 1e-3,
+                   "reloading against unloading, relative difference of the plate's force");
     fixture_free(&f);
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         card.hysteresis_hu = cases[k][0];
@@ -260,8 +269,8 @@ static void loading_and_unloading(sf_study *s, FILE *data) {
         o = press(&f, &back, hysteretic, NULL);
         double expected = cases[k][0] + (1 - cases[k][0]) / (1 + cases[k][1]);
         sf_study_check(s, o.work_out / o.work_in, expected - 1e-3, expected + 1e-3,
-                       "returned part of the plate's work, HU %g, SHAPE %g (closed form %.4f)", cases[k][0], cases[k][1],
-                       expected);
+                       "returned part of the plate's work, HU %g, SHAPE %g (closed form %.4f)", cases[k][0],
+                       cases[k][1], expected);
         fixture_free(&f);
     }
 }
@@ -319,20 +328,27 @@ static void rates_and_tension(sf_study *s) {
 int main(int argc, char **argv) {
     sf_study s;
     sf_study_begin(&s, "material", "Material", argc, argv);
-    sf_study_text(&s, "A jittered cube of %d × %d × %d cells on a smooth base is pressed at constant speed by a plate, with the solver's own steps. The curve "
-                      "is a formula, given to the program as a table up to 80 %%; beyond, rule H1. Errors are relative to the stress (the sum of the sizes of its parts, elastic and viscous), or to %g Pa where it is "
-                      "smaller, and the largest of all steps.\n\n", CELLS, CELLS, CELLS, FLOOR);
+    sf_study_text(
+        &s,
+        "A jittered cube of %d × %d × %d cells on a smooth base is pressed at constant speed by a plate, "
+        "with the solver's own steps. The curve "
+        "is a formula, given to the program as a table up to 80 %%; beyond, rule H1. Errors are relative to "
+        "the stress (the sum of the sizes of its parts, elastic and viscous), or to %g Pa where it is "
+        "smaller, and the largest of all steps.\n\n",
+        CELLS, CELLS, CELLS, FLOOR);
     FILE *data = sf_study_file(&s, "curves.txt");
     loading_and_unloading(&s, data);
     viscous_terms(&s, data);
     rates_and_tension(&s);
     if (data)
         fclose(data);
-    sf_study_plot(&s, "curves.png", "Stress against strain of the pressed cube: loading, unloading, reloading, Maxwell branch",
-                  "set xlabel 'strain'\nset ylabel 'nominal stress (kPa)'\nset xrange [0:0.9]\nset yrange [-100:1000]\n"
-                  "set key left top\n"
-                  "plot for [k=0:3] 'material-curves.txt' index k every 80 using 1:2 with points pt 6 lc k+1 "
-                  "title word('0-90-0% 0-70-20-90-30% Maxwell,100/s Maxwell,300/s', k+1), "
-                  "for [k=0:3] '' index k using 1:3 with lines lc k+1 notitle");
+    sf_study_plot(
+        &s, "curves.png",
+        "Stress against strain of the pressed cube: loading, unloading, reloading, Maxwell branch",
+        "set xlabel 'strain'\nset ylabel 'nominal stress (kPa)'\nset xrange [0:0.9]\nset yrange [-100:1000]\n"
+        "set key left top\n"
+        "plot for [k=0:3] 'material-curves.txt' index k every 80 using 1:2 with points pt 6 lc k+1 "
+        "title word('0-90-0% 0-70-20-90-30% Maxwell,100/s Maxwell,300/s', k+1), "
+        "for [k=0:3] '' index k using 1:3 with lines lc k+1 notitle");
     return sf_study_end(&s);
 }

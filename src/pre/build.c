@@ -134,6 +134,12 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
         if (axis != 0 && axis != 1)
             return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is not a plane normal to x or y",
                            set->name);
+        if (fabs(c->missile_card.direction[axis]) > 1e-12)
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "missile.direction has the component %g normal to the symmetry plane \"%s\": an "
+                           "oblique impact "
+                           "needs a model without that plane",
+                           c->missile_card.direction[axis], set->name);
         if (seen & (1 << axis))
             return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is a second plane normal to %c",
                            set->name, 'x' + axis);
@@ -165,7 +171,8 @@ static sf_status mark_sliding(const sf_case *c, const sf_mesh *mesh, const sf_mo
 }
 
 /* Groups to constrained nodes (with their components) and contact points. */
-static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf_error *err) {
+static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf_build_report *report,
+                            sf_error *err) {
     uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
     uint8_t *base = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
     if (err->status != SF_OK || mark_symmetry(c, mesh, m, mask, err) != SF_OK)
@@ -186,14 +193,21 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, 
     const sf_node_set *contact = need_set(mesh, "pad.contact", c->contact_group, err);
     if (!contact)
         goto done;
-    m->contact_count = contact->count;
     m->contact_node = sf_alloc(err, (unsigned long)contact->count, sizeof *m->contact_node, "contact points");
     m->fixed_node = sf_alloc(err, (unsigned long)m->fixed_count, sizeof *m->fixed_node, "constraints");
     m->fixed_mask = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     m->fixed_base = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     if (err->status != SF_OK)
         goto done;
-    memcpy(m->contact_node, contact->node, (size_t)contact->count * sizeof *contact->node);
+    /* A node that is held altogether cannot give way to the missile: it is no contact point. */
+    for (int64_t k = 0; k < contact->count; k++)
+        if (mask[contact->node[k]] != (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
+            m->contact_node[m->contact_count++] = contact->node[k];
+    report->contact_held = m->contact_count == 0;
+    if (report->contact_held) {
+        memcpy(m->contact_node, contact->node, (size_t)contact->count * sizeof *contact->node);
+        m->contact_count = contact->count;
+    }
     int64_t used = 0;
     for (int64_t i = 0; i < m->node_count; i++) {
         if (!mask[i])
@@ -270,7 +284,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
                          sf_error *err) {
     memset(m, 0, sizeof *m);
     memset(report, 0, sizeof *report);
-    if (build_cloud(c, mesh, m, report, err) == SF_OK && build_sets(c, mesh, m, err) == SF_OK &&
+    if (build_cloud(c, mesh, m, report, err) == SF_OK && build_sets(c, mesh, m, report, err) == SF_OK &&
         build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK &&
         sf_model_check(m, err) == SF_OK)
         first_step(m, &report->first_step, err);

@@ -21,6 +21,7 @@ typedef struct sf_build_report {
     double worst_condition;
     double worst_position[3]; /* m */
     double first_step;        /* s, before any safety factor */
+    bool contact_held;        /* every contact point is held: nothing to drop on */
     sf_invariants invariants;
 } sf_build_report;
 

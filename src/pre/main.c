@@ -79,6 +79,11 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
         read_geometry(&c, &mesh, &surface, err) != SF_OK ||
         sf_model_build(&c, &mesh, &surface, &model, &report, err) != SF_OK)
         goto done;
+    if (report.contact_held) {
+        SF_FAIL(err, SF_ERR_INPUT, "pad.contact: every node of the group \"%s\" is held by pad.fixed",
+                c.contact_group);
+        goto done;
+    }
     sf_report_print(stdout, &model, &report);
     sf_provenance provenance = {"softfall-pre", command, libraries, c.text, c.parameters, report.mesh_hash};
     if (sf_model_write(o->output, &model, &provenance, err) == SF_OK)

@@ -5,6 +5,8 @@
 #include <string.h>
 
 enum { MAX_SWEEPS = 500 };
+static const double ENTRY_DEPTH =
+    0.1; /* of the spacing: no free point gets deeper in one step through the surface */
 static const double SWEEP_TOLERANCE = 1e-10; /* largest change of a force, relative to the largest force */
 
 /* What one solve needs beside the state. */
@@ -63,6 +65,16 @@ static void book_work(const sf_model *m, sf_state *s) {
     }
 }
 
+/* Is the point, free in the last step, deep inside already? Then it did not come through the touching surface
+ * but round its rim, and pushing it out would throw it. */
+static bool entered_from_behind(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t c,
+                                const double now[3]) {
+    double gap, normal[3];
+    return sf_dot3(&s->contact_force[3 * c], &s->contact_force[3 * c]) == 0 &&
+           (!sf_missile_surface_gap(&op->surface, now, &gap, normal) ||
+            gap < -ENTRY_DEPTH * m->spacing[m->contact_node[c]]);
+}
+
 /* Gaps at the predicted positions; the list of points that would be inside. Deepest present penetration. */
 static int64_t find_active(const sf_model *m, const sf_operators *op, sf_state *s, double free_step) {
     const double *e = m->missile.direction;
@@ -78,6 +90,8 @@ static int64_t find_active(const sf_model *m, const sf_operators *op, sf_state *
             s->penetration = fmax(s->penetration, -gap);
         s->contact_gap[c] = INFINITY;
         if (!sf_missile_surface_gap(&op->surface, next, &gap, normal))
+            continue;
+        if (gap < 0 && entered_from_behind(m, op, s, c, now))
             continue;
         s->contact_gap[c] = gap;
         memcpy(&s->contact_normal[3 * c], normal, sizeof normal);
@@ -150,8 +164,9 @@ static void relax(const sf_model *m, const sf_operators *op, sf_state *s, int64_
             largest = fmax(largest, sf_dot3(&s->contact_force[3 * c], &s->contact_normal[3 * c]));
         }
         if (change <= SWEEP_TOLERANCE * largest)
-            break;
+            return;
     }
+    s->contact_unsettled++;
 }
 
 /* phi^T q to the coefficients' forces; resultants to the missile. */

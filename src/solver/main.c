@@ -9,6 +9,7 @@
 #include <math.h>
 #include <omp.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -74,6 +75,15 @@ static void print_model(const sf_model *m, int threads) {
            (long long)m->contact_count, (long long)m->symmetry_factor, threads);
 }
 
+__attribute__((format(printf, 1, 2))) static void warn(const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    fputs("softfall-solve: warning: ", stderr);
+    vfprintf(stderr, format, args);
+    fputc('\n', stderr);
+    va_end(args);
+}
+
 static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run) {
     const sf_ledger *l = &s->ledger;
     double whole = (double)m->symmetry_factor;
@@ -92,17 +102,29 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
            l->largest_error, run->largest_momentum, run->largest_residual, 1e3 * run->largest_penetration);
     printf("at the peak of the internal energy (%.3f J): stabilisation %.2f %%, contact %.3f %%\n",
            run->peak_internal, 100 * run->stabilisation_share, 100 * run->contact_share);
-    printf("largest acceleration %.2f g at %.3f ms, largest local compression %.4f, rebound %.3f m/s\n",
+    printf("largest acceleration %.2f g at %.3f ms, largest local compression %.4f, speed upwards at the end "
+           "%.3f m/s\n",
            run->peak_acceleration / 9.80665, 1e3 * run->peak_time, run->largest_compression,
            fmax(0, -s->missile.velocity_now));
+    const sf_missile_card *card = &m->missile;
+    double height = card->sphere_radius * (1 - card->sphere_cap_cosine);
+    if (card->shape == SF_SHAPE_SPHERE && run->largest_indentation > height)
+        warn("the missile went %.4g mm deep, beyond its spherical cap of %.4g mm",
+             1e3 * run->largest_indentation, 1e3 * height);
+    if (l->largest_error > 0.01 || fabs(run->stabilisation_share) > 0.05 || fabs(run->contact_share) > 0.01)
+        warn("energy error %.2f %% (good: 1), stabilisation %.2f %% (5), contact %.2f %% (1): do not trust "
+             "these figures",
+             100 * l->largest_error, 100 * run->stabilisation_share, 100 * run->contact_share);
+    if (s->contact_unsettled > 0)
+        warn("the contact forces of %lld steps did not settle to the last digits",
+             (long long)s->contact_unsettled);
     if (isnan(s->missile.contact_time))
-        fprintf(stderr, "softfall-solve: warning: the missile never touched the pad\n");
+        warn("the missile never touched the pad");
     if (run->largest_indentation > m->thickness)
-        fprintf(stderr,
-                "softfall-solve: warning: the missile went %.4g mm into a pad of %.4g mm: it is smaller than "
-                "the spacing "
-                "of the contact points and passed between them\n",
-                1e3 * run->largest_indentation, 1e3 * m->thickness);
+        warn("the missile went %.4g mm into a pad of %.4g mm: it is smaller than "
+             "the spacing "
+             "of the contact points and passed between them",
+             1e3 * run->largest_indentation, 1e3 * m->thickness);
 }
 
 static sf_status solve(const options *o, const char *command, sf_error *err) {

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-static const double PEAK_INTERVAL = 50e-6; /* s, between snapshots of a growing acceleration */
+static const double PEAK_GROWTH = 1.001;   /* of the acceleration from one kept maximum to the next */
 static const double REBOUND_WAIT = 1e-3;   /* s, without contact before the run may end */
 static const double PROGRESS_INTERVAL = 5; /* s of wall time between plain lines */
 
@@ -17,6 +17,7 @@ static const double PROGRESS_INTERVAL = 5; /* s of wall time between plain lines
 typedef struct recorder {
     sf_history *history;
     sf_snapshot peak;
+    double peak_kept; /* m s-2, the maximum that `peak` follows */
     int64_t frames;
     double next_frame;       /* s */
     int64_t next_extra;      /* index in model->frame_time */
@@ -77,8 +78,9 @@ static void watch(const sf_model *m, const sf_operators *op, const sf_state *s, 
     if (a > run->peak_acceleration) {
         run->peak_acceleration = a;
         run->peak_time = s->time;
-        if (s->step == 0 || s->time - r->peak.frame.time >= PEAK_INTERVAL)
-            sf_snapshot_take(m, op, s, &r->peak);
+    } else if (run->peak_acceleration > PEAK_GROWTH * r->peak_kept) { /* one step past a maximum */
+        r->peak_kept = run->peak_acceleration;
+        sf_snapshot_take(m, op, s, &r->peak);
     }
 }
 
@@ -163,6 +165,8 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     if (err->status == SF_ERR_NUMERIC)
         write_frame(m, op, s, &r, file, &late);
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC || err->status == SF_INTERRUPTED) {
+        if (run->peak_acceleration > PEAK_GROWTH * r.peak_kept) /* it was still rising */
+            sf_snapshot_take(m, op, s, &r.peak);
         sf_history_write(r.history, file, &late);
         sf_snapshot_write(m, &r.peak, "/peak", file, &late);
         write_summary(m, s, run, err->status == SF_ERR_NUMERIC ? err->text : run->ending, file, &late);

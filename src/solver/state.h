@@ -89,17 +89,18 @@ typedef struct sf_state {
     double *power_out;    /* [n] the product */
 
     /* Contact points. */
-    double *contact_position; /* [contacts][3] m, physical, now */
-    double *contact_motion;   /* [contacts][3] m, its last step */
-    double *contact_step;     /* [contacts][3] m, its next step without contact forces */
-    double *contact_force;    /* [contacts][3] N, on the pad */
-    double *contact_old;      /* [contacts][3] N, of the last step */
-    double *contact_gap;      /* [contacts] m, predicted */
-    double *contact_normal;   /* [contacts][3] outward from the missile */
-    int32_t *contact_active;  /* [contacts] list */
-    double missile_old;       /* m, displacement one step ago */
-    int64_t contact_count;    /* points with a force */
-    double penetration;       /* m, deepest now */
+    double *contact_position;  /* [contacts][3] m, physical, now */
+    double *contact_motion;    /* [contacts][3] m, its last step */
+    double *contact_step;      /* [contacts][3] m, its next step without contact forces */
+    double *contact_force;     /* [contacts][3] N, on the pad */
+    double *contact_old;       /* [contacts][3] N, of the last step */
+    double *contact_gap;       /* [contacts] m, predicted */
+    double *contact_normal;    /* [contacts][3] outward from the missile */
+    int32_t *contact_active;   /* [contacts] list */
+    double missile_old;        /* m, displacement one step ago */
+    int64_t contact_count;     /* points with a force */
+    double penetration;        /* m, deepest now */
+    int64_t contact_unsettled; /* steps whose sweeps did not reach their tolerance */
 
     sf_missile missile;
     sf_ledger ledger;

@@ -42,6 +42,15 @@ static sf_status check_step(const sf_model *m, const sf_state *s, sf_error *err)
 
 /* The energy limit is a stop, not a tolerance: beyond it the run has become unstable. */
 static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *err) {
+    double least = fmin(s->ledger.contact, s->ledger.stabilisation);
+    if (least < -m->run.energy_limit * s->ledger.initial)
+        return SF_FAIL(
+            err, SF_ERR_NUMERIC,
+            "at t = %.6g s (step %lld) contact or stabilisation has put %.3g J into the pad (contact %.3g J, "
+            "stabilisation %.3g J; limit %.2f %% of the impact energy): is the missile pressed in beyond its "
+            "touching surface?",
+            s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
+            100 * m->run.energy_limit);
     if (fabs(s->ledger.error) <= m->run.energy_limit)
         return SF_OK;
     return SF_FAIL(

@@ -21,7 +21,8 @@ bool sf_ccx_present(char version[64]) {
 double sf_children_cpu(void) {
     struct rusage u;
     getrusage(RUSAGE_CHILDREN, &u);
-    return (double)(u.ru_utime.tv_sec + u.ru_stime.tv_sec) + 1e-6 * (double)(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
+    return (double)(u.ru_utime.tv_sec + u.ru_stime.tv_sec) +
+           1e-6 * (double)(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
 }
 
 /* The last line of the log that begins with *ERROR. */
@@ -37,7 +38,8 @@ static void read_ending(const char *folder, const char *job, char ending[256]) {
         fclose(file);
 }
 
-/* The time of the last converged increment: the last row of the .sta file whose number of attempts has no U. */
+/* The time of the last converged increment: the last row of the .sta file whose number of attempts has no U.
+ */
 static double read_reached(const char *folder, const char *job) {
     char path[1024], line[256], attempt[16];
     double reached = 0, time;
@@ -53,10 +55,12 @@ static double read_reached(const char *folder, const char *job) {
 
 sf_status sf_ccx_solve(const char *folder, const char *job, sf_ccx_run *run, sf_error *err) {
     char command[2048];
-    snprintf(command, sizeof command, "cd '%s' && rm -f %s.dat %s.sta && OMP_NUM_THREADS=1 ccx -i %s > %s.log 2>&1",
-             folder, job, job, job, job);
+    snprintf(command, sizeof command,
+             "cd '%s' && rm -f %s.dat %s.sta && OMP_NUM_THREADS=1 ccx -i %s > %s.log 2>&1", folder, job, job,
+             job, job);
     double start = sf_children_cpu();
-    int code = system(command); /* the study owns every part of the command; the exit code says less than the files */
+    int code = system(
+        command); /* the study owns every part of the command; the exit code says less than the files */
     if (code == -1)
         return SF_FAIL(err, SF_ERR_IO, "the shell cannot be started");
     run->cpu = sf_children_cpu() - start;
@@ -80,7 +84,8 @@ static sf_status append(sf_ccx_forces *out, double time, const double f[3], sf_e
     return SF_OK;
 }
 
-sf_status sf_ccx_forces_read(const char *folder, const char *job, const char *set, sf_ccx_forces *out, sf_error *err) {
+sf_status sf_ccx_forces_read(const char *folder, const char *job, const char *set, sf_ccx_forces *out,
+                             sf_error *err) {
     char path[1024], line[256], name[128];
     double time, f[3];
     *out = (sf_ccx_forces){0};
@@ -89,7 +94,8 @@ sf_status sf_ccx_forces_read(const char *folder, const char *job, const char *se
     if (!file)
         return SF_FAIL(err, SF_ERR_IO, "CalculiX wrote no %s", path);
     while (err->status == SF_OK && fgets(line, sizeof line, file)) {
-        if (sscanf(line, " total force (fx,fy,fz) for set %127s and time %lf", name, &time) != 2 || strcmp(name, set) != 0)
+        if (sscanf(line, " total force (fx,fy,fz) for set %127s and time %lf", name, &time) != 2 ||
+            strcmp(name, set) != 0)
             continue;
         while (fgets(line, sizeof line, file))
             if (sscanf(line, "%lf %lf %lf", &f[0], &f[1], &f[2]) == 3) {

@@ -28,7 +28,8 @@ typedef struct sf_ccx_forces {
 } sf_ccx_forces;
 
 /* Total forces of the node set `set` (upper case) of every printed state, from FOLDER/JOB.dat. */
-sf_status sf_ccx_forces_read(const char *folder, const char *job, const char *set, sf_ccx_forces *out, sf_error *err);
+sf_status sf_ccx_forces_read(const char *folder, const char *job, const char *set, sf_ccx_forces *out,
+                             sf_error *err);
 void sf_ccx_forces_free(sf_ccx_forces *forces);
 
 #endif

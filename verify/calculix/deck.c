@@ -43,7 +43,8 @@ static void put_set(const sf_mesh *mesh, const char *set, const char *name, FILE
 
 /* The pad's faces with all four nodes in the set "top". */
 static sf_status put_contact_faces(const sf_mesh *mesh, FILE *f, sf_error *err) {
-    static const int face[6][4] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+    static const int face[6][4] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
+                                   {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
     const sf_node_set *top = sf_mesh_find_set(mesh, "top");
     uint8_t *in = sf_alloc(err, (size_t)mesh->node_count, 1, "top nodes");
     if (!in)
@@ -97,8 +98,8 @@ static void put_missile(const sf_deck *deck, const sf_mesh *mesh, const sf_surfa
     for (int layer = 0; layer < 2; layer++)
         for (int64_t k = 0; k < s->node_count; k++) {
             const double *x = &s->position[3 * k], scale = (layer == 0 ? 1 : 0.9) * MM;
-            fprintf(f, "%lld,%.12g,%.12g,%.12g\n", first + layer * s->node_count + k, x[0] * scale, x[1] * scale,
-                    centre * MM + (x[2] - tip + top - centre) * scale);
+            fprintf(f, "%lld,%.12g,%.12g,%.12g\n", first + layer * s->node_count + k, x[0] * scale,
+                    x[1] * scale, centre * MM + (x[2] - tip + top - centre) * scale);
         }
     fprintf(f, "*ELEMENT,TYPE=C3D6,ELSET=EMISSILE\n");
     for (int64_t k = 0; k < s->triangle_count; k++) {
@@ -116,23 +117,26 @@ static void put_step(const sf_deck *deck, FILE *f) {
     fprintf(f, "*TIME POINTS,NAME=PRINTED\n");
     for (int k = 1; k <= count; k++)
         fprintf(f, "%.12g\n", fmin(1, k * deck->interval / deck->depth));
-    /* A fixed reference force: with the default, an average that starts near zero, the first touch does not converge. */
+    /* A fixed reference force: with the default, an average that starts near zero, the first touch does not
+     * converge. */
     fprintf(f, "*STEP,NLGEOM,INC=5000\n*STATIC\n0.005,1.,1e-6,%.12g\n", deck->interval / deck->depth);
-    fprintf(f, "*CONTROLS,PARAMETERS=FIELD\n0.005,0.01,,0.02\n*BOUNDARY\nNMISSILE,3,3,%.12g\n", -deck->depth * MM);
+    fprintf(f, "*CONTROLS,PARAMETERS=FIELD\n0.005,0.01,,1.\n*BOUNDARY\nNMISSILE,3,3,%.12g\n",
+            -deck->depth * MM);
     fprintf(f, "*NODE PRINT,NSET=NBASE,TOTALS=ONLY,TIME POINTS=PRINTED\nRF\n*END STEP\n");
 }
 
-sf_status sf_deck_indentation(const sf_ogden *law, const sf_deck *deck, const sf_mesh *mesh, const sf_surface *surface,
-                              FILE *f, sf_error *err) {
+sf_status sf_deck_indentation(const sf_ogden *law, const sf_deck *deck, const sf_mesh *mesh,
+                              const sf_surface *surface, FILE *f, sf_error *err) {
     if (put_pad(deck, mesh, f, err) != SF_OK)
         return err->status;
     put_missile(deck, mesh, surface, f);
     put_material(law, f);
     if (deck->nodes)
         fprintf(f, "*SURFACE,NAME=SNODES,TYPE=NODE\nNTOP\n");
-    fprintf(f, "*SURFACE INTERACTION,NAME=TOUCH\n*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR\n%g\n", deck->penalty);
-    fprintf(f, "*CONTACT PAIR,INTERACTION=TOUCH,TYPE=%s TO SURFACE\n%s,SMISSILE\n", deck->nodes ? "NODE" : "SURFACE",
-            deck->nodes ? "SNODES" : "SPAD");
+    fprintf(f, "*SURFACE INTERACTION,NAME=TOUCH\n*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR\n%g\n",
+            deck->penalty);
+    fprintf(f, "*CONTACT PAIR,INTERACTION=TOUCH,TYPE=%s TO SURFACE\n%s,SMISSILE\n",
+            deck->nodes ? "NODE" : "SURFACE", deck->nodes ? "SNODES" : "SPAD");
     fprintf(f, "*BOUNDARY\nNBASE,1,3\nNSX,1\nNSY,2\nNMISSILE,1,2\n");
     put_step(deck, f);
     return SF_OK;

@@ -10,30 +10,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double RADIUS = 0.08;     /* m, of the missile */
-static const double WINDOW = 0.25e-3;  /* m, half width of the mean over softfall's force */
-static const double FRAME = 10e-3;     /* m, of depth between two frames */
-static const double SYMMETRY = 4;      /* quarters */
+static const double RADIUS = 0.08;    /* m, of the missile */
+static const double WINDOW = 0.25e-3; /* m, half width of the mean over softfall's force */
+static const double FRAME = 10e-3;    /* m, of depth between two frames */
+static const double SYMMETRY = 4;     /* quarters */
 
 /* The missile is so heavy that it keeps its speed. */
-static const char case_text[] = "geometry: {\n"
-                                "    file = \"%s/verify/geo/pad_hex_ccx.geo\";\n"
-                                "    missile_file = \"%s/geo/hemisphere.geo\";\n"
-                                "    length_unit = \"mm\";\n"
-                                "    parameters = { side = 200.0; thickness = 50.0; layers = 5; half_cells = 10; };\n"
-                                "    missile_parameters = { diameter = 160.0; element_size = 3.0; quarter = 1; };\n"
-                                "};\n"
-                                "material: { density = \"35 kg/m3\"; E = \"1 Pa\"; curve = \"curve.csv\"; HU = 1.0; "
-                                "DAMP = 0.05; };\n"
-                                "missile: { mass = \"1e5 kg\"; velocity = \"1 m/s\"; friction = 0.0; "
-                                "gravity = \"0 m/s2\"; };\n"
-                                "solver: { end_time = \"1 ms\"; };\n";
+static const char case_text[] =
+    "geometry: {\n"
+    "    file = \"%s/verify/geo/pad_hex_ccx.geo\";\n"
+    "    missile_file = \"%s/geo/hemisphere.geo\";\n"
+    "    length_unit = \"mm\";\n"
+    "    parameters = { side = 200.0; thickness = 50.0; layers = 5; half_cells = 10; };\n"
+    "    missile_parameters = { diameter = 160.0; element_size = 3.0; quarter = 1; };\n"
+    "};\n"
+    "material: { density = \"35 kg/m3\"; E = \"1 Pa\"; curve = \"curve.csv\"; HU = 1.0; "
+    "DAMP = 0.05; };\n"
+    "missile: { mass = \"1e5 kg\"; velocity = \"1 m/s\"; friction = 0.0; "
+    "gravity = \"0 m/s2\"; };\n"
+    "solver: { end_time = \"1 ms\"; };\n";
 
 sf_status sf_indentation_begin(sf_indentation *in, sf_error *err) {
     const char *source = getenv("SF_SOURCE_DIR"), *temporary = getenv("TMPDIR");
     char path[1024];
     in->law = sf_ogden_foam();
-    snprintf(in->folder, sizeof in->folder, "%s/softfall-ccx-XXXXXX", temporary && *temporary ? temporary : "/tmp");
+    snprintf(in->folder, sizeof in->folder, "%s/softfall-ccx-XXXXXX",
+             temporary && *temporary ? temporary : "/tmp");
     if (!source)
         return SF_FAIL(err, SF_ERR_INPUT, "SF_SOURCE_DIR must be set");
     if (!mkdtemp(in->folder))
@@ -61,8 +63,8 @@ void sf_indentation_end(sf_indentation *in) {
 enum { OVERRIDES = 8, OVERRIDE_SIZE = 96 };
 
 /* The case's keys that vary, for --set; `list` ends with NULL. */
-static void make_overrides(const sf_indentation *in, const sf_indentation_case *c, char text[OVERRIDES][OVERRIDE_SIZE],
-                           const char *list[OVERRIDES + 1]) {
+static void make_overrides(const sf_indentation *in, const sf_indentation_case *c,
+                           char text[OVERRIDES][OVERRIDE_SIZE], const char *list[OVERRIDES + 1]) {
     int n = 0;
     snprintf(text[n++], OVERRIDE_SIZE, "geometry.parameters.layers=%d", c->layers);
     snprintf(text[n++], OVERRIDE_SIZE, "geometry.parameters.half_cells=%d", 2 * c->layers);
@@ -76,7 +78,8 @@ static void make_overrides(const sf_indentation *in, const sf_indentation_case *
     list[n] = NULL;
 }
 
-/* Mean of the contact force over the depths within WINDOW of `depth`: integral over the polygon of the history's rows. */
+/* Mean of the contact force over the depths within WINDOW of `depth`: integral over the polygon of the
+ * history's rows. */
 static double mean_force(const sf_results *r, double depth) {
     const double *x = r->history[SF_HISTORY_DISPLACEMENT], *f = r->history[SF_HISTORY_CONTACT_FORCE];
     double low = depth - WINDOW, high = depth + WINDOW, sum = 0;
@@ -110,8 +113,8 @@ static sf_status read_stretches(const sf_results *r, sf_indentation_curve *out, 
     return SF_OK;
 }
 
-sf_status sf_indentation_softfall(const sf_indentation *in, const sf_indentation_case *c, sf_indentation_curve *out,
-                                  sf_error *err) {
+sf_status sf_indentation_softfall(const sf_indentation *in, const sf_indentation_case *c,
+                                  sf_indentation_curve *out, sf_error *err) {
     char text[OVERRIDES][OVERRIDE_SIZE], file[1024], keep[1024];
     const char *list[OVERRIDES + 1];
     sf_drop drop;
@@ -137,8 +140,8 @@ sf_status sf_indentation_softfall(const sf_indentation *in, const sf_indentation
 }
 
 /* The mesh and the missile's surface exactly as softfall-pre reads them. */
-static sf_status read_geometry(const sf_indentation *in, const sf_indentation_case *c, sf_mesh *mesh, sf_surface *surface,
-                               sf_error *err) {
+static sf_status read_geometry(const sf_indentation *in, const sf_indentation_case *c, sf_mesh *mesh,
+                               sf_surface *surface, sf_error *err) {
     char text[OVERRIDES][OVERRIDE_SIZE], file[1024];
     const char *list[OVERRIDES + 1];
     sf_gmsh *session = NULL;
@@ -158,9 +161,14 @@ static sf_status read_geometry(const sf_indentation *in, const sf_indentation_ca
     return err->status;
 }
 
-static sf_status write_deck(const sf_indentation *in, const sf_indentation_case *c, const char *path, sf_error *err) {
-    const sf_deck deck = {.element = "C3D8", .nodes = c->nodes, .penalty = c->penalty, .radius = RADIUS,
-                          .depth = c->depth, .interval = c->interval};
+static sf_status write_deck(const sf_indentation *in, const sf_indentation_case *c, const char *path,
+                            sf_error *err) {
+    const sf_deck deck = {.element = "C3D8",
+                          .nodes = c->nodes,
+                          .penalty = c->penalty,
+                          .radius = RADIUS,
+                          .depth = c->depth,
+                          .interval = c->interval};
     sf_mesh mesh = {0};
     sf_surface surface = {0};
     FILE *file = NULL;
@@ -180,8 +188,8 @@ done:
     return err->status;
 }
 
-sf_status sf_indentation_calculix(const sf_indentation *in, const sf_indentation_case *c, sf_indentation_curve *out,
-                                  sf_error *err) {
+sf_status sf_indentation_calculix(const sf_indentation *in, const sf_indentation_case *c,
+                                  sf_indentation_curve *out, sf_error *err) {
     char path[1024];
     sf_ccx_run run;
     sf_ccx_forces forces;

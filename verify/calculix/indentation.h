@@ -15,34 +15,35 @@ typedef struct sf_indentation {
 } sf_indentation;
 
 typedef struct sf_indentation_case {
-    int layers;       /* of cells through the 50 mm; twice as many along the 100 mm of the quarter's side */
-    double depth;     /* m */
-    double interval;  /* m, between two points of the curve */
-    double speed;     /* m s-1, of softfall's missile */
-    double modulus;   /* softfall's modulus in tension over that of the law */
-    bool nodes;       /* CalculiX: contact node to surface */
-    double penalty;   /* CalculiX: N mm-3 */
-    double facet;     /* mm, size of the triangles that are CalculiX's missile */
+    int layers;      /* of cells through the 50 mm; twice as many along the 100 mm of the quarter's side */
+    double depth;    /* m */
+    double interval; /* m, between two points of the curve */
+    double speed;    /* m s-1, of softfall's missile */
+    double modulus;  /* softfall's modulus in tension over that of the law */
+    bool nodes;      /* CalculiX: contact node to surface */
+    double penalty;  /* CalculiX: N mm-3 */
+    double facet;    /* mm, size of the triangles that are CalculiX's missile */
 } sf_indentation_case;
 
 typedef struct sf_indentation_curve {
-    int count;                           /* points reached: depth (k + 1) interval */
-    double force[SF_INDENTATION_POINTS]; /* N, of the whole pad; softfall: mean over +- 0.25 mm */
-    double depth_reached;                /* m */
-    double cpu;                          /* s, of all programs */
-    char ending[256];                    /* CalculiX: its error, "" if none */
-    int frames;                          /* softfall: every 10 mm of depth */
+    int count;                             /* points reached: depth (k + 1) interval */
+    double force[SF_INDENTATION_POINTS];   /* N, of the whole pad; softfall: mean over +- 0.25 mm */
+    double depth_reached;                  /* m */
+    double cpu;                            /* s, of all programs */
+    char ending[256];                      /* CalculiX: its error, "" if none */
+    int frames;                            /* softfall: every 10 mm of depth */
     double stretch[SF_INDENTATION_FRAMES]; /* softfall: largest principal stretch */
-    double beyond[SF_INDENTATION_FRAMES]; /* softfall: part of the volume where it exceeds 1.3 */
+    double beyond[SF_INDENTATION_FRAMES];  /* softfall: part of the volume where it exceeds 1.3 */
 } sf_indentation_curve;
 
-/* Makes the folder with the case and the law's table; SF_SOURCE_DIR must be set. End with sf_indentation_end. */
+/* Makes the folder with the case and the law's table; SF_SOURCE_DIR must be set. End with sf_indentation_end.
+ */
 sf_status sf_indentation_begin(sf_indentation *in, sf_error *err);
 void sf_indentation_end(sf_indentation *in);
 
-sf_status sf_indentation_softfall(const sf_indentation *in, const sf_indentation_case *c, sf_indentation_curve *out,
-                                  sf_error *err);
-sf_status sf_indentation_calculix(const sf_indentation *in, const sf_indentation_case *c, sf_indentation_curve *out,
-                                  sf_error *err);
+sf_status sf_indentation_softfall(const sf_indentation *in, const sf_indentation_case *c,
+                                  sf_indentation_curve *out, sf_error *err);
+sf_status sf_indentation_calculix(const sf_indentation *in, const sf_indentation_case *c,
+                                  sf_indentation_curve *out, sf_error *err);
 
 #endif

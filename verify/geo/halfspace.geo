@@ -26,7 +26,7 @@ Physical Surface("symmetry_y") = plane_y();
 Physical Volume("pad") = {1};
 
 Field[1] = MathEval;
-Field[1].F = Sprintf("%g + 0.3 * (sqrt(x*x + y*y + (z - %g)*(z - %g)) - %g + abs(sqrt(x*x + y*y + (z - %g)*(z - %g)) - %g)) / 2",
+Field[1].F = Sprintf("%g + 0.15 * (sqrt(x*x + y*y + (z - %g)*(z - %g)) - %g + abs(sqrt(x*x + y*y + (z - %g)*(z - %g)) - %g)) / 2",
                      fine_spacing, thickness, thickness, zone_side / 2, thickness, thickness, zone_side / 2);
 Background Field = 1;
 Mesh.CharacteristicLengthExtendFromBoundary = 0;
