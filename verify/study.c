@@ -8,8 +8,10 @@
 
 static void put(sf_study *s, const char *text) {
     fputs(text, stdout);
-    if (s->out)
+    if (s->out) {
         fputs(text, s->out);
+        fflush(s->out); /* long studies are read while they run */
+    }
 }
 
 static void close_table(sf_study *s) {

@@ -69,7 +69,7 @@ int main(int argc, char **argv) {
         const sf_drop *d = &drop[k];
         sf_error failed = SF_ERROR_INIT;
         if (sf_drop_run("eva50-v4.5", variations[k].overrides, 2, NULL, &drop[k], &failed) != SF_OK) {
-            sf_study_text(&study, "| %s | the run stopped | | | | |\n", variations[k].what);
+            sf_study_fail(&study, &failed);
             drop[k].a_max_g = drop[k].hic = NAN;
             continue;
         }
