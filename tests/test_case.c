@@ -220,6 +220,27 @@ static void set_overrides_every_kind_of_value(void **state) {
     sf_case_free(&c);
 }
 
+static void set_replaces_a_group_by_a_file(void **state) {
+    (void)state;
+    sf_case c;
+    char set[600], where[600];
+    snprintf(set, sizeof set, "material=@%s", in_folder("materials/soft.cfg"));
+    read_good(GOOD, set, &c);
+    assert_int_equal(c.foam.curve_points, 4);
+    assert_true(c.foam.curve_stress[3] == 0.9e6); /* inner.csv, beside soft.cfg */
+    assert_non_null(strstr(c.text, "#     curve = \"inner.csv\";\n"));
+    sf_case_free(&c);
+
+    write_file("materials/other.cfg", "density = \"35 kg/m3\";\nE = \"3 kg\";\ncurve = \"inner.csv\";\n");
+    snprintf(set, sizeof set, "material=@%s", in_folder("materials/other.cfg"));
+    snprintf(where, sizeof where, "%s:2: material.E", in_folder("materials/other.cfg"));
+    assert_refused(GOOD, set, where, NULL);
+    assert_refused(GOOD, "material=@none.cfg", "the case file none.cfg cannot be read", NULL);
+    write_file("materials/broken.cfg", "density = ;\n");
+    snprintf(set, sizeof set, "material=@%s", in_folder("materials/broken.cfg"));
+    assert_refused(GOOD, set, "broken.cfg:1: syntax error", NULL);
+}
+
 static void include_brings_its_own_folder_for_the_curve(void **state) {
     (void)state;
     sf_case c;
@@ -313,8 +334,8 @@ static void units_of_another_kind_are_refused(void **state) {
     assert_refused(GOOD, "material.damp_length=cell",
                    "material.damp_length: \"cell\" does not begin with a number", "or \"spacing\"", NULL);
     assert_refused(GOOD, "geometry.length_unit=kg", "\"kg\" is not a unit of length", NULL);
-    assert_refused(GOOD, "output.times=[\"1 ms\", \"2 kg\"]", "output.times: \"2 kg\" is a mass; expected a time",
-                   NULL);
+    assert_refused(GOOD, "output.times=[\"1 ms\", \"2 kg\"]",
+                   "output.times: \"2 kg\" is a mass; expected a time", NULL);
     assert_refused(GOOD, "output.times=[1.0]", "item 1 is a plain number; expected a time", NULL);
     assert_refused(GOOD, "output.times=\"1 ms\"", "expected an array of at most", NULL);
     assert_refused(GOOD, "output.times=[\"-1 ms\"]", "output.times: -0.001 s is out of bounds", NULL);
@@ -508,6 +529,7 @@ int main(void) {
         cmocka_unit_test(defaults_are_those_of_the_table),
         cmocka_unit_test(listing_has_value_si_value_and_origin),
         cmocka_unit_test(set_overrides_every_kind_of_value),
+        cmocka_unit_test(set_replaces_a_group_by_a_file),
         cmocka_unit_test(include_brings_its_own_folder_for_the_curve),
         cmocka_unit_test(curves_at_several_rates_ascend),
         cmocka_unit_test(h2_takes_limit_and_exponent),

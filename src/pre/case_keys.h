@@ -72,6 +72,13 @@ typedef struct sf_case_reader {
 
 enum { SF_CASE_WHERE_SIZE = 512 };
 
+/* The hook of a setting that does not stand in the case file: line 0: `text` is the --set text that put it
+ * there; else the path of the file, given with "group=@file", and the line that holds it. */
+typedef struct sf_case_origin {
+    unsigned line;
+    char text[];
+} sf_case_origin;
+
 /* "file:line", or "--set key=value" for a setting that came from the command line. */
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out);
 /* Resolves `path` against the folder of the file in which `setting` stands; from malloc. */
@@ -85,7 +92,11 @@ sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const co
 /* The readers of SF_KEY_CURVE and SF_KEY_CURVES. */
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err);
-/* Puts one --set text into the configuration. The text must live as long as the configuration. */
+/* The folder part of a path, "." if there is none; from malloc. */
+char *sf_case_folder_of(const char *path, sf_error *err);
+/* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
+const char *sf_case_override_file(const char *text);
+/* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
 /* The text of the case with its includes put in place and the overrides as comments; from malloc. Also
  * refuses includes that are missing or no plain files (libconfig's scanner would end the process on a

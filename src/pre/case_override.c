@@ -5,14 +5,48 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Copies a scalar or, item by item, an aggregate. Every copy is marked with its command-line text. */
+const char *sf_case_override_file(const char *text) {
+    const char *equals = strchr(text, '=');
+    const char *dot = strchr(text, '.');
+    return equals && equals[1] == '@' && (!dot || dot > equals) ? equals + 2 : NULL;
+}
+
+/* Marks a setting with where it came from; `line` 0: `text` is a --set text, else the path of a file. */
+static bool mark(config_setting_t *setting, const char *text, unsigned line) {
+    sf_case_origin *origin = malloc(sizeof *origin + strlen(text) + 1);
+    if (!origin)
+        return false;
+    origin->line = line;
+    strcpy(origin->text, text);
+    config_setting_set_hook(setting, origin); /* released by the configuration's destructor */
+    return true;
+}
+
+/* Where the copies of a setting come from: a --set text, or (text NULL) the file that holds the setting. */
+typedef struct copy_source {
+    const char *text;
+    const char *path, *folder; /* of the file that was read */
+} copy_source;
+
+static bool mark_copy(const config_setting_t *from, config_setting_t *to, const copy_source *source) {
+    char path[SF_CASE_WHERE_SIZE];
+    if (source->text)
+        return mark(to, source->text, 0);
+    const char *file = config_setting_source_file(from);
+    if (!file || strcmp(file, source->path) == 0)
+        snprintf(path, sizeof path, "%s", source->path);
+    else
+        snprintf(path, sizeof path, "%s/%s", source->folder, file);
+    return mark(to, path, (unsigned)config_setting_source_line(from));
+}
+
+/* Copies a scalar or, item by item, an aggregate. */
 static bool copy_setting(const config_setting_t *from, config_setting_t *parent, const char *name,
-                         const char *text) {
+                         const copy_source *source) {
     int type = config_setting_type(from);
     config_setting_t *to = config_setting_add(parent, name, type);
-    if (!to)
+    if (!to || !mark_copy(from, to, source))
         return false;
-    config_setting_set_hook(to, (void *)text);
     switch (type) {
     case CONFIG_TYPE_INT:
         return config_setting_set_int(to, config_setting_get_int(from));
@@ -29,7 +63,7 @@ static bool copy_setting(const config_setting_t *from, config_setting_t *parent,
     }
     for (int i = 0; i < config_setting_length(from); i++) {
         const config_setting_t *item = config_setting_get_elem(from, (unsigned)i);
-        if (!copy_setting(item, to, config_setting_name(item), text))
+        if (!copy_setting(item, to, config_setting_name(item), source))
             return false;
     }
     return true;
@@ -46,13 +80,11 @@ static bool put_value(config_setting_t *parent, const char *name, const char *va
         free(line);
     }
     if (parsed) {
-        done = copy_setting(config_setting_get_elem(scratch.root, 0), parent, name, text);
+        const copy_source source = {.text = text};
+        done = copy_setting(config_setting_get_elem(scratch.root, 0), parent, name, &source);
     } else {
         config_setting_t *to = config_setting_add(parent, name, CONFIG_TYPE_STRING);
-        if (to) {
-            config_setting_set_hook(to, (void *)text);
-            done = config_setting_set_string(to, value);
-        }
+        done = to && mark(to, text, 0) && config_setting_set_string(to, value);
     }
     config_destroy(&scratch);
     return done;
@@ -63,19 +95,60 @@ static config_setting_t *enter_group(config_setting_t *parent, const char *name,
     config_setting_t *group = config_setting_get_member(parent, name);
     if (!group) {
         group = config_setting_add(parent, name, CONFIG_TYPE_GROUP);
-        if (group)
-            config_setting_set_hook(group, (void *)text);
+        if (group && !mark(group, text, 0))
+            return NULL;
     }
     return group && config_setting_is_group(group) ? group : NULL;
+}
+
+/* Puts the settings of the file `path` in place of everything in the group `name`. */
+static sf_status replace_group(config_t *config, const char *name, const char *path, const char *text,
+                               sf_error *err) {
+    config_t scratch;
+    config_init(&scratch);
+    char *folder = sf_case_folder_of(path, err);
+    char *whole =
+        folder ? sf_case_load_text(path, folder, 0, NULL, err) : NULL; /* refuses what is no text file */
+    if (whole) {
+        config_set_include_dir(&scratch, folder);
+        config_setting_t *root = config_root_setting(config);
+        const copy_source source = {.path = path, .folder = folder};
+        if (!config_read_file(&scratch, path)) {
+            const char *file = config_error_file(&scratch);
+            SF_FAIL(err, SF_ERR_INPUT, "--set %s: %s:%d: %s", text, file ? file : path,
+                    config_error_line(&scratch), config_error_text(&scratch));
+        } else {
+            config_setting_remove(root, name);
+            config_setting_t *group = config_setting_add(root, name, CONFIG_TYPE_GROUP);
+            bool done = group && mark(group, text, 0);
+            for (int i = 0; done && i < config_setting_length(scratch.root); i++) {
+                const config_setting_t *item = config_setting_get_elem(scratch.root, (unsigned)i);
+                done = copy_setting(item, group, config_setting_name(item), &source);
+            }
+            if (!done)
+                SF_FAIL(err, SF_ERR_INPUT, "--set %s: \"%s\" is not a valid group", text, name);
+        }
+    }
+    config_destroy(&scratch);
+    free(whole);
+    free(folder);
+    return err->status;
 }
 
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err) {
     const char *equals = strchr(text, '=');
     const char *first_dot = strchr(text, '.');
+    if (sf_case_override_file(text)) {
+        char name[SF_CASE_NAME_SIZE];
+        snprintf(name, sizeof name, "%.*s", (int)(equals - text), text);
+        return replace_group(config, name, sf_case_override_file(text), text, err);
+    }
     if (!equals || !first_dot || first_dot > equals)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "--set %s: expected group.key=value, for example --set missile.velocity=\"5.2 m/s\"",
-                       text);
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "--set %s: expected group.key=value, for example --set missile.velocity=\"5.2 m/s\", or "
+            "group=@file",
+            text);
     char path[256];
     if ((size_t)(equals - text) >= sizeof path)
         return SF_FAIL(err, SF_ERR_INPUT, "--set %.40s...: the key is longer than %zu characters", text,

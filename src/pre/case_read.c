@@ -20,8 +20,11 @@ static const char *source_path(const sf_case_reader *reader, const char *file, c
 
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out) {
     char file[SF_CASE_WHERE_SIZE];
-    if (setting && config_setting_get_hook(setting))
-        snprintf(out, SF_CASE_WHERE_SIZE, "--set %s", (const char *)config_setting_get_hook(setting));
+    const sf_case_origin *origin = setting ? config_setting_get_hook(setting) : NULL;
+    if (origin && origin->line == 0)
+        snprintf(out, SF_CASE_WHERE_SIZE, "--set %s", origin->text);
+    else if (origin)
+        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%u", origin->text, origin->line);
     else if (setting && config_setting_source_line(setting) > 0)
         snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%u",
                  source_path(reader, config_setting_source_file(setting), file),
@@ -31,8 +34,7 @@ const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *
     return out;
 }
 
-/* The folder part of a path, "." if there is none; from malloc. */
-static char *folder_of(const char *path, sf_error *err) {
+char *sf_case_folder_of(const char *path, sf_error *err) {
     const char *slash = strrchr(path, '/');
     char *folder = !slash ? strdup(".") : slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
     if (!folder)
@@ -44,7 +46,11 @@ char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *sett
                       sf_error *err) {
     char file[SF_CASE_WHERE_SIZE];
     char *out = NULL;
-    char *folder = folder_of(source_path(reader, config_setting_source_file(setting), file), err);
+    const sf_case_origin *origin = config_setting_get_hook(setting);
+    char *folder = sf_case_folder_of(origin && origin->line > 0
+                                         ? origin->text
+                                         : source_path(reader, config_setting_source_file(setting), file),
+                                     err);
     if (folder && *path == '/')
         out = strdup(path);
     else if (folder && asprintf(&out, "%s/%s", folder, path) < 0)
@@ -299,7 +305,8 @@ sf_status sf_case_read(const char *path, int count, const char *const *overrides
     sf_case_reader reader = {.path = path, .out = out};
     size_t listing_size = 0;
     config_init(&reader.config);
-    reader.folder = folder_of(path, err);
+    config_set_destructor(&reader.config, free); /* of the hooks */
+    reader.folder = sf_case_folder_of(path, err);
     if (!reader.folder || sf_units_open(&reader.units, err) != SF_OK)
         goto done;
     reader.listing = open_memstream(&out->parameters, &listing_size);

@@ -120,6 +120,17 @@ static sf_status copy_text(const char *path, const char *from, int line, const c
     return status;
 }
 
+/* A file that stands in place of a group, each line as a comment. */
+static sf_status copy_as_comment(const char *path, FILE *out, sf_error *err) {
+    char *folder = sf_case_folder_of(path, err);
+    char *text = folder ? sf_case_load_text(path, folder, 0, NULL, err) : NULL, *rest = text;
+    for (char *line = strsep(&rest, "\n"); line && (rest || *line); line = strsep(&rest, "\n"))
+        fprintf(out, "#     %s\n", line);
+    free(text);
+    free(folder);
+    return err->status;
+}
+
 char *sf_case_load_text(const char *path, const char *folder, int count, const char *const *overrides,
                         sf_error *err) {
     char *text = NULL;
@@ -130,8 +141,12 @@ char *sf_case_load_text(const char *path, const char *folder, int count, const c
         return NULL;
     }
     sf_status status = copy_text(path, NULL, 0, folder, 0, out, err);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count && status == SF_OK; i++) {
+        const char *file = sf_case_override_file(overrides[i]);
         fprintf(out, "# --set %s\n", overrides[i]);
+        if (file)
+            status = copy_as_comment(file, out, err);
+    }
     if (fclose(out) != 0 && status == SF_OK)
         status = SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
     if (status != SF_OK) {

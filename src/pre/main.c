@@ -100,7 +100,9 @@ int main(int argc, char **argv) {
     static const struct argp_option list[] = {
         {"output", 'o', "MODEL", 0, "model file to write (HDF5)", 0},
         {"set", KEY_SET, "GROUP.KEY=VALUE", 0,
-         "override a key of the case, e.g. missile.velocity=\"5.2 m/s\"", 0},
+         "override a key of the case, e.g. missile.velocity=\"5.2 m/s\", or replace a group by a file, e.g. "
+         "material=@other_foam.cfg",
+         0},
         {"force", 'f', 0, 0, "replace an existing model file", 0},
         {"keys", KEY_KEYS, 0, 0, "list every key of a case file and end", 0},
         {0},
