@@ -143,10 +143,15 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     return o->err.status;
 }
 
+/* Every file that this program may write. pad.h5 is moved before pad.xdmf, which refers to it. */
+static const char *const output_names[] = {"pad.h5",           "pad.xdmf",      "history.csv",
+                                           "section.csv",      "reference.csv", "acceleration.gp",
+                                           "acceleration.png", "summary.json",  NULL};
+
 static sf_status write_output(const options *o, job *j, sf_error *err) {
     bool section = false;
     const sf_comparison *comparison = o->comparing ? &j->comparison : NULL;
-    if (sf_output_begin(o->directory, o->force, &j->output, err) != SF_OK ||
+    if (sf_output_begin(o->directory, output_names, o->force, &j->output, err) != SF_OK ||
         sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
         (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
         sf_section_write(&j->output, &j->results, &section, err) != SF_OK ||

@@ -9,12 +9,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Every file that this program may write. pad.h5 is moved before pad.xdmf, which refers to it. */
-static const char *const output_names[] = {"pad.h5",           "pad.xdmf",      "history.csv",
-                                           "section.csv",      "reference.csv", "acceleration.gp",
-                                           "acceleration.png", "summary.json"};
-enum { OUTPUT_NAMES = sizeof output_names / sizeof output_names[0] };
-
 static char *join(const char *directory, const char *name, sf_error *err) {
     char *path = NULL;
     if (asprintf(&path, "%s/%s", directory, name) < 0) {
@@ -43,22 +37,23 @@ static sf_status make_directory(sf_output *output, bool force, sf_error *err) {
                        strerror(errno));
     if (stat(output->directory, &status) != 0 || !S_ISDIR(status.st_mode))
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists and is not a directory", output->directory);
-    for (int k = 0; k < OUTPUT_NAMES && !force; k++)
-        if (file_exists(output->directory, output_names[k]))
+    for (const char *const *name = output->names; *name && !force; name++)
+        if (file_exists(output->directory, *name))
             return SF_FAIL(err, SF_ERR_INPUT,
                            "%s already holds %s: give another directory, or --force to replace it",
-                           output->directory, output_names[k]);
+                           output->directory, *name);
     return SF_OK;
 }
 
-sf_status sf_output_begin(const char *directory, bool force, sf_output *output, sf_error *err) {
-    *output = (sf_output){0};
+sf_status sf_output_begin(const char *directory, const char *const *names, bool force, sf_output *output,
+                          sf_error *err) {
+    *output = (sf_output){.names = names};
     output->directory = strdup(directory);
     if (!output->directory)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", directory);
     if (make_directory(output, force, err) != SF_OK)
         goto failed;
-    output->staging = join(directory, ".softfall-post-XXXXXX", err);
+    output->staging = join(directory, ".softfall-XXXXXX", err);
     if (!output->staging)
         goto failed;
     if (!mkdtemp(output->staging)) {
@@ -98,9 +93,9 @@ bool sf_output_has(const sf_output *output, const char *name) {
 }
 
 sf_status sf_output_commit(sf_output *output, sf_error *err) {
-    for (int k = 0; k < OUTPUT_NAMES && err->status == SF_OK; k++) {
-        char *from = join(output->staging, output_names[k], err);
-        char *to = from ? join(output->directory, output_names[k], err) : NULL;
+    for (const char *const *name = output->names; *name && err->status == SF_OK; name++) {
+        char *from = join(output->staging, *name, err);
+        char *to = from ? join(output->directory, *name, err) : NULL;
         if (to && access(from, F_OK) != 0) {
             if (unlink(to) != 0 && errno != ENOENT)
                 SF_FAIL(err, SF_ERR_IO, "cannot remove the old %s: %s", to, strerror(errno));

@@ -9,13 +9,17 @@
 #include <stdio.h>
 
 typedef struct sf_output {
-    char *directory; /* where the files will be */
-    char *staging;   /* where they are written */
-    bool created;    /* the directory did not exist before */
+    const char *const *names; /* every file that the program may write, in the order in which they are moved;
+                                 ends with NULL; borrowed */
+    char *directory;          /* where the files will be */
+    char *staging;            /* where they are written */
+    bool created;             /* the directory did not exist before */
 } sf_output;
 
-/* Makes the directory if need be. SF_ERR_INPUT if it holds one of our files already and `force` is false. */
-sf_status sf_output_begin(const char *directory, bool force, sf_output *output, sf_error *err);
+/* Makes the directory if need be. SF_ERR_INPUT if it holds one of the named files already and `force` is
+ * false. */
+sf_status sf_output_begin(const char *directory, const char *const *names, bool force, sf_output *output,
+                          sf_error *err);
 
 /* "staging/name"; from malloc, owned by the caller; NULL on failure. */
 char *sf_output_path(const sf_output *output, const char *name, sf_error *err);

@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/plot.h"
 
-#include <errno.h>
-#include <fcntl.h>
+#include "post/gnuplot.h"
 #include <math.h>
-#include <spawn.h>
-#include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 /* Time axis (ms): the run, and of a longer measured curve at most a bit more. */
 static void time_range(const sf_figures *f, const sf_comparison *c, double range[2]) {
@@ -76,34 +71,8 @@ static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
     fputc('\n', g);
 }
 
-/* Runs gnuplot in `directory`, silently. Returns its exit code, or -1 with errno. */
-static int run_gnuplot(const char *directory) {
-    char program[] = "gnuplot", script[] = "acceleration.gp";
-    char *const arguments[] = {program, script, NULL};
-    posix_spawn_file_actions_t actions;
-    pid_t child = 0;
-    int status = 0;
-    if (posix_spawn_file_actions_init(&actions) != 0)
-        return -1;
-    int result = posix_spawn_file_actions_addchdir_np(&actions, directory);
-    for (int descriptor = 0; descriptor <= 2 && result == 0; descriptor++)
-        result = posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_RDWR, 0);
-    if (result == 0)
-        result = posix_spawnp(&child, program, &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (result != 0) {
-        errno = result;
-        return -1;
-    }
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            return -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-}
-
 sf_status sf_plot_write(const sf_output *output, const sf_results *results, const sf_figures *figures,
                         const sf_comparison *comparison, char *warning, size_t size, sf_error *err) {
-    warning[0] = '\0';
     FILE *script = sf_output_open(output, "acceleration.gp", err);
     if (!script)
         return err->status;
@@ -111,16 +80,6 @@ sf_status sf_plot_write(const sf_output *output, const sf_results *results, cons
     put_curves(script, figures, comparison);
     if (sf_output_close(script, "acceleration.gp", err) != SF_OK)
         return err->status;
-    int code = run_gnuplot(output->staging);
-    if (code == -1)
-        snprintf(warning, size,
-                 "acceleration.png was not drawn, as gnuplot cannot be run (%s): install it and run "
-                 "\"gnuplot acceleration.gp\" in the output directory",
-                 strerror(errno));
-    else if (code != 0 || !sf_output_has(output, "acceleration.png"))
-        snprintf(warning, size,
-                 "acceleration.png was not drawn: gnuplot ended with code %d; run "
-                 "\"gnuplot acceleration.gp\" in the output directory to see why",
-                 code);
+    sf_gnuplot_draw(output, "acceleration.gp", "acceleration.png", warning, size);
     return SF_OK;
 }

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes a foam card as a material file: the keys of the group `material` of a case (docs/case.md) with units
+ * and comments, and its compression curves as CSV files beside it. A case includes the file, or softfall-pre
+ * takes it with
+ * --set material=@FILE. */
+#ifndef SF_CAMPAIGN_MATERIAL_FILE_H
+#define SF_CAMPAIGN_MATERIAL_FILE_H
+
+#include "core/model.h"
+
+typedef struct sf_material_text {
+    const char *title;      /* first line of both files: what the material is */
+    const char *provenance; /* lines, each ended by '\n': where the numbers come from, their intervals */
+} sf_material_text;
+
+/* Writes <folder>/<name>.cfg, and <name>.csv or, for several curves, <name>-1.csv and so on; files that are
+ * there are replaced. Numbers are written so that reading them gives the card back to 12 digits. */
+sf_status sf_material_write(const char *folder, const char *name, const sf_foam_card *foam,
+                            const sf_material_text *text, sf_error *err);
+
+#endif

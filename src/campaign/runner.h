@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Drops simulated by softfall-pre and softfall-solve, each in a folder of its own that stays: a campaign (a
+ * fit, a series of drop heights) that was interrupted finds the drops it has finished and goes on from there.
+ *
+ * The programs are those in the folder of the running program, or in SF_BIN_DIR if that is set. */
+#ifndef SF_CAMPAIGN_RUNNER_H
+#define SF_CAMPAIGN_RUNNER_H
+
+#include "core/error.h"
+#include "post/signal.h"
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef struct sf_runner {
+    const char *folder; /* holds the drops' folders; made if need be; borrowed */
+    int threads;        /* of softfall-solve */
+    FILE *log;          /* a line for each drop; borrowed; NULL: silent */
+    int64_t simulated;  /* drops so far, out */
+    int64_t reused;     /* drops whose results were there, out */
+} sf_runner;
+
+enum { SF_RUNNER_OVERRIDES = 16 };
+
+/* One drop. Strings are borrowed. */
+typedef struct sf_runner_drop {
+    const char *label;     /* begins the name of its folder */
+    const char *case_path; /* case file */
+    const char *material;  /* file that replaces the case's group material, NULL: none */
+    int override_count;
+    const char *overrides[SF_RUNNER_OVERRIDES]; /* "group.key=value" */
+} sf_runner_drop;
+
+/* What a campaign asks of a drop; figures of the CFC 1000 curve. */
+typedef struct sf_runner_result {
+    double a_max_g, hic;     /* g, - */
+    double v0, v_rebound;    /* m s-1; v_rebound NaN if contact had not ended */
+    double max_indentation;  /* m */
+    double max_local_strain; /* - */
+    double energy_error;     /* - */
+    int64_t nodes, steps;
+    sf_series curve; /* s, g: filtered; owned */
+    bool reused;
+} sf_runner_result;
+
+/* Simulates the drop unless a finished run of the same inputs is there: the same values of every key of the
+ * case and the material, the same curves and geometry files, and programs of the same revision. Release with
+ * sf_runner_result_free. Errors: what the programs said, with the path of their log; a drop that never
+ * touched the pad; SF_INTERRUPTED when a program was interrupted. */
+sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
+                        sf_error *err);
+void sf_runner_result_free(sf_runner_result *result);
+
+#endif
