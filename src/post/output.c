@@ -10,8 +10,9 @@
 #include <unistd.h>
 
 /* Every file that this program may write. pad.h5 is moved before pad.xdmf, which refers to it. */
-static const char *const output_names[] = {"pad.h5",           "pad.xdmf",      "history.csv",
-                                           "section.csv",      "reference.csv", "acceleration.gp",
+static const char *const output_names[] = {"pad.h5",           "pad.xdmf",        "history.csv",
+                                           "section.csv",      "reference.csv",   "compression.csv",
+                                           "compression.gp",   "compression.png", "acceleration.gp",
                                            "acceleration.png", "summary.json"};
 enum { OUTPUT_NAMES = sizeof output_names / sizeof output_names[0] };
 

@@ -36,23 +36,27 @@ static void value_range(const sf_figures *f, const sf_comparison *c, double rang
     range[1] = high > 0 ? 1.1 * high : 1;
 }
 
-static void put_style(FILE *g, const sf_results *r, const sf_figures *f, const sf_comparison *c) {
+/* What all pictures share; `name` without its ending. */
+static void put_style(FILE *g, const char *name) {
+    fprintf(g,
+            "set terminal pngcairo size 1600,1000 font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"
+            "set output '%s.png'\n"
+            "set datafile separator ','\n"
+            "set encoding utf8\n"
+            "set grid back lt 1 lc rgb '#c8c8c8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
+            "set tics nomirror out scale 0.6\nset xzeroaxis lw 1 lc rgb '#808080'\n",
+            name);
+}
+
+static void put_axes(FILE *g, const sf_results *r, const sf_figures *f, const sf_comparison *c) {
     double time[2], value[2];
     time_range(f, c, time);
     value_range(f, c, value);
-    fputs("set terminal pngcairo size 1600,1000 font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"
-          "set output 'acceleration.png'\n"
-          "set datafile separator ','\n"
-          "set encoding utf8\n",
-          g);
     fprintf(g, "set title 'Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm' offset 0,-0.3\n",
             r->missile_mass, r->missile_speed, r->thickness * 1e3);
     fputs("set xlabel 'time (ms)'\nset ylabel 'deceleration (g)'\n", g);
     fprintf(g, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", time[0], time[1], value[0], value[1]);
-    fputs("set grid back lt 1 lc rgb '#c8c8c8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
-          "set tics nomirror out scale 0.6\nset xzeroaxis lw 1 lc rgb '#808080'\n"
-          "set key below center horizontal maxcols 3 Left reverse samplen 2 width 1 spacing 1.2\n",
-          g);
+    fputs("set key below center horizontal maxcols 3 Left reverse samplen 2 width 1 spacing 1.2\n", g);
 }
 
 static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
@@ -76,9 +80,18 @@ static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
     fputc('\n', g);
 }
 
+/* Stress over strain of a compression test. */
+static void put_compression(FILE *g, const sf_results *r, const sf_figures *f) {
+    fprintf(g, "set title 'Compression of a foam specimen of %.4g mm, %.4g cm²' offset 0,-0.3\n",
+            r->thickness * 1e3, f->area * 1e4);
+    fputs("set xlabel 'strain'\nset ylabel 'nominal stress (kPa)'\nunset key\n"
+          "plot 'compression.csv' skip 1 using 2:3 with lines lw 3 lc rgb '#08519c'\n",
+          g);
+}
+
 /* Runs gnuplot in `directory`, silently. Returns its exit code, or -1 with errno. */
-static int run_gnuplot(const char *directory) {
-    char program[] = "gnuplot", script[] = "acceleration.gp";
+static int run_gnuplot(const char *directory, char *script) {
+    char program[] = "gnuplot";
     char *const arguments[] = {program, script, NULL};
     posix_spawn_file_actions_t actions;
     pid_t child = 0;
@@ -103,24 +116,33 @@ static int run_gnuplot(const char *directory) {
 
 sf_status sf_plot_write(const sf_output *output, const sf_results *results, const sf_figures *figures,
                         const sf_comparison *comparison, char *warning, size_t size, sf_error *err) {
+    const char *name = figures->driven ? "compression" : "acceleration";
+    char source[32], picture[32];
+    snprintf(source, sizeof source, "%s.gp", name);
+    snprintf(picture, sizeof picture, "%s.png", name);
     warning[0] = '\0';
-    FILE *script = sf_output_open(output, "acceleration.gp", err);
+    FILE *script = sf_output_open(output, source, err);
     if (!script)
         return err->status;
-    put_style(script, results, figures, comparison);
-    put_curves(script, figures, comparison);
-    if (sf_output_close(script, "acceleration.gp", err) != SF_OK)
+    put_style(script, name);
+    if (figures->driven) {
+        put_compression(script, results, figures);
+    } else {
+        put_axes(script, results, figures, comparison);
+        put_curves(script, figures, comparison);
+    }
+    if (sf_output_close(script, source, err) != SF_OK)
         return err->status;
-    int code = run_gnuplot(output->staging);
+    int code = run_gnuplot(output->staging, source);
     if (code == -1)
         snprintf(warning, size,
-                 "acceleration.png was not drawn, as gnuplot cannot be run (%s): install it and run "
-                 "\"gnuplot acceleration.gp\" in the output directory",
-                 strerror(errno));
-    else if (code != 0 || !sf_output_has(output, "acceleration.png"))
+                 "%s was not drawn, as gnuplot cannot be run (%s): install it and run "
+                 "\"gnuplot %s\" in the output directory",
+                 picture, strerror(errno), source);
+    else if (code != 0 || !sf_output_has(output, picture))
         snprintf(warning, size,
-                 "acceleration.png was not drawn: gnuplot ended with code %d; run "
-                 "\"gnuplot acceleration.gp\" in the output directory to see why",
-                 code);
+                 "%s was not drawn: gnuplot ended with code %d; run "
+                 "\"gnuplot %s\" in the output directory to see why",
+                 picture, code, source);
     return SF_OK;
 }
