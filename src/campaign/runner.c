@@ -46,7 +46,8 @@ static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
 
 /* The case's list of values without the names of files, whose contents count. */
 static uint64_t hash_values(uint64_t hash, const char *values) {
-    static const char *const files[] = {"geometry.file ", "geometry.missile_file ", "material.curve "};
+    static const char *const files[] = {"geometry.file ", "geometry.missile_file ", "material.curve ",
+                                        "material.curves ", "missile.motion "};
     while (*values) {
         size_t length = strcspn(values, "\n"), skipped = 0;
         for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
@@ -60,11 +61,16 @@ static uint64_t hash_values(uint64_t hash, const char *values) {
 
 static sf_status hash_case(const sf_case *c, uint64_t *hash, sf_error *err) {
     const sf_foam_card *foam = &c->foam;
-    size_t points = (size_t)foam->curve_points * sizeof *foam->curve_strain;
+    size_t points = (size_t)foam->curve_points * sizeof *foam->curve_strain,
+           curves = (size_t)foam->curve_count * sizeof *foam->curve_rate,
+           motion = (size_t)c->motion_count * sizeof *c->motion_time;
     *hash = hash_bytes(FNV_OFFSET, SF_GIT_REVISION, strlen(SF_GIT_REVISION));
     *hash = hash_values(*hash, c->parameters);
     *hash = hash_bytes(*hash, foam->curve_strain, points);
     *hash = hash_bytes(*hash, foam->curve_stress, points);
+    *hash = hash_bytes(*hash, foam->curve_rate, curves);
+    *hash = hash_bytes(*hash, c->motion_time, motion);
+    *hash = hash_bytes(*hash, c->motion_displacement, motion);
     if (hash_file(hash, c->pad.path, err) == SF_OK && c->missile.path)
         hash_file(hash, c->missile.path, err);
     return err->status;
