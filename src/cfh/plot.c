@@ -30,7 +30,7 @@ static void put_style(FILE *g, const sf_cfh_report *r) {
           "set encoding utf8\n"
           "set grid back lt 1 lc rgb '#c8c8c8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
           "set tics nomirror out scale 0.6\n"
-          "set key at screen 0.54,0.025 center center horizontal maxcols 3 Left reverse samplen 2 width 2\n",
+          "set key at screen 0.54,0.025 center center horizontal maxcols 4 Left reverse samplen 2 width 2\n",
           g);
     fprintf(g, "set xrange [%.6g:%.6g]\n", range[0], range[1]);
 }
@@ -74,6 +74,13 @@ static void put_crossing(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
             crossing->height, decides ? ", decides" : "", crossing->height, r->plan->limit[c], colour);
 }
 
+static bool any_failed(const sf_cfh_points *points) {
+    for (int k = 0; k < points->count; k++)
+        if (points->point[k].failed)
+            return true;
+    return false;
+}
+
 static void put_curves(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
     const sf_cfh_fit *fit = &r->result->crossing[c].fit;
     int column = c == SF_CFH_A_MAX ? 3 : 4;
@@ -98,11 +105,14 @@ static void put_curves(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
             "[h=%.9g:%.9g] '+' using (h):(fit(h)) with lines lw 3.5 lc rgb '#08519c' title 'fit', \\\n     ",
             lowest, highest);
     }
-    fprintf(g,
-            "'cfh.csv' skip 1 using 1:%d with points pt 7 ps 1.8 lc rgb '#08519c' title 'simulated', \\\n    "
-            " 'cfh.csv' skip 1 using ($11 == 1 ? $1 : NaN):(0) with points pt 2 ps 2.2 lw 3 lc rgb '#606060' "
-            "notitle\n",
+    fprintf(g, "'cfh.csv' skip 1 using 1:%d with points pt 7 ps 1.8 lc rgb '#08519c' title 'simulated'",
             column);
+    if (any_failed(r->points))
+        fputs(
+            ", \\\n     'cfh.csv' skip 1 using ($11 == 1 ? $1 : NaN):(0) with points pt 2 ps 2.2 lw 3 lc rgb "
+            "'#606060' title 'failed'",
+            g);
+    fputc('\n', g);
 }
 
 /* The title says the verdict in a few words. */
