@@ -246,7 +246,7 @@ static void a_list_of_heights_is_followed(void **state) {
     sf_cfh_result result;
     plan.list_count = POINTS;
     memcpy(plan.list, heights, sizeof heights);
-    assert_int_equal(search(&p, &plan, &points), SF_CFH_ENOUGH);
+    assert_int_equal(search(&p, &plan, &points), SF_CFH_LIST_DONE);
     assert_int_equal(points.count, POINTS);
     for (int k = 0; k < POINTS; k++)
         assert_close(points.point[k].height, heights[k], 0);

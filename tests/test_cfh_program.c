@@ -104,7 +104,8 @@ static void a_second_run_uses_every_drop_again(void **state) {
     program_assert_unchanged(program_path(p, "out/cfh.csv"), &csv);
 }
 
-/* A limit that is not reached up to --max-height is said as a bound, not as a failure. A table that ends early is warned of with the strain. */
+/* A limit that is not reached up to --max-height is said as a bound, not as a failure. A table that ends
+ * early is warned of with the strain. */
 static void bounds_and_extrapolation_are_said(void **state) {
     const program_place *p = *state;
     program_result r = program_succeed(p, "cfh", "'%s' -o low -t 1 --max-height '50 cm' %s",
@@ -116,9 +117,9 @@ static void bounds_and_extrapolation_are_said(void **state) {
     free(report);
     program_shell(p, "sed '/^0.[6-9]/d' '%s' > short.csv",
                   fixture_source("examples/materials/eva35_starter.csv"));
-    r = program_succeed(
-        p, "cfh", "'%s' -o short -t 1 --max-height '50 cm' %s --set material.curve=\"$PWD/short.csv\"",
-        fixture_source(EXAMPLE), program_coarse(20));
+    r = program_succeed(p, "cfh",
+                        "'%s' -o short -t 1 --max-height '50 cm' %s --set material.curve=\"$PWD/short.csv\"",
+                        fixture_source(EXAMPLE), program_coarse(20));
     report = read_text(p, "short/report.md");
     assert_non_null(strstr(report, "the compression table ends at 0.550: extrapolated curve"));
     assert_non_null(strstr(r.err, "softfall-cfh: warning: at 0.500 m: largest local strain 0."));

@@ -4,9 +4,12 @@
 #include "post/gnuplot.h"
 #include <math.h>
 
-/* Heights (m) of the picture: all points, the failed ones too, and a margin. */
-static void height_range(const sf_cfh_points *points, double range[2]) {
+/* Heights (m) of the picture: the successes, the failures not far above them, and a margin. */
+static void height_range(const sf_cfh_report *r, double range[2]) {
+    const sf_cfh_points *points = r->points;
     double low = points->point[0].height, high = points->point[points->count - 1].height;
+    if (r->result->highest > 0)
+        high = fmin(high, 1.3 * r->result->highest);
     double margin = fmax(0.06 * (high - low), 0.02 * high);
     range[0] = fmax(low - margin, 0);
     range[1] = high + margin;
@@ -23,7 +26,7 @@ static double value_top(const sf_cfh_report *r, sf_cfh_criterion c) {
 
 static void put_style(FILE *g, const sf_cfh_report *r) {
     double range[2];
-    height_range(r->points, range);
+    height_range(r, range);
     fputs("set terminal pngcairo size 1600,1300 font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"
           "set output 'cfh.png'\n"
           "set datafile separator ','\n"
@@ -39,7 +42,7 @@ static void put_style(FILE *g, const sf_cfh_report *r) {
 static void put_panel_axes(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
     bool upper = c == SF_CFH_A_MAX;
     double range[2];
-    height_range(r->points, range);
+    height_range(r, range);
     if (upper && r->rig->pairs > 0)
         fprintf(g,
                 "set x2range [%.6g:%.6g]\nset x2tics nomirror out scale 0.6\nset border 7\n"

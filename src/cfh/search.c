@@ -132,7 +132,7 @@ static sf_cfh_step go_near(const sf_cfh_plan *plan, const sf_cfh_points *points,
 
 static sf_cfh_step next_of_list(const sf_cfh_plan *plan, const sf_cfh_points *points, double *height) {
     if (points->count == plan->list_count)
-        return SF_CFH_ENOUGH;
+        return SF_CFH_LIST_DONE;
     *height = plan->list[points->count];
     return SF_CFH_SIMULATE;
 }
@@ -153,6 +153,8 @@ sf_cfh_step sf_cfh_next(const sf_cfh_plan *plan, const sf_cfh_points *points, do
 
 const char *sf_cfh_step_text(sf_cfh_step step) {
     switch (step) {
+    case SF_CFH_LIST_DONE:
+        return "every height of the list was simulated";
     case SF_CFH_AT_MAX_HEIGHT:
         return "no limit is reached up to the greatest height allowed (--max-height)";
     case SF_CFH_AT_MIN_HEIGHT:
@@ -162,6 +164,6 @@ const char *sf_cfh_step_text(sf_cfh_step step) {
     case SF_CFH_AT_CAP:
         return "the number of drops is at its cap";
     default:
-        return "the heights suffice";
+        return "there are enough points around the crossing";
     }
 }

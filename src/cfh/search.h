@@ -9,6 +9,7 @@
 
 typedef enum sf_cfh_step {
     SF_CFH_SIMULATE,      /* the height given */
+    SF_CFH_LIST_DONE,     /* every height of the list */
     SF_CFH_ENOUGH,        /* points on both sides, the crossing known to 1 % or no place left */
     SF_CFH_AT_MAX_HEIGHT, /* no limit reached up to the greatest height allowed */
     SF_CFH_AT_MIN_HEIGHT, /* a limit exceeded down to 1 cm */
