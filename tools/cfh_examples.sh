@@ -37,7 +37,7 @@ def row_of(pad):
     def show(entry, key):
         digits = 3 if key == "height" else 2
         low, middle, high = (entry[key + suffix] for suffix in ("_low_m", "_m", "_high_m"))
-        return "-" if middle is None else "%.*f (%.*f to %.*f)" % (digits, middle, digits, low, digits, high)
+        return entry.get("state", "-") if middle is None else "%.*f (%.*f to %.*f)" % (digits, middle, digits, low, digits, high)
 
     return ("%d" % pad, height["deciding"] or height["verdict"], show(height, "height"), show(height, "rig_height"),
             show(a_max, "height"), show(hic, "height"), "%d" % len(found["points"]),
