@@ -341,7 +341,7 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
         fputs("Curve: s0 (1 - exp(-(E - p0) e / s0)) + p0 x + B x^m with x = e / (1 - e).\n", f);
     if (fclose(f) != 0)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
-    const sf_material_text text = {fit->input->material_name, provenance};
+    const sf_material_text text = {fit->input->title, provenance};
     if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
         sf_material_write(output->staging, fit->input->material_name, &card, &text, err);
         sf_foam_card_free(&card);
