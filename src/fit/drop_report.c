@@ -149,9 +149,9 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
 }
 
 static void put_parameters(FILE *f, const sf_drop_fit *fit) {
-    fputs("## Parameters\n\n95 % intervals (of the logarithm, linearised). \"data\": how much the drops "
-          "narrowed what was "
-          "assumed before; a parameter left at 90 % or more of its prior width was hardly seen by them.\n\n"
+    fputs("## Parameters\n\n95 % intervals (of the logarithm, linearised). A parameter that keeps 90 % or "
+          "more of its "
+          "prior's width was hardly seen by the drops.\n\n"
           "| parameter | value | 95 % | prior | prior factor (1 sd) | width left of the prior | meaning |\n"
           "|---|---|---|---|---|---|---|\n",
           f);
