@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A synthetic laboratory: compression tests made with hidden parameters by the solver's own foam law, with
- * scatter, go through the identification of softfall-fit compression. It must choose the law that made them, and
- * its intervals must hold the truth as often as they say. */
+ * scatter, go through the identification of softfall-fit compression. It must choose the law that made them,
+ * and its intervals must hold the truth as often as they say. */
 #include "fit/compression_fit.h"
 #include "fit/material_point.h"
 #include "study.h"
@@ -38,7 +38,8 @@ static const truth TRUTHS[] = {
 enum { TRUTHS_COUNT = sizeof TRUTHS / sizeof TRUTHS[0] };
 
 static double curve(const truth *t, double e) {
-    return t->yield * (1 - exp(-t->stiffness * e / t->yield)) + t->b * (pow(1 - e / t->limit, -t->exponent) - 1);
+    return t->yield * (1 - exp(-t->stiffness * e / t->yield)) +
+           t->b * (pow(1 - e / t->limit, -t->exponent) - 1);
 }
 
 /* ---- the laboratory ---- */
@@ -153,8 +154,8 @@ typedef struct coverage {
 } coverage;
 
 static void set_truths(const truth *t, const laboratory *lab, coverage c[QUANTITIES]) {
-    const double values[SF_ESTIMATES] = {true_modulus(lab), t->hu,   t->shape,    t->log_rate,
-                                         t->ed,             t->beta, t->exponent, t->limit};
+    const double values[SF_ESTIMATES] = {true_modulus(lab), t->hu,       t->shape, t->log_rate, t->ed,
+                                         t->beta,           t->exponent, t->limit};
     memset(c, 0, QUANTITIES * sizeof *c);
     for (int k = 0; k < SF_ESTIMATES; k++)
         c[k].truth = values[k];
@@ -214,8 +215,8 @@ static void binomial_bounds(double bounds[2]) {
 }
 
 static void report_coverage(sf_study *s, const coverage c[QUANTITIES]) {
-    static const char *const names[SF_ESTIMATES] = {"E",  "HU",    "SHAPE",              "c of the rate",
-                                                    "ED", "BETA1", "densification exponent", "densification limit"};
+    static const char *const names[SF_ESTIMATES] = {
+        "E", "HU", "SHAPE", "c of the rate", "ED", "BETA1", "densification exponent", "densification limit"};
     double bounds[2];
     binomial_bounds(bounds);
     for (int k = 0; k < QUANTITIES; k++) {
@@ -227,9 +228,10 @@ static void report_coverage(sf_study *s, const coverage c[QUANTITIES]) {
         else
             snprintf(name, sizeof name, "curve at strain %g", PLACE[k - SF_ESTIMATES]);
         double mean = c[k].sum / REPETITIONS, spread = sqrt(c[k].square / REPETITIONS - mean * mean);
-        sf_study_check(s, c[k].held, bounds[0], bounds[1],
-                       "%s: intervals of %d that hold the truth %.5g (bias %.2f, stated error %.2f of the spread)", name,
-                       REPETITIONS, c[k].truth, mean / spread, c[k].error / REPETITIONS / spread);
+        sf_study_check(
+            s, c[k].held, bounds[0], bounds[1],
+            "%s: intervals of %d that hold the truth %.5g (bias %.2f, stated error %.2f of the spread)", name,
+            REPETITIONS, c[k].truth, mean / spread, c[k].error / REPETITIONS / spread);
     }
 }
 
@@ -243,7 +245,8 @@ static void study_coverage(sf_study *s, const truth *t, gsl_rng *random) {
         if (repeat(&lab, random, c, misfit, &err) == SF_OK) {
             report_coverage(s, c);
             sf_study_check(s, misfit[0], 0.95, 1.05, "mean misfit chi2/(n - p)");
-            sf_study_check(s, misfit[1], 0, 0.1, "part of the repetitions in which scatter was taken for correlated");
+            sf_study_check(s, misfit[1], 0, 0.1,
+                           "part of the repetitions in which scatter was taken for correlated");
         }
     }
     if (err.status != SF_OK)
@@ -272,8 +275,8 @@ static void study_choice(sf_study *s, const truth *t, gsl_rng *random) {
     if (err.status != SF_OK)
         sf_study_fail(s, &err);
     else
-        sf_study_check(s, right, CHOICES - 1, CHOICES, "%s: choices of %d that find the rate dependence", t->name,
-                       CHOICES);
+        sf_study_check(s, right, CHOICES - 1, CHOICES, "%s: choices of %d that find the rate dependence",
+                       t->name, CHOICES);
     close_laboratory(&lab);
 }
 
@@ -281,12 +284,13 @@ int main(int argc, char **argv) {
     sf_study s;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     sf_study_begin(&s, "identification", "Identification from compression tests", argc, argv);
-    sf_study_text(&s,
-                  "Three tests (0.1, 2 and 10 per minute, to %g %% and back, %d points each) are made by the solver's "
-                  "foam law from hidden parameters, with independent normal scatter of %g kPa and %g %% of the stress, "
-                  "and identified by the library of softfall-fit. Bounds of the counts: what a binomial variable of "
-                  "%g %% leaves with a probability of %g.\n\n",
-                  100 * TURN, LOADING + UNLOADING, 1e-3 * ABSOLUTE, 100 * RELATIVE, 100 * CONFIDENCE, 2 * TAIL);
+    sf_study_text(
+        &s,
+        "Three tests (0.1, 2 and 10 per minute, to %g %% and back, %d points each) are made by the solver's "
+        "foam law from hidden parameters, with independent normal scatter of %g kPa and %g %% of the stress, "
+        "and identified by the library of softfall-fit. Bounds of the counts: what a binomial variable of "
+        "%g %% leaves with a probability of %g.\n\n",
+        100 * TURN, LOADING + UNLOADING, 1e-3 * ABSOLUTE, 100 * RELATIVE, 100 * CONFIDENCE, 2 * TAIL);
     for (int k = 0; k < TRUTHS_COUNT; k++) {
         sf_study_text(&s, "\n### %s\n\n", TRUTHS[k].name);
         study_coverage(&s, &TRUTHS[k], random);

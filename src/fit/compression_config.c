@@ -17,7 +17,7 @@ typedef struct reader {
 } reader;
 
 static const char *const RATE_MODELS[] = {"none", "log", "maxwell", "curves", "auto"};
-static const char *const RULES[] = {"auto", "H1", "H2"};
+static const char *const RULES[] = {"auto", "H1", "H1_automatic", "H2"};
 
 const char *sf_rate_model_name(sf_rate_model model) {
     return RATE_MODELS[model];
@@ -227,7 +227,7 @@ static sf_status read_root(const reader *r, const config_setting_t *root, sf_err
     if (err->status == SF_OK && (s = config_setting_get_member(root, "rate_model")))
         read_choice(r, s, RATE_MODELS, SF_RATE_MODELS + 1, &model, err);
     if (err->status == SF_OK && (s = config_setting_get_member(root, "densification")))
-        read_choice(r, s, RULES, 3, &rule, err);
+        read_choice(r, s, RULES, sizeof RULES / sizeof RULES[0], &rule, err);
     if (err->status == SF_OK && (s = config_setting_get_member(root, "specimen")))
         read_specimen(r, s, err);
     c->rate_model = (sf_rate_model)model;

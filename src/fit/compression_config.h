@@ -18,7 +18,7 @@ typedef enum sf_rate_model {
     SF_RATE_AUTO = SF_RATE_MODELS
 } sf_rate_model;
 
-typedef enum sf_rule_choice { SF_RULE_AUTO, SF_RULE_H1, SF_RULE_H2 } sf_rule_choice;
+typedef enum sf_rule_choice { SF_RULE_AUTO, SF_RULE_H1, SF_RULE_H1_AUTOMATIC, SF_RULE_H2 } sf_rule_choice;
 
 typedef struct sf_compression_config {
     char name[SF_COMPRESSION_NAME]; /* of the material; begins a heading */

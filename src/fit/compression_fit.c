@@ -115,24 +115,29 @@ static int lowest(const sf_candidate *candidates, int count, int otherwise) {
     return best;
 }
 
-/* First the rate dependence, with the free exponent of H1 (or with H2), then the densification. */
+/* First the rate dependence, with the prescribed densification or the free exponent of H1; then, unless it is
+ * prescribed, the densification. A = 0 is tried to be told, but not chosen: it has a parameter less and would
+ * win wherever the data leave A open, with intervals that deny the doubt. */
 static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_error *err) {
+    static const sf_rule prescribed[] = {[SF_RULE_AUTO] = SF_H1_FREE,
+                                         [SF_RULE_H1] = SF_H1_FREE,
+                                         [SF_RULE_H1_AUTOMATIC] = SF_H1_AUTO,
+                                         [SF_RULE_H2] = SF_H2};
     const sf_compression_config *c = fit->data.config;
-    sf_rule first = c->rule == SF_RULE_H2 ? SF_H2 : SF_H1_FREE;
-    *form = (sf_compression_form){c->test_count == 1 ? SF_RATE_NONE : c->rate_model, first};
+    *form = (sf_compression_form){c->test_count == 1 ? SF_RATE_NONE : c->rate_model, prescribed[c->rule]};
     if (form->rate == SF_RATE_AUTO) {
         for (int k = 0; k < SF_RATE_MODELS; k++)
-            if (try_form(&fit->data, (sf_compression_form){(sf_rate_model)k, first}, &fit->rate[k], err) !=
-                SF_OK)
+            if (try_form(&fit->data, (sf_compression_form){(sf_rate_model)k, form->rule}, &fit->rate[k],
+                         err) != SF_OK)
                 return err->status;
         form->rate = (sf_rate_model)lowest(fit->rate, SF_RATE_MODELS, SF_RATE_NONE);
     }
-    if (c->rule == SF_RULE_H2)
+    if (c->rule != SF_RULE_AUTO)
         return SF_OK;
-    for (int k = 0; k < (c->rule == SF_RULE_AUTO ? SF_RULES : SF_H2); k++)
+    for (int k = 0; k < SF_RULES; k++)
         if (try_form(&fit->data, (sf_compression_form){form->rate, (sf_rule)k}, &fit->rule[k], err) != SF_OK)
             return err->status;
-    form->rule = (sf_rule)lowest(fit->rule, SF_RULES, SF_H1_FREE);
+    form->rule = fit->rule[SF_H2].bic < fit->rule[SF_H1_FREE].bic ? SF_H2 : SF_H1_FREE;
     return SF_OK;
 }
 
@@ -270,7 +275,7 @@ static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {
     return estimate_exponent(fit, &fit->estimate[SF_ESTIMATE_EXPONENT], err);
 }
 
-/* Strains of the table: denser at both ends, and three close together where densification starts, from whose
+/* Strains of the table, graded as the knots, and three close together where densification starts, from whose
  * slope the solver joins it. */
 static void place_table(sf_compression_fit *fit) {
     enum { GRADED = SF_COMPRESSION_TABLE - 3 };
@@ -279,7 +284,7 @@ static void place_table(sf_compression_fit *fit) {
     bool placed = false;
     fit->table_count = 0;
     for (int k = 0; k < GRADED; k++) {
-        double strain = end * sf_spline_grade(k / (GRADED - 1.0), 0.85);
+        double strain = sf_spline_grade(SF_GRADING_FOAM, 0, end, k / (GRADED - 1.0));
         for (int side = -1; side <= 1 && !placed && strain > start - CLEAR; side++)
             fit->table_strain[fit->table_count++] = start + side * BESIDE;
         placed = placed || strain > start - CLEAR;

@@ -355,24 +355,18 @@ static void set_ranges(sf_compression_model *model) {
     model->parameter_count = index;
 }
 
-/* Knots as fine as cross-validation asked for, and no finer than every test's data, up to the densification
- * start. An interval that the start cuts short goes to the one before it. */
+/* Knots as fine as the data's intervals, and no finer than the points of every test. */
 static sf_status make_spline(sf_compression_model *model, sf_error *err) {
     const sf_compression_data *d = model->data;
     sf_spline_data sets[SF_COMPRESSION_TESTS];
     double breaks[SF_SPLINE_BREAKS];
-    int tests = d->config->test_count, count = 1;
+    int tests = d->config->test_count;
     for (int k = 0; k < tests; k++) {
         int first;
         sf_compression_branch(d, k, false, &first, &sets[k].count);
         sets[k].x = &d->strain[first];
     }
-    int placed = sf_spline_place(d->scatter.intervals, 0, d->end, tests, sets, breaks);
-    while (count < placed && breaks[count] < d->start)
-        count++;
-    if (count > 1 && d->start - breaks[count - 1] < 0.5 * (breaks[count - 1] - breaks[count - 2]))
-        count--;
-    breaks[count++] = d->start;
+    int count = sf_spline_place(SF_GRADING_FOAM, d->intervals, 0, d->start, tests, sets, breaks);
     return sf_spline_init(&model->spline, count, breaks, err);
 }
 

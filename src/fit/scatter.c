@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/scatter.h"
 
-#include "fit/spline.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multimin.h>
@@ -69,12 +68,13 @@ static sf_status solve(const sf_scatter_branch *b, sf_spline *spline, smoothing 
     return err->status;
 }
 
-static sf_status smooth(const sf_scatter_branch *b, int intervals, smoothing *out, sf_error *err) {
+static sf_status smooth(const sf_scatter_branch *b, sf_spline_grading grading, int intervals, smoothing *out,
+                        sf_error *err) {
     double breaks[SF_SPLINE_BREAKS], low, high;
     const sf_spline_data data = {b->x, b->count};
     sf_spline spline;
     gsl_stats_minmax(&low, &high, b->x, 1, (size_t)b->count);
-    int count = sf_spline_place(intervals, low, high, 1, &data, breaks);
+    int count = sf_spline_place(grading, intervals, low, high, 1, &data, breaks);
     if (sf_spline_init(&spline, count, breaks, err) != SF_OK)
         return err->status;
     solve(b, &spline, out, err);
@@ -84,11 +84,12 @@ static sf_status smooth(const sf_scatter_branch *b, int intervals, smoothing *ou
 
 /* Smooths all branches; returns the score of generalised cross-validation, INFINITY if a branch has too few
  * points for so many knots. */
-static double smooth_all(int count, const sf_scatter_branch *branches, int intervals, sf_error *err) {
+static double smooth_all(int count, const sf_scatter_branch *branches, sf_spline_grading grading,
+                         int intervals, sf_error *err) {
     double score = 0;
     for (int k = 0; k < count; k++) {
         smoothing s;
-        if (smooth(&branches[k], intervals, &s, err) != SF_OK)
+        if (smooth(&branches[k], grading, intervals, &s, err) != SF_OK)
             return INFINITY;
         double n = branches[k].count, left = 1 - s.parameters / n;
         score += left > 0.3 ? s.weighted / (left * left) : INFINITY;
@@ -96,18 +97,19 @@ static double smooth_all(int count, const sf_scatter_branch *branches, int inter
     return score;
 }
 
-static sf_status choose_intervals(int count, const sf_scatter_branch *branches, int *best, sf_error *err) {
+static sf_status choose_intervals(int count, const sf_scatter_branch *branches, sf_spline_grading grading,
+                                  int *best, sf_error *err) {
     double lowest = INFINITY;
     *best = TRIED[0];
     for (int k = 0; k < TRIALS && err->status == SF_OK; k++) {
-        double score = smooth_all(count, branches, TRIED[k], err);
+        double score = smooth_all(count, branches, grading, TRIED[k], err);
         if (score < lowest) {
             lowest = score;
             *best = TRIED[k];
         }
     }
     if (err->status == SF_OK)
-        smooth_all(count, branches, *best, err);
+        smooth_all(count, branches, grading, *best, err);
     return err->status;
 }
 
@@ -167,7 +169,7 @@ static void set_sigma(int count, const sf_scatter_branch *branches, const sf_sca
 static sf_status set_inflation(likelihood *l, int intervals, sf_error *err) {
     for (int k = 0; k < l->count; k++) {
         smoothing s;
-        if (smooth(&l->branches[k], intervals, &s, err) != SF_OK)
+        if (smooth(&l->branches[k], SF_GRADING_ENDS, intervals, &s, err) != SF_OK)
             return err->status;
         double n = l->branches[k].count;
         l->inflate[k] = n / fmax(1, n - s.parameters);
@@ -179,6 +181,7 @@ sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branche
                               sf_error *err) {
     likelihood l = {.count = branch_count, .branches = branches};
     double size = 0;
+    int intervals;
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     for (int k = 0; k < branch_count; k++)
         for (int i = 0; i < branches[k].count; i++)
@@ -187,10 +190,18 @@ sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branche
         for (int i = 0; i < branches[k].count; i++)
             branches[k].sigma[i] = hypot(1e-3 * size, 0.01 * branches[k].y[i]);
     for (int round = 0; round < ROUNDS && err->status == SF_OK; round++) {
-        if (choose_intervals(branch_count, branches, &scatter->intervals, err) == SF_OK &&
-            set_inflation(&l, scatter->intervals, err) == SF_OK && minimise(&l, size, scatter, err) == SF_OK)
+        if (choose_intervals(branch_count, branches, SF_GRADING_ENDS, &intervals, err) == SF_OK &&
+            set_inflation(&l, intervals, err) == SF_OK && minimise(&l, size, scatter, err) == SF_OK)
             set_sigma(branch_count, branches, scatter);
     }
+    gsl_set_error_handler(handler);
+    return err->status;
+}
+
+sf_status sf_scatter_intervals(int branch_count, const sf_scatter_branch *branches, int *intervals,
+                               sf_error *err) {
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    choose_intervals(branch_count, branches, SF_GRADING_FOAM, intervals, err);
     gsl_set_error_handler(handler);
     return err->status;
 }

@@ -7,6 +7,7 @@
 #define SF_FIT_SCATTER_H
 
 #include "core/error.h"
+#include "fit/spline.h"
 
 /* One branch: places ascending or descending, measured values; out: the smoothed values and the standard
  * deviation of each. Borrowed. */
@@ -19,7 +20,6 @@ typedef struct sf_scatter_branch {
 typedef struct sf_scatter {
     double absolute; /* a, in the unit of y */
     double relative; /* b */
-    int intervals;   /* that cross-validation chose, of all branches together */
 } sf_scatter;
 
 enum { SF_SCATTER_FINEST = 40, SF_SCATTER_BRANCHES = 16 };
@@ -28,5 +28,10 @@ enum { SF_SCATTER_FINEST = 40, SF_SCATTER_BRANCHES = 16 };
  */
 sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branches, sf_scatter *scatter,
                               sf_error *err);
+
+/* The number of intervals, of SF_GRADING_FOAM over each branch, with which splines smooth the branches best:
+ * cross-validation with the sigmas that are there. Writes `smooth` anew. */
+sf_status sf_scatter_intervals(int branch_count, const sf_scatter_branch *branches, int *intervals,
+                               sf_error *err);
 
 #endif

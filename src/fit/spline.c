@@ -6,9 +6,32 @@
 #include <stdbool.h>
 
 static const double STRENGTH = 0.85; /* width at the ends over width in the middle: (1 - .) / (1 + .) */
+static const double FOOT = 0.02;     /* strain over which a foam leaves its linear range */
+static const double DENSE = 3; /* intervals per e-fold of the room left, to those per e-fold of the strain */
 
-double sf_spline_grade(double part, double strength) {
-    return part - strength * sin(2 * M_PI * part) / (2 * M_PI);
+/* Intervals up to a strain, but for a factor. */
+static double foam_number(double strain) {
+    double x = fmax(0, strain);
+    return log1p(x / FOOT) - DENSE * log1p(-x);
+}
+
+static double foam_place(double low, double high, double part) {
+    double from = foam_number(low), goal = from + part * (foam_number(high) - from), a = low, b = high;
+    for (int k = 0; k < 50; k++) {
+        double middle = 0.5 * (a + b);
+        *(foam_number(middle) < goal ? &a : &b) = middle;
+    }
+    return 0.5 * (a + b);
+}
+
+double sf_spline_grade(sf_spline_grading grading, double low, double high, double part) {
+    if (grading == SF_GRADING_FOAM)
+        return part <= 0 ? low : part >= 1 ? high : foam_place(low, high, part);
+    return low + (high - low) * (part - STRENGTH * sin(2 * M_PI * part) / (2 * M_PI));
+}
+
+double sf_spline_part(double high, double strain) {
+    return foam_number(strain) / foam_number(high);
 }
 
 static bool enough(double low, double high, int set_count, const sf_spline_data *sets) {
@@ -22,12 +45,12 @@ static bool enough(double low, double high, int set_count, const sf_spline_data 
     return true;
 }
 
-int sf_spline_place(int intervals, double low, double high, int set_count, const sf_spline_data *sets,
-                    double breaks[SF_SPLINE_BREAKS]) {
+int sf_spline_place(sf_spline_grading grading, int intervals, double low, double high, int set_count,
+                    const sf_spline_data *sets, double breaks[SF_SPLINE_BREAKS]) {
     int count = 1;
     breaks[0] = low;
     for (int k = 1; k < intervals && count < SF_SPLINE_BREAKS - 1; k++) {
-        double place = low + (high - low) * sf_spline_grade((double)k / intervals, STRENGTH);
+        double place = sf_spline_grade(grading, low, high, (double)k / intervals);
         if (enough(breaks[count - 1], place, set_count, sets))
             breaks[count++] = place;
     }

@@ -24,14 +24,23 @@ typedef struct sf_spline_data {
     int count;
 } sf_spline_data;
 
-/* Places `intervals` intervals over [low, high] (widths at the ends a twelfth of those in the middle) and
- * joins those that hold fewer than two points of any of the sets. Returns the number of breaks, at least 2.
- */
-int sf_spline_place(int intervals, double low, double high, int set_count, const sf_spline_data *sets,
-                    double breaks[SF_SPLINE_BREAKS]);
+/* How the widths of intervals go with the place. */
+typedef enum sf_spline_grading {
+    SF_GRADING_ENDS, /* widths at the ends a twelfth of those in the middle: for a branch of any shape */
+    SF_GRADING_FOAM, /* in proportion to the distances from rest and from full compression, on which the
+                        loading curve of a foam depends */
+} sf_spline_grading;
 
-/* Position 0..1 to position 0..1, closer together at both ends: for places of knots and of tables. */
-double sf_spline_grade(double part, double strength);
+/* Places `intervals` intervals over [low, high] and joins those that hold fewer than two points of any of the
+ * sets. Returns the number of breaks, at least 2. */
+int sf_spline_place(sf_spline_grading grading, int intervals, double low, double high, int set_count,
+                    const sf_spline_data *sets, double breaks[SF_SPLINE_BREAKS]);
+
+/* Place in [low, high] of a part 0..1 of the intervals. */
+double sf_spline_grade(sf_spline_grading grading, double low, double high, double part);
+
+/* Part of the intervals over [0, high] that lie below `strain`, SF_GRADING_FOAM. */
+double sf_spline_part(double high, double strain);
 
 sf_status sf_spline_init(sf_spline *spline, int break_count, const double *breaks, sf_error *err);
 void sf_spline_free(sf_spline *spline);
