@@ -248,6 +248,34 @@ static void no_contact_points(sf_model *m) {
     m->contact_count = 0;
 }
 
+static void set_motion(sf_model *m, double time, double displacement) {
+    sf_error err = SF_ERROR_INIT;
+    m->motion_count = 2;
+    m->motion_time = sf_alloc(&err, 2, sizeof(double), "motion");
+    m->motion_displacement = sf_alloc(&err, 2, sizeof(double), "motion");
+    assert_int_equal(err.status, SF_OK);
+    m->motion_time[1] = time;
+    m->motion_displacement[1] = displacement;
+    m->missile.mass = m->missile.speed = m->missile.gravity = 0;
+}
+static void motion_that_stands(sf_model *m) {
+    set_motion(m, 1, 0);
+}
+static void motion_too_short(sf_model *m) {
+    set_motion(m, 0.5 * m->run.end_time, 0.01);
+}
+static void motion_backwards_in_time(sf_model *m) {
+    set_motion(m, -1, 0.01);
+}
+static void motion_not_from_zero(sf_model *m) {
+    set_motion(m, 1, 0.01);
+    m->motion_displacement[0] = 0.001;
+}
+static void motion_of_a_heavy_missile(sf_model *m) {
+    set_motion(m, 1, 0.01);
+    m->missile.mass = 4.6;
+}
+
 static void damaged_models_are_refused_with_what_is_wrong(void **state) {
     const program_place *p = *state;
     static const struct {
@@ -274,6 +302,11 @@ static void damaged_models_are_refused_with_what_is_wrong(void **state) {
         {no_hysteresis_unit, "HU"},
         {fast_missile, "missile speed"},
         {no_contact_points, "no contact points"},
+        {motion_that_stands, "speed of the missile's motion"},
+        {motion_too_short, "lies beyond the missile's motion"},
+        {motion_backwards_in_time, "the times do not ascend"},
+        {motion_not_from_zero, "the first (0, 0)"},
+        {motion_of_a_heavy_missile, "missile mass"},
     };
     program_bytes before = program_read_file(program_path(p, "results.h5"));
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {

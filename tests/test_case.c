@@ -283,7 +283,7 @@ static void unknown_names_are_refused_with_what_exists(void **state) {
     (void)state;
     assert_refused(GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\";\n velocty = \"4.5 m/s\"; };\n",
                    NULL, "case.cfg:5: unknown key \"velocty\" in group missile (did you mean \"velocity\"?)",
-                   "mass, velocity, direction, friction", NULL);
+                   "mass, velocity, motion, direction, friction", NULL);
     assert_refused(
         GOOD "missle: { };\n", NULL,
         "case.cfg:5: unknown group \"missle\" (did you mean \"missile\"?); the groups are geometry, pad, "
@@ -305,11 +305,11 @@ static void unknown_names_are_refused_with_what_exists(void **state) {
 
 static void missing_keys_are_refused(void **state) {
     (void)state;
-    assert_refused(
-        GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\"; };\n", NULL,
-        "case.cfg:4: missile.velocity is missing: speed when it touches the pad, for example velocity = "
-        "\"4.5 m/s\"",
-        NULL);
+    assert_refused(GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\"; };\n", NULL,
+                   "case.cfg:4: missile.velocity is missing: speed when it touches the pad; required without "
+                   "`motion`, for "
+                   "example velocity = \"4.5 m/s\"",
+                   NULL);
     assert_refused(GEOMETRY MATERIAL MISSILE, NULL, "solver.end_time is missing (there is no such group)",
                    NULL);
     assert_refused(MATERIAL MISSILE SOLVER, NULL, "geometry.file is missing", NULL);
@@ -452,6 +452,70 @@ static void curve_faults_name_file_line_and_value(void **state) {
     assert_curve_refused(HEAD "0,0\n0.1,0\n0.2,0\n0.3,0\n", "the stress is zero everywhere");
 }
 
+#define DRIVEN(rest) GEOMETRY MATERIAL SOLVER "missile: { motion = \"press.csv\"; " rest "};\n"
+
+static void motion_replaces_mass_and_speed(void **state) {
+    (void)state;
+    sf_case c;
+    write_file("press.csv", "# a press\nforce_N,displacement_mm,time_ms\n1,0,0\n2,25,50\n3,-5.5,80\n");
+    read_good(DRIVEN(""), NULL, &c);
+    assert_int_equal(c.motion_count, 3);
+    assert_true(c.motion_time[0] == 0.0 && c.motion_displacement[0] == 0.0);
+    assert_true(fabs(c.motion_time[1] - 0.05) < 1e-16 && fabs(c.motion_time[2] - 0.08) < 1e-16);
+    assert_true(fabs(c.motion_displacement[1] - 0.025) < 1e-16);
+    assert_true(fabs(c.motion_displacement[2] + 0.0055) < 1e-16);
+    assert_true(c.missile_card.mass == 0.0 && c.missile_card.speed == 0.0 && c.missile_card.gravity == 0.0);
+    assert_non_null(strstr(c.parameters, "3 points, to 0.08 s"));
+    sf_case_free(&c);
+    write_file("press.csv", "time_s,displacement_m\n0,0\n0.04,0.025\n"); /* may end with the run */
+    read_good(DRIVEN("gap = \"1 mm\"; friction = 0.5; "), NULL, &c);
+    assert_true(c.motion_displacement[1] == 0.025 && c.missile_card.gap == 1e-3);
+    sf_case_free(&c);
+    assert_refused(DRIVEN("mass = \"4.6 kg\"; "), NULL, "case.cfg:4: missile.mass has no meaning", NULL);
+    assert_refused(DRIVEN(""), "missile.velocity=4 m/s",
+                   "--set missile.velocity=4 m/s: missile.velocity has no meaning", NULL);
+    assert_refused(DRIVEN(""), "missile.gravity=1 m/s2", "missile.gravity has no meaning", NULL);
+    assert_refused(DRIVEN(""), "solver.end_time=41 ms",
+                   "solver.end_time: 0.041 s lies beyond the end of missile.motion (0.04 s)", NULL);
+    assert_refused(DRIVEN(""), "missile.motion=none.csv", "the motion",
+                   "none.csv cannot be read: No such file", "(named at --set missile.motion=none.csv)", NULL);
+    assert_refused(DRIVEN(""), "missile.motion=materials", "is not a plain file", NULL);
+    assert_refused(DRIVEN(""), "missile.motion=3", "missile.motion: the name of a CSV file is expected",
+                   NULL);
+}
+
+static void motion_faults_name_file_line_and_value(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *part;
+    } faults[] = {
+        {"", "0 points; a motion needs at least 2"},
+        {"0,0\n", "1 points; a motion needs at least 2"},
+        {"1,0\n2,1\n", ":2: time 1 in the first point; a motion starts at (0, 0)"},
+        {"0,1\n2,1\n", ":2: displacement 1 in the first point; a motion starts at (0, 0)"},
+        {"0,0\n2,1\n2,3\n", ":4: time 2 is not above the one before it (2)"},
+        {"0,0\n2,1\n1,3\n", ":4: time 1 is not above the one before it (2)"},
+        {"0,0\n2,x\n", ":3: displacement \"x\" is not a number"},
+        {"0,0\ninf,1\n", ":3: time \"inf\" is not finite"},
+        {"0,0\n2\n", ":3: 1 values where the header has 2 columns"},
+        {"0,0\n1,201\n", ":3: displacement 201 after 0 means a speed of 201 m/s"},
+        {"0,0\n50,0\n", "the displacement is zero everywhere"},
+    };
+    for (size_t k = 0; k < sizeof faults / sizeof faults[0]; k++) {
+        char text[256];
+        snprintf(text, sizeof text, "time_ms,displacement_mm\n%s", faults[k].text);
+        write_file("press.csv", text);
+        assert_refused(DRIVEN(""), NULL, "press.csv", faults[k].part, "(named at ", "case.cfg:4)", NULL);
+    }
+    write_file("press.csv", "time,displacement_mm\n0,0\n");
+    assert_refused(DRIVEN(""), NULL, ":1: the header has no column \"time_s\" or \"time_ms\"", NULL);
+    write_file("press.csv", "time_s,displacement\n0,0\n");
+    assert_refused(DRIVEN(""), NULL, ":1: the header has no column \"displacement_m\" or \"displacement_mm\"",
+                   NULL);
+    write_file("press.csv", "time_s,time_ms,displacement_m\n0,0\n");
+    assert_refused(DRIVEN(""), NULL, "two time columns", NULL);
+}
+
 static void curve_without_origin_is_extended_to_it(void **state) {
     (void)state;
     sf_error err = SF_ERROR_INIT;
@@ -542,6 +606,8 @@ int main(void) {
         cmocka_unit_test(broken_syntax_names_file_and_line),
         cmocka_unit_test(rate_curves_are_checked),
         cmocka_unit_test(curve_faults_name_file_line_and_value),
+        cmocka_unit_test(motion_replaces_mass_and_speed),
+        cmocka_unit_test(motion_faults_name_file_line_and_value),
         cmocka_unit_test(curve_without_origin_is_extended_to_it),
         cmocka_unit_test(examples_are_the_drops_they_are_called),
         cmocka_unit_test(reference_is_the_table),

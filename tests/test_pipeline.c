@@ -284,6 +284,85 @@ static void set_overrides_a_key_of_the_case(void **state) {
     sf_model_free(&model);
 }
 
+/* Last value of a column. */
+static double column_end(const program_place *p, const char *name, const char *path) {
+    sf_error err = SF_ERROR_INIT;
+    int64_t rows;
+    sf_h5 *file = open_file(p, name);
+    double *column = read_column(file, path, &rows), value = column[rows - 1];
+    free(column);
+    sf_h5_close(&file, &err);
+    return value;
+}
+
+/* The example of a compression test, coarse: it goes on after the release, and is not judged as a drop. */
+static void compression_test_runs_to_its_end_and_is_no_drop(void **state) {
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    program_result pre = program_succeed(
+        p, "pre", "'%s' -o press.h5 --set geometry.parameters.spacing=10 --set output.frame_interval='40 ms'",
+        fixture_source("examples/compression/case.cfg"));
+    assert_non_null(strstr(pre.out, "prescribed motion of 3 points to 160 ms, to 40 mm, at most 0.5 m/s"));
+    program_result solve = program_succeed(p, "solve", "press.h5 -o pressed.h5 --threads 1");
+    assert_non_null(strstr(solve.out, "the motion's work"));
+    assert_null(strstr(solve.err, "warning"));
+    sf_h5 *file = open_file(p, "pressed.h5");
+    char *status = read_text(file, "/summary/status");
+    assert_string_equal(status, "finished");
+    free(status);
+    sf_h5_close(&file, &err);
+    assert_true(column_end(p, "pressed.h5", "/history/contact_nodes") == 0);
+    assert_close(column_end(p, "pressed.h5", "/history/displacement"), 0, 1e-5);
+    assert_close(column_end(p, "pressed.h5", "/history/velocity"), -0.5, 1e-12);
+    history h = read_history(p, "pressed.h5");
+    for (int64_t k = 0; k < h.rows; k++) {
+        double total = h.kinetic_pad[k] + h.stored[k] + h.hysteresis[k] + h.viscous[k] + h.stabilisation[k] +
+                       h.lost[k] + h.friction[k];
+        assert_true(h.kinetic[k] == 0 && h.a[k] == 0);
+        assert_close(h.energy_error[k], 0, 1e-3);
+        assert_close(total, h.external[k], 1e-3);
+    }
+    history_free(&h);
+
+    program_result post = program_succeed(p, "post", "pressed.h5 -o pressed");
+    assert_string_equal(post.err, "");
+    assert_non_null(strstr(post.out, "Prescribed motion"));
+    assert_null(strstr(post.out, "HIC"));
+    assert_null(strstr(post.out, "a_max"));
+    program_bytes summary = program_read_file(program_path(p, "pressed/summary.json"));
+    summary.data[summary.size] = '\0';
+    static const char *const parts[] = {"\"a_max_g\": null",
+                                        "\"hic\": null",
+                                        "\"v0_m_s\": null",
+                                        "\"missile_mass_kg\": null",
+                                        "\"prescribed_motion\": true",
+                                        "\"section_mm2\": 2500"};
+    for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++)
+        if (!strstr(summary.data, parts[k]))
+            fail_msg("summary.json lacks %s", parts[k]);
+    free(summary.data);
+    program_result list = program_shell(p, "ls -1 pressed");
+    assert_non_null(strstr(list.out, "compression.png"));
+    assert_null(strstr(list.out, "acceleration"));
+    /* The largest stress of the table, from the file. */
+    program_result peak = program_shell(p, "sort -t, -g -k3 pressed/compression.csv | tail -1");
+    double time, strain, stress, force;
+    assert_int_equal(sscanf(peak.out, "%lf,%lf,%lf,%lf", &time, &strain, &stress, &force), 4);
+    assert_close(time, 80, 0.1);
+    assert_close(strain, 0.8, 1e-3);
+    assert_close(force / stress, 2.5, 1e-6); /* N over kPa on 2500 mm2 */
+    assert_true(stress > 1600 && stress < 1700);
+
+    program_shell(p, "printf 'time_ms,acceleration_g\\n0,0\\n1,1\\n' > measured.csv");
+    program_result compared = program_run(p, "post", "pressed.h5 -o none --reference measured.csv");
+    assert_true(compared.code != 0);
+    assert_non_null(strstr(compared.err, "the missile's motion was prescribed"));
+    program_result deep = program_run(p, "pre", "'%s' -o deep.h5 --set geometry.parameters.side=40",
+                                      fixture_source("examples/compression/case.cfg"));
+    assert_true(deep.code != 0);
+    assert_non_null(strstr(deep.err, "40 mm deep into a pad that is 40 mm thick"));
+}
+
 static void sleep_ms(long ms) {
     nanosleep(&(struct timespec){ms / 1000, ms % 1000 * 1000000}, NULL);
 }
@@ -390,6 +469,7 @@ int main(void) {
         cmocka_unit_test(files_say_where_they_come_from),
         cmocka_unit_test(existing_output_is_replaced_only_with_force),
         cmocka_unit_test(set_overrides_a_key_of_the_case),
+        cmocka_unit_test(compression_test_runs_to_its_end_and_is_no_drop),
         cmocka_unit_test(interrupted_run_leaves_readable_results),
         cmocka_unit_test(help_and_version_are_there),
         cmocka_unit_test(paraview_reads_every_frame),

@@ -4,7 +4,7 @@
     python3 tools/results_table.py [--into FILE.md] DIR...
 
 With --into it replaces the table in that file, the one that begins with "| drop |", instead.
-Beside a_max and HIC stand, in brackets, the measured values of the same thickness and speed, if
+A run with a prescribed motion, which is no drop, has no row. Beside a_max and HIC stand, in brackets, the measured values of the same thickness and speed, if
 examples/data/penta2018_table2_70mm.csv has them.
 """
 import csv
@@ -25,12 +25,15 @@ def read_measured():
                 for row in rows}
 
 
-def row_of(directory, measured):
+def read_summary(directory):
     try:
         with open(os.path.join(directory, "summary.json")) as stream:
-            s = json.load(stream)
+            return json.load(stream)
     except OSError as problem:
         sys.exit("results_table: %s: run tools/run_examples.sh first" % problem)
+
+
+def row_of(directory, s, measured):
     real = measured.get((s["thickness_mm"], s["v0_m_s"]))
     brackets = [" (%s)" % value for value in real] if real else ["", ""]
 
@@ -62,7 +65,9 @@ def main():
     if not arguments:
         sys.exit(__doc__)
     measured = read_measured()
-    rows = [HEAD, ["---"] + ["---:"] * (len(HEAD) - 1)] + [row_of(name, measured) for name in arguments]
+    summaries = [(name, read_summary(name)) for name in arguments]
+    rows = [HEAD, ["---"] + ["---:"] * (len(HEAD) - 1)]
+    rows += [row_of(name, s, measured) for name, s in summaries if not s.get("prescribed_motion")]
     table = ["| " + " | ".join(row) + " |" for row in rows]
     if into:
         replace_table(into, table)

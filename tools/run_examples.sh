@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs every drop of examples/ into out/NAME and prints the table of results that stands in README.md.
+# Runs every case of examples/ into out/NAME and prints the table of the drops' results that stands in README.md.
 #
 #     tools/run_examples.sh            some minutes
 #     tools/run_examples.sh --table    only the table, of the results that are there

@@ -6,9 +6,14 @@
 #include <string.h>
 
 #define ARRAY(member, type, rows, extra, columns, path, units, text)                                         \
-    { offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text }
+    { offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text, false }
 #define SCALAR(member, type, path, units, text)                                                              \
-    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text }
+    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, false }
+/* What models of older versions do not hold. */
+#define OPTIONAL_ARRAY(member, type, rows, path, units, text)                                                \
+    { offsetof(sf_model, member), type, offsetof(sf_model, rows), 0, 1, path, units, text, true }
+#define OPTIONAL_SCALAR(member, type, path, units, text)                                                     \
+    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true }
 #define F64 SF_MODEL_F64
 #define I32 SF_MODEL_I32
 #define I64 SF_MODEL_I64
@@ -52,6 +57,12 @@ static const sf_model_field fields[] = {
           "position at t = 0"),
     ARRAY(surface_triangle, I32, surface_triangle_count, 0, 3, "/missile/surface_triangle", "1",
           "outward triangles"),
+    OPTIONAL_SCALAR(motion_count, I64, "/missile/motion_count", "1",
+                    "points of the prescribed motion, 0: free missile"),
+    OPTIONAL_ARRAY(motion_time, F64, motion_count, "/missile/motion_time", "s",
+                   "times of the prescribed motion"),
+    OPTIONAL_ARRAY(motion_displacement, F64, motion_count, "/missile/motion_displacement", "m",
+                   "displacement along the direction at these times"),
     SCALAR(frame_time_count, I64, "/run/frame_time_count", "1", "number of further frames"),
     ARRAY(frame_time, F64, frame_time_count, 0, 1, "/run/frame_time", "s", "times of further frames"),
     SCALAR(symmetry_factor, I64, "/model/symmetry_factor", "1", "modelled parts that make the whole"),

@@ -69,15 +69,15 @@ typedef struct sf_foam_card {
 } sf_foam_card;
 
 typedef struct sf_missile_card {
-    double mass;              /* kg, of the whole missile, whatever the symmetry */
-    double speed;             /* m s-1, at first contact */
-    double direction[3];      /* -, unit vector of motion; the one translational degree of freedom */
-    double friction;          /* -, Coulomb coefficient against the pad */
-    double gravity;           /* m s-2, acts along -z on the missile */
-    double gap;               /* m, distance still to travel along `direction` at t = 0 */
-    int64_t shape;            /* SF_SHAPE_* */
-    double sphere_centre[3];  /* m, at t = 0 (SF_SHAPE_SPHERE) */
-    double sphere_radius;     /* m */
+    double mass;             /* kg, of the whole missile, whatever the symmetry; 0 with a prescribed motion */
+    double speed;            /* m s-1, at first contact; 0 with a prescribed motion */
+    double direction[3];     /* -, unit vector of motion; the one translational degree of freedom */
+    double friction;         /* -, Coulomb coefficient against the pad */
+    double gravity;          /* m s-2, acts along -z on the missile; 0 with a prescribed motion */
+    double gap;              /* m, distance still to travel along `direction` at t = 0 */
+    int64_t shape;           /* SF_SHAPE_* */
+    double sphere_centre[3]; /* m, at t = 0 (SF_SHAPE_SPHERE) */
+    double sphere_radius;    /* m */
     double sphere_cap_cosine; /* -, smallest cosine between `direction` and a point of the cap, seen from the
                                  centre */
 } sf_missile_card;
@@ -141,6 +141,12 @@ typedef struct sf_model {
     double *surface_position;  /* [surface_node_count][3] m */
     int32_t *surface_triangle; /* [surface_triangle_count][3] */
 
+    /* Prescribed motion of the missile along its direction, piecewise linear (core/motion.h): both columns
+     * begin with 0, the times ascend to run.end_time or beyond. */
+    int64_t motion_count;        /* 0 = the missile is free; else 2 or more */
+    double *motion_time;         /* [motion_count] s */
+    double *motion_displacement; /* [motion_count] m */
+
     /* Times of further frames, beside run.frame_interval. */
     int64_t frame_time_count;
     double *frame_time; /* [frame_time_count] s, ascending */
@@ -174,6 +180,7 @@ typedef struct sf_model_field {
     const char *path;   /* in model.h5 */
     const char *units;
     const char *description;
+    bool optional; /* a file may lack it: 0, or no rows */
 } sf_model_field;
 
 /* The table, and its length. Counts come before the arrays that need them. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/model.h"
+#include "core/motion.h"
 
 #include <math.h>
 
@@ -80,7 +81,28 @@ static sf_status check_curves(const sf_foam_card *foam, sf_error *err) {
     return SF_OK;
 }
 
+static sf_status check_motion(const sf_model *m, sf_error *err) {
+    int64_t last = m->motion_count - 1;
+    if (m->motion_count == 0)
+        return SF_OK;
+    if (m->motion_count < 2 || m->motion_time[0] != 0 || m->motion_displacement[0] != 0)
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the missile's motion has %lld points; it needs 2, the first (0, 0)",
+                       (long long)m->motion_count);
+    for (int64_t k = 1; k <= last; k++)
+        if (!(m->motion_time[k] > m->motion_time[k - 1]))
+            return SF_FAIL(err, SF_ERR_MODEL, "the missile's motion: the times do not ascend at %g s",
+                           m->motion_time[k]);
+    if (!(m->run.end_time <= m->motion_time[last] * (1 + SF_MOTION_SLACK)))
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the end time %g s lies beyond the missile's motion, which ends at %g s",
+                       m->run.end_time, m->motion_time[last]);
+    return check_bound("largest speed of the missile's motion (m/s)", sf_motion_top_speed(m), 1e-9,
+                       SF_MOTION_MAX_SPEED, err);
+}
+
 static sf_status check_cards(const sf_model *m, sf_error *err) {
+    bool driven = m->motion_count > 0;
     const struct {
         const char *name;
         double value, low, high;
@@ -99,10 +121,10 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"densification limit", m->foam.densification_limit, 0.01, 1},
         {"densification exponent", m->foam.densification_exponent, 0, 100},
         {"rate filter time (s)", m->foam.rate_filter_time, m->foam.curve_count > 1 ? 1e-9 : 0, 1e3},
-        {"missile mass (kg)", m->missile.mass, 1e-9, 1e9},
-        {"missile speed (m/s)", m->missile.speed, 1e-9, 200},
+        {"missile mass (kg)", m->missile.mass, driven ? 0 : 1e-9, driven ? 0 : 1e9},
+        {"missile speed (m/s)", m->missile.speed, driven ? 0 : 1e-9, driven ? 0 : 200},
         {"missile friction", m->missile.friction, 0, 10},
-        {"missile gravity (m/s2)", m->missile.gravity, 0, 1e4},
+        {"missile gravity (m/s2)", m->missile.gravity, 0, driven ? 0 : 1e4},
         {"missile gap (m)", m->missile.gap, 0, 1e3},
         {"missile shape", (double)m->missile.shape, 0, 1},
         {"missile sphere radius (m)", m->missile.sphere_radius, m->missile.shape ? 0 : 1e-9, 1e3},
@@ -123,6 +145,8 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         length += m->missile.direction[c] * m->missile.direction[c];
     if (fabs(length - 1) > 1e-9)
         return SF_FAIL(err, SF_ERR_MODEL, "missile direction has length %g, expected 1", sqrt(length));
+    if (check_motion(m, err) != SF_OK)
+        return err->status;
     return check_curves(&m->foam, err);
 }
 

@@ -60,7 +60,10 @@ sf_status sf_model_write(const char *path, const sf_model *model, const sf_prove
 static sf_status read_field(const sf_h5 *h5, const sf_model_field *field, sf_model *model, sf_error *err) {
     char *base = (char *)model;
     void *data = NULL;
+    bool absent = field->optional && !sf_h5_exists(h5, field->path);
     if (field->rows_offset == SIZE_MAX) {
+        if (absent)
+            return SF_OK;
         if (sf_h5_read(h5, field->path, h5_type(field->type), 0, NULL, &data, err) != SF_OK)
             return err->status;
         memcpy(base + field->offset, data, 8);
@@ -70,6 +73,8 @@ static sf_status read_field(const sf_h5 *h5, const sf_model_field *field, sf_mod
     int64_t rows = *(const int64_t *)(base + field->rows_offset);
     if (rows < 0)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: its count is negative", field->path);
+    if (absent && rows == 0)
+        return SF_OK;
     int64_t dims[2] = {rows + field->rows_extra, field->columns};
     sf_status status =
         sf_h5_read(h5, field->path, h5_type(field->type), field->columns > 1 ? 2 : 1, dims, &data, err);

@@ -56,6 +56,21 @@ sf_status sf_csv_write_history(const sf_output *output, const sf_results *result
     return sf_output_close(file, "history.csv", err);
 }
 
+sf_status sf_csv_write_compression(const sf_output *output, const sf_results *results,
+                                   const sf_figures *figures, sf_error *err) {
+    FILE *file = sf_output_open(output, "compression.csv", err);
+    if (!file)
+        return err->status;
+    fputs("time_ms,strain_1,stress_kPa,force_N\n", file);
+    for (int64_t i = 0; i < results->history_rows; i++) {
+        double force = results->history[SF_HISTORY_CONTACT_FORCE][i];
+        fprintf(file, "%.9g,%.9g,%.9g,%.9g\n", results->history[SF_HISTORY_TIME][i] * 1e3,
+                results->history[SF_HISTORY_INDENTATION][i] / results->thickness,
+                force / figures->area * 1e-3, force);
+    }
+    return sf_output_close(file, "compression.csv", err);
+}
+
 sf_status sf_csv_write_reference(const sf_output *output, const sf_comparison *comparison,
                                  const sf_figures *figures, sf_error *err) {
     const sf_series *measured = &comparison->measured, *model = &figures->filtered;

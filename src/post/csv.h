@@ -11,6 +11,11 @@
 sf_status sf_csv_write_history(const sf_output *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err);
 
+/* compression.csv: engineering strain (indentation / thickness) and nominal stress (contact force / mean
+ * cross-section at rest) of every row; of a run with a prescribed motion. */
+sf_status sf_csv_write_compression(const sf_output *output, const sf_results *results,
+                                   const sf_figures *figures, sf_error *err);
+
 /* reference.csv: the measured curve on the clock of the model, and the model at the same instants (empty
  * outside). */
 sf_status sf_csv_write_reference(const sf_output *output, const sf_comparison *comparison,

@@ -83,6 +83,24 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
         f->smallest_jacobian = fmin(f->smallest_jacobian, r->history[SF_HISTORY_SMALLEST_JACOBIAN][i]);
 }
 
+static double mean_section(const sf_results *r) {
+    double volume = 0;
+    for (int64_t i = 0; i < r->node_count; i++)
+        volume += r->volume[i];
+    return (double)r->symmetry_factor * volume / r->thickness;
+}
+
+static void compute_compression(const sf_results *r, sf_figures *f) {
+    const double *work = r->history[SF_HISTORY_ENERGY_EXTERNAL];
+    int64_t peak = row_of_largest(r, SF_HISTORY_CONTACT_FORCE), last = r->history_rows - 1;
+    f->peak_force = r->history[SF_HISTORY_CONTACT_FORCE][peak];
+    f->peak_force_time = r->history[SF_HISTORY_TIME][peak];
+    f->peak_stress = f->peak_force / f->area;
+    f->work = work[row_of_largest(r, SF_HISTORY_ENERGY_EXTERNAL)];
+    if (r->history[SF_HISTORY_CONTACT_NODES][last] == 0)
+        f->returned_energy_fraction = (f->work - work[last]) / f->work;
+}
+
 static void set_undefined(sf_figures *f) {
     const sf_hic no_hic = {NAN, NAN, NAN};
     f->injury = (sf_injury){NAN, NAN, no_hic, no_hic, no_hic, NAN, NAN, NAN};
@@ -92,10 +110,13 @@ static void set_undefined(sf_figures *f) {
     f->max_local_strain = f->max_local_strain_time = f->smallest_jacobian = f->max_penetration = NAN;
     f->internal_energy_peak = f->internal_energy_peak_time = NAN;
     f->stabilisation_energy_fraction = f->contact_energy_fraction = NAN;
+    f->peak_force = f->peak_force_time = f->peak_stress = f->work = f->returned_energy_fraction = NAN;
 }
 
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *f, sf_error *err) {
     *f = (sf_figures){.cfc = cfc, .touched = sf_results_touched(results), .v0 = results->missile_speed};
+    f->driven = results->motion_count > 0;
+    f->area = mean_section(results);
     set_undefined(f);
     if (compute_curves(results, f, err) != SF_OK)
         goto done;
@@ -104,12 +125,16 @@ sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *
     f->constraint_residual = largest_magnitude(results, SF_HISTORY_CONSTRAINT_RESIDUAL);
     if (!f->touched)
         goto done;
+    compute_energies(results, f);
+    compute_extremes(results, f);
+    if (f->driven) {
+        compute_compression(results, f);
+        goto done;
+    }
     if (sf_injury_evaluate(&f->raw, &f->injury_raw, err) != SF_OK ||
         sf_injury_evaluate(&f->filtered, &f->injury, err) != SF_OK)
         goto done;
-    compute_energies(results, f);
     compute_rebound(results, f);
-    compute_extremes(results, f);
 done:
     if (err->status != SF_OK)
         sf_figures_free(f);

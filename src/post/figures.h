@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figures of a drop, from its history. A figure that the run does not define (the bodies never touched,
- * contact had not ended) is NaN. */
+/* The figures of a run, from its history: of a drop, or of a compression test (prescribed motion). A figure
+ * that the run does not define (the bodies never touched, contact had not ended, no drop) is NaN. */
 #ifndef SF_POST_FIGURES_H
 #define SF_POST_FIGURES_H
 
@@ -9,6 +9,7 @@
 
 typedef struct sf_figures {
     bool touched;       /* the missile touched the pad */
+    bool driven;        /* its motion was prescribed */
     bool rebounded;     /* contact had ended before the last row, upwards */
     double cfc;         /* channel frequency class of `filtered` */
     double rate;        /* Hz, sampling of `filtered` */
@@ -36,6 +37,12 @@ typedef struct sf_figures {
     double contact_energy_fraction;       /* 1, likewise */
     double absorbed_energy;               /* J, m (v0^2 - v_rebound^2) / 2 */
     double absorbed_energy_fraction;      /* 1, of m v0^2 / 2 */
+    double area;                          /* m2, mean cross-section: volume of the whole pad / thickness */
+    double peak_force;                    /* N, largest contact force (prescribed motion, like the next) */
+    double peak_force_time;               /* s */
+    double peak_stress;                   /* Pa, that force / area */
+    double work;                          /* J, largest work of the motion on the pad so far */
+    double returned_energy_fraction;      /* 1, of it, that the pad has given back when contact ends */
 } sf_figures;
 
 /* Release with sf_figures_free. */

@@ -131,6 +131,7 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         .doc =
             "Injury figures, curves and ParaView files of a softfall drop.\v"
             "Writes summary.json, history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and pad.h5. "
+            "Of a prescribed motion compression.csv and .png instead of the acceleration. "
             "Open pad.xdmf in ParaView. The figures are indicative, not a certification.",
     };
     argp_program_version_hook = print_version;
@@ -144,15 +145,17 @@ static sf_status parse_command(int argc, char **argv, options *o) {
 }
 
 /* Every file that this program may write. pad.h5 is moved before pad.xdmf, which refers to it. */
-static const char *const output_names[] = {"pad.h5",           "pad.xdmf",      "history.csv",
-                                           "section.csv",      "reference.csv", "acceleration.gp",
-                                           "acceleration.png", "summary.json",  NULL};
+static const char *const output_names[] = {"pad.h5",           "pad.xdmf",        "history.csv",
+                                           "section.csv",      "reference.csv",   "compression.csv",
+                                           "compression.gp",   "compression.png", "acceleration.gp",
+                                           "acceleration.png", "summary.json",    NULL};
 
 static sf_status write_output(const options *o, job *j, sf_error *err) {
     bool section = false;
     const sf_comparison *comparison = o->comparing ? &j->comparison : NULL;
     if (sf_output_begin(o->directory, output_names, o->force, &j->output, err) != SF_OK ||
         sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
+        (j->figures.driven && sf_csv_write_compression(&j->output, &j->results, &j->figures, err) != SF_OK) ||
         (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
         sf_section_write(&j->output, &j->results, &section, err) != SF_OK ||
         sf_xdmf_write(&j->output, &j->results, j->command_line, &j->frames, err) != SF_OK ||
@@ -176,7 +179,7 @@ static void print_warnings(const job *j) {
     if (!j->figures.touched)
         fprintf(stderr,
                 "softfall-post: warning: the missile never touched the pad: there are no injury figures\n");
-    else if (!j->figures.rebounded)
+    else if (!j->figures.rebounded && !j->figures.driven)
         fprintf(
             stderr,
             "softfall-post: warning: the run ended in contact: no rebound speed, the peak may lie ahead\n");
@@ -191,6 +194,8 @@ static void print_files(const job *j) {
         {"summary.json", "the figures"},
         {"acceleration.png", "the curves and the HIC window"},
         {"history.csv", "acceleration, speed, indentation, forces, energies over time"},
+        {"compression.png", "stress over strain"},
+        {"compression.csv", "strain and nominal stress over time"},
         {"section.csv", "mid-section and profile under the axis at the peak"},
         {"reference.csv", "the measured curve, aligned"},
         {"pad.xdmf", "pad and missile for ParaView (with pad.h5)"},
@@ -207,6 +212,9 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     if (sf_results_open(o->results_path, &j->results, err) != SF_OK ||
         sf_figures_compute(&j->results, o->cfc, &j->figures, err) != SF_OK)
         return err->status;
+    if (o->comparing && j->figures.driven)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile's motion was prescribed",
+                       o->results_path);
     if (o->comparing && !j->figures.touched)
         return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile never touched the pad",
                        o->results_path);

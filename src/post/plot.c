@@ -31,23 +31,27 @@ static void value_range(const sf_figures *f, const sf_comparison *c, double rang
     range[1] = high > 0 ? 1.1 * high : 1;
 }
 
-static void put_style(FILE *g, const sf_results *r, const sf_figures *f, const sf_comparison *c) {
+/* What all pictures share; `name` without its ending. */
+static void put_style(FILE *g, const char *name) {
+    fprintf(g,
+            "set terminal pngcairo size 1600,1000 font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"
+            "set output '%s.png'\n"
+            "set datafile separator ','\n"
+            "set encoding utf8\n"
+            "set grid back lt 1 lc rgb '#c8c8c8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
+            "set tics nomirror out scale 0.6\nset xzeroaxis lw 1 lc rgb '#808080'\n",
+            name);
+}
+
+static void put_axes(FILE *g, const sf_results *r, const sf_figures *f, const sf_comparison *c) {
     double time[2], value[2];
     time_range(f, c, time);
     value_range(f, c, value);
-    fputs("set terminal pngcairo size 1600,1000 font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"
-          "set output 'acceleration.png'\n"
-          "set datafile separator ','\n"
-          "set encoding utf8\n",
-          g);
     fprintf(g, "set title 'Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm' offset 0,-0.3\n",
             r->missile_mass, r->missile_speed, r->thickness * 1e3);
     fputs("set xlabel 'time (ms)'\nset ylabel 'deceleration (g)'\n", g);
     fprintf(g, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", time[0], time[1], value[0], value[1]);
-    fputs("set grid back lt 1 lc rgb '#c8c8c8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
-          "set tics nomirror out scale 0.6\nset xzeroaxis lw 1 lc rgb '#808080'\n"
-          "set key below center horizontal maxcols 3 Left reverse samplen 2 width 1 spacing 1.2\n",
-          g);
+    fputs("set key below center horizontal maxcols 3 Left reverse samplen 2 width 1 spacing 1.2\n", g);
 }
 
 static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
@@ -71,15 +75,33 @@ static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
     fputc('\n', g);
 }
 
+/* Stress over strain of a compression test. */
+static void put_compression(FILE *g, const sf_results *r, const sf_figures *f) {
+    fprintf(g, "set title 'Compression of a foam specimen of %.4g mm, %.4g cm²' offset 0,-0.3\n",
+            r->thickness * 1e3, f->area * 1e4);
+    fputs("set xlabel 'strain'\nset ylabel 'nominal stress (kPa)'\nunset key\n"
+          "plot 'compression.csv' skip 1 using 2:3 with lines lw 3 lc rgb '#08519c'\n",
+          g);
+}
+
 sf_status sf_plot_write(const sf_output *output, const sf_results *results, const sf_figures *figures,
                         const sf_comparison *comparison, char *warning, size_t size, sf_error *err) {
-    FILE *script = sf_output_open(output, "acceleration.gp", err);
+    const char *name = figures->driven ? "compression" : "acceleration";
+    char source[32], picture[32];
+    snprintf(source, sizeof source, "%s.gp", name);
+    snprintf(picture, sizeof picture, "%s.png", name);
+    FILE *script = sf_output_open(output, source, err);
     if (!script)
         return err->status;
-    put_style(script, results, figures, comparison);
-    put_curves(script, figures, comparison);
-    if (sf_output_close(script, "acceleration.gp", err) != SF_OK)
+    put_style(script, name);
+    if (figures->driven) {
+        put_compression(script, results, figures);
+    } else {
+        put_axes(script, results, figures, comparison);
+        put_curves(script, figures, comparison);
+    }
+    if (sf_output_close(script, source, err) != SF_OK)
         return err->status;
-    sf_gnuplot_draw(output, "acceleration.gp", "acceleration.png", warning, size);
+    sf_gnuplot_draw(output, source, picture, warning, size);
     return SF_OK;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* acceleration.png, drawn by gnuplot from acceleration.gp and history.csv (and reference.csv), which stay
- * beside it: the picture can be drawn again, or differently, with `gnuplot acceleration.gp`. */
+ * beside it: the picture can be drawn again, or differently, with `gnuplot acceleration.gp`. Of a run with a
+ * prescribed motion, compression.png from compression.gp and compression.csv. */
 #ifndef SF_POST_PLOT_H
 #define SF_POST_PLOT_H
 

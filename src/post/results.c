@@ -110,7 +110,9 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         sf_h5_read_scalar(r->file, "/model/density", &r->density, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err) != SF_OK ||
-        read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK)
+        read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK ||
+        (sf_h5_exists(r->file, "/model/motion_count") && /* older files do not have it */
+         read_integer(r, "/model/motion_count", &r->motion_count, err) != SF_OK))
         return err->status;
     return sf_results_check_model(r, err);
 }

@@ -95,8 +95,9 @@ typedef struct sf_results {
     int64_t symmetry_factor;
     double thickness;     /* m */
     double density;       /* kg m-3 */
-    double missile_mass;  /* kg */
+    double missile_mass;  /* kg; 0 with a prescribed motion, like the speed */
     double missile_speed; /* m s-1 */
+    int64_t motion_count; /* points of the missile's prescribed motion; 0 = it was free */
     double missile_direction[3];
 
     int64_t history_rows;

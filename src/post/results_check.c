@@ -101,8 +101,11 @@ sf_status sf_results_check_model(const sf_results *r, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "/model/missile_direction (%g, %g, %g) is not a unit vector", d[0],
                        d[1], d[2]);
     if (check_positive(r->thickness, "/model/thickness", err) != SF_OK ||
-        check_positive(r->density, "/model/density", err) != SF_OK ||
-        check_positive(r->missile_mass, "/model/missile_mass", err) != SF_OK ||
+        check_positive(r->density, "/model/density", err) != SF_OK)
+        return err->status;
+    if (r->motion_count > 0)
+        return SF_OK;
+    if (check_positive(r->missile_mass, "/model/missile_mass", err) != SF_OK ||
         check_positive(r->missile_speed, "/model/missile_speed", err) != SF_OK)
         return err->status;
     return SF_OK;

@@ -33,7 +33,7 @@ static void put_injury(sf_json *json, const sf_figures *f) {
 }
 
 static void put_mechanics(sf_json *json, const sf_figures *f) {
-    sf_json_number(json, "v0_m_s", f->v0);
+    sf_json_number(json, "v0_m_s", f->driven ? NAN : f->v0);
     sf_json_number(json, "v_rebound_m_s", f->v_rebound);
     sf_json_number(json, "rebound_time_ms", f->rebound_time * 1e3);
     sf_json_number(json, "absorbed_energy_J", f->absorbed_energy);
@@ -55,15 +55,25 @@ static void put_mechanics(sf_json *json, const sf_figures *f) {
     sf_json_number(json, "contact_energy_fraction", f->contact_energy_fraction);
 }
 
+static void put_compression(sf_json *json, const sf_figures *f) {
+    sf_json_number(json, "section_mm2", f->area * 1e6);
+    sf_json_number(json, "peak_force_N", f->peak_force);
+    sf_json_number(json, "peak_force_time_ms", f->peak_force_time * 1e3);
+    sf_json_number(json, "peak_stress_kPa", f->peak_stress * 1e-3);
+    sf_json_number(json, "work_J", f->work);
+    sf_json_number(json, "returned_energy_fraction", f->returned_energy_fraction);
+}
+
 static void put_run(sf_json *json, const sf_summary *s) {
     const sf_results *r = s->results;
     sf_json_text(json, "status", r->has_summary ? r->status : NULL);
     sf_json_bool(json, "touched", s->figures->touched);
+    sf_json_bool(json, "prescribed_motion", s->figures->driven);
     sf_json_bool(json, "rebounded", s->figures->rebounded);
     sf_json_number(json, "contact_time_ms", r->contact_time * 1e3);
     sf_json_number(json, "end_time_ms", r->history[SF_HISTORY_TIME][r->history_rows - 1] * 1e3);
     sf_json_number(json, "thickness_mm", r->thickness * 1e3);
-    sf_json_number(json, "missile_mass_kg", r->missile_mass);
+    sf_json_number(json, "missile_mass_kg", s->figures->driven ? NAN : r->missile_mass);
     sf_json_number(json, "density_kg_m3", r->density);
     sf_json_integer(json, "symmetry_factor", r->symmetry_factor);
     sf_json_integer(json, "nodes", r->node_count);
@@ -119,6 +129,7 @@ sf_status sf_summary_write(const sf_output *output, const sf_summary *s, sf_erro
     sf_json_text(&json, "caution", caution);
     put_injury(&json, s->figures);
     put_mechanics(&json, s->figures);
+    put_compression(&json, s->figures);
     put_run(&json, s);
     if (s->comparison)
         put_comparison(&json, s->reference_path, s->comparison);
@@ -166,7 +177,7 @@ static void print_comparison(FILE *out, const char *path, const sf_comparison *c
     }
 }
 
-void sf_summary_print(FILE *out, const sf_summary *s) {
+static void print_drop(FILE *out, const sf_summary *s) {
     const sf_figures *f = s->figures;
     fprintf(out, "Drop of %.4g kg at %.4g m/s on %.4g mm (CFC %.0f)\n", s->results->missile_mass, f->v0,
             s->results->thickness * 1e3, f->cfc);
@@ -179,6 +190,24 @@ void sf_summary_print(FILE *out, const sf_summary *s) {
     print_row(out, "3 ms clip", f->injury.clip_contiguous_g, 2, "g");
     print_row(out, "rebound speed", f->v_rebound, 3, "m/s");
     print_row(out, "absorbed energy", f->absorbed_energy_fraction * 100, 1, "%");
+}
+
+static void print_compression(FILE *out, const sf_summary *s) {
+    const sf_figures *f = s->figures;
+    fprintf(out, "Prescribed motion of the missile on %.4g mm: no drop, so no injury figures\n",
+            s->results->thickness * 1e3);
+    print_row(out, "largest force", f->peak_force, 2, "N");
+    print_row(out, "  over mean section", f->peak_stress * 1e-3, 2, "kPa");
+    print_row(out, "work", f->work, 4, "J");
+    print_row(out, "  given back", f->returned_energy_fraction * 100, 1, "%");
+}
+
+void sf_summary_print(FILE *out, const sf_summary *s) {
+    const sf_figures *f = s->figures;
+    if (f->driven)
+        print_compression(out, s);
+    else
+        print_drop(out, s);
     print_row(out, "largest indentation", f->max_indentation * 1e3, 2, "mm");
     print_row(out, "  over thickness", f->max_mean_strain, 3, "");
     print_row(out, "largest local strain", f->max_local_strain, 3, "");

@@ -243,6 +243,19 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     return SF_OK;
 }
 
+/* A driven missile does not stop at the anvil. */
+static sf_status check_depth(const sf_model *m, sf_error *err) {
+    double down = -m->missile.direction[2];
+    for (int64_t k = 0; k < m->motion_count; k++) {
+        double depth = down * (m->motion_displacement[k] - m->missile.gap);
+        if (!(depth < m->thickness))
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
+                           1e3 * depth, 1e3 * m->thickness);
+    }
+    return SF_OK;
+}
+
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->frame_time = sf_alloc(err, (unsigned long)c->frame_time_count, sizeof *m->frame_time, "frame times");
     if (!m->frame_time)
@@ -254,8 +267,13 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     c->foam.curve_ptr = NULL;
     c->foam.curve_strain = NULL;
     c->foam.curve_stress = NULL;
+    m->motion_count = c->motion_count;
+    m->motion_time = c->motion_time;
+    m->motion_displacement = c->motion_displacement;
+    c->motion_time = c->motion_displacement = NULL;
+    c->motion_count = 0;
     m->run = c->run;
-    return SF_OK;
+    return check_depth(m, err);
 }
 
 /* The bound on the step at rest: the largest initial tangent of all curves plus the Maxwell branch. */

@@ -55,6 +55,9 @@ typedef struct sf_case {
     double condition_limit;       /* of the moment matrix */
     sf_foam_card foam;            /* curve arrays owned by the case until moved into a model */
     sf_missile_card missile_card; /* sphere_* are left zero: they come from the geometry */
+    int64_t motion_count;         /* points of the missile's prescribed motion; 0 = it is free */
+    double *motion_time;          /* [motion_count] s; owned until moved into a model, like the next */
+    double *motion_displacement;  /* [motion_count] m, along the direction */
     sf_run_options run;
     int frame_time_count;                 /* further frames, beside run.frame_interval */
     double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */

@@ -29,6 +29,7 @@ typedef enum sf_key_kind {
     SF_KEY_PATH,       /* "file": char *, relative to the file that holds the key; must be readable */
     SF_KEY_PARAMETERS, /* { side = 400.0; }: sf_geo_source */
     SF_KEY_CURVE,      /* "curve.csv": the foam card's curve arrays */
+    SF_KEY_MOTION,     /* "motion.csv": the motion arrays */
     SF_KEY_CURVES,     /* ( { rate = "1 1/s"; file = "curve.csv"; }, ... ): likewise */
 } sf_key_kind;
 
@@ -96,6 +97,17 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
 char *sf_case_folder_of(const char *path, sf_error *err);
 /* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
 const char *sf_case_override_file(const char *text);
+/* The reader of SF_KEY_MOTION, and the rules that join the motion with mass, velocity, gravity and end time.
+ */
+sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *setting, char *detail,
+                              size_t size, sf_error *err);
+sf_status sf_case_check_motion(const sf_case_reader *reader, sf_error *err);
+/* True if the case gives the key. */
+bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name);
+/* Records that the key is missing. */
+sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
+/* Location of a key "group.name", or of its group, or of the file: whatever is there. */
+const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
 /* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
 /* The text of the case with its includes put in place and the overrides as comments; from malloc. Also

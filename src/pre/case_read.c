@@ -138,7 +138,7 @@ static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_erro
     return status;
 }
 
-static sf_status missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err) {
+sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const config_setting_t *group = config_lookup(&reader->config, key->group);
     sf_case_where(reader, group, where);
@@ -165,7 +165,7 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
                 return err->status;
             list_value(reader, key, setting, detail, "given");
         } else if (!key->fallback) {
-            return missing_key(reader, key, err);
+            return sf_case_missing_key(reader, key, err);
         } else if (*key->fallback == '\0') {
             list_value(reader, key, NULL, detail, "default");
         } else if (read_default(reader, key, err) != SF_OK) {
@@ -175,14 +175,13 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
-static bool is_given(const sf_case_reader *reader, const char *group, const char *name) {
+bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name) {
     size_t count;
     const sf_key *keys = sf_case_keys(&count);
     return reader->given[sf_case_find_key(group, name) - keys];
 }
 
-/* Location of a key, or of its group, or of the file: whatever is there. */
-static const char *where_is(const sf_case_reader *reader, const char *path, char *out) {
+const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out) {
     char text[GROUP_SIZE];
     snprintf(text, sizeof text, "%s", path);
     const config_setting_t *setting = config_lookup(&reader->config, text);
@@ -207,29 +206,30 @@ static sf_status check_densification(const sf_case_reader *reader, sf_error *err
         return SF_FAIL(
             err, SF_ERR_INPUT,
             "%s: material.densification.start: %g lies beyond the end of the compression table (%g)",
-            where_is(reader, "material.densification.start", where), foam->densification_start, end);
+            sf_case_where_is(reader, "material.densification.start", where), foam->densification_start, end);
     if (c->densification_rule == SF_DENSIFICATION_H1) {
         if (foam->densification_limit != 1.0)
             return SF_FAIL(err, SF_ERR_INPUT,
                            "%s: material.densification.limit: %g belongs to rule H2; the limit of H1 is 1",
-                           where_is(reader, "material.densification.limit", where),
+                           sf_case_where_is(reader, "material.densification.limit", where),
                            foam->densification_limit);
         return SF_OK;
     }
     static const char *const needed[] = {"limit", "exponent"};
     for (int i = 0; i < 2; i++)
-        if (!is_given(reader, "material.densification", needed[i]))
+        if (!sf_case_is_given(reader, "material.densification", needed[i]))
             return SF_FAIL(err, SF_ERR_INPUT, "%s: material.densification.%s is missing: rule H2 needs it",
-                           where_is(reader, "material.densification", where), needed[i]);
+                           sf_case_where_is(reader, "material.densification", where), needed[i]);
     if (!(foam->densification_exponent > 0.0))
         return SF_FAIL(err, SF_ERR_INPUT, "%s: material.densification.exponent: rule H2 needs one above 0",
-                       where_is(reader, "material.densification.exponent", where));
+                       sf_case_where_is(reader, "material.densification.exponent", where));
     double start = foam->densification_start > 0.0 ? foam->densification_start : largest;
     if (foam->densification_limit <= start)
         return SF_FAIL(
             err, SF_ERR_INPUT,
             "%s: material.densification.limit: %g is not above the strain %g at which the law starts",
-            where_is(reader, "material.densification.limit", where), foam->densification_limit, start);
+            sf_case_where_is(reader, "material.densification.limit", where), foam->densification_limit,
+            start);
     return SF_OK;
 }
 
@@ -242,7 +242,7 @@ static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
             err, SF_ERR_INPUT,
             "%s: missile.direction: [%g, %g, %g] does not point down to the pad; its third component "
             "must be negative",
-            where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
+            sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
     for (int i = 0; i < 3; i++)
         d[i] /= length;
     return SF_OK;
@@ -252,36 +252,37 @@ static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
 static sf_status check_case(sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     sf_case *c = reader->out;
-    c->symmetry_given = is_given(reader, "pad", "symmetry");
+    c->symmetry_given = sf_case_is_given(reader, "pad", "symmetry");
     if (c->foam.curve_count == 0)
         return SF_FAIL(
             err, SF_ERR_INPUT,
             "%s: material.curve is missing: the compression curve's CSV file (or curves: several of them)",
-            where_is(reader, "material", where));
-    if (is_given(reader, "material", "ED") && c->foam.maxwell_modulus > 0.0 &&
-        !is_given(reader, "material", "BETA1"))
+            sf_case_where_is(reader, "material", where));
+    if (sf_case_is_given(reader, "material", "ED") && c->foam.maxwell_modulus > 0.0 &&
+        !sf_case_is_given(reader, "material", "BETA1"))
         return SF_FAIL(
             err, SF_ERR_INPUT,
             "%s: material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for example "
             "BETA1 = \"5000 1/s\"",
-            where_is(reader, "material.ED", where));
+            sf_case_where_is(reader, "material.ED", where));
     if (!c->missile.path && c->missile.parameter_count > 0)
         return SF_FAIL(
             err, SF_ERR_INPUT,
             "%s: geometry.missile_parameters are given but no geometry.missile_file that they belong to",
-            where_is(reader, "geometry.missile_parameters", where));
+            sf_case_where_is(reader, "geometry.missile_parameters", where));
     if (c->fixed_count + c->sliding_count == 0)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
-                       where_is(reader, "pad.fixed", where));
-    if (check_densification(reader, err) != SF_OK || check_direction(reader, err) != SF_OK)
+                       sf_case_where_is(reader, "pad.fixed", where));
+    if (check_densification(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
+        sf_case_check_motion(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
         fprintf(
             stderr,
             "softfall-pre: warning: %s: kernel.support_ratio = %g: from 2 on the constraint matrix is nearly "
             "singular\n",
-            where_is(reader, "kernel.support_ratio", where), c->support_ratio);
+            sf_case_where_is(reader, "kernel.support_ratio", where), c->support_ratio);
     return SF_OK;
 }
 
@@ -340,5 +341,7 @@ void sf_case_free(sf_case *c) {
     free(c->foam.curve_ptr);
     free(c->foam.curve_strain);
     free(c->foam.curve_stress);
+    free(c->motion_time);
+    free(c->motion_displacement);
     memset(c, 0, sizeof *c);
 }

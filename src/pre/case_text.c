@@ -169,6 +169,7 @@ static void print_kind(FILE *file, const sf_key *key) {
         [SF_KEY_PATH] = "file",
         [SF_KEY_PARAMETERS] = "group of numbers",
         [SF_KEY_CURVE] = "file",
+        [SF_KEY_MOTION] = "file",
         [SF_KEY_CURVES] = "list of { rate; file; }",
     };
     if (key->kind == SF_KEY_CHOICE || key->kind == SF_KEY_FIELDS) {

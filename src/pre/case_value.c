@@ -373,6 +373,8 @@ sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const co
         return read_path(reader, key, setting, detail, size, err);
     case SF_KEY_PARAMETERS:
         return read_parameters(reader, key, setting, detail, size, err);
+    case SF_KEY_MOTION:
+        return sf_case_read_motion(reader, setting, detail, size, err);
     case SF_KEY_CURVE:
     case SF_KEY_CURVES:
         return sf_case_read_curves(reader, setting, detail, size, err);

@@ -2,6 +2,7 @@
 #include "solver/contact.h"
 
 #include "core/mat3.h"
+#include "core/motion.h"
 #include <string.h>
 
 enum { MAX_SWEEPS = 500 };
@@ -17,8 +18,9 @@ typedef struct contact_solve {
     double along;     /* N, sum of q . e over all points */
 } contact_solve;
 
+/* What drives the missile is as heavy as it needs to be. */
 static double mobility_of(const sf_model *m) {
-    return (double)m->symmetry_factor / m->missile.mass;
+    return m->motion_count > 0 ? 0 : (double)m->symmetry_factor / m->missile.mass;
 }
 
 /* Positions now and predicted without contact forces, by u_h. */
@@ -44,6 +46,16 @@ static void predict_points(const sf_model *m, sf_state *s, double dt_v) {
     }
 }
 
+/* Work of a driven missile since the last step: the forces' mean times its travel. If it starts on the pad it
+ * catches the surface points up at once; of the work of that impulse (the force at t = 0 for half a step)
+ * they keep one half. */
+static void book_drive(const sf_model *m, sf_state *s, const double mean[3], const double old[3],
+                       double travel) {
+    s->ledger.external += sf_dot3(mean, m->missile.direction) * travel;
+    if (s->step == 1)
+        s->ledger.contact += 0.25 * sf_dot3(old, m->missile.direction) * travel;
+}
+
 /* Work lost since the last step: the forces' mean times the relative motion, split at the normal. */
 static void book_work(const sf_model *m, sf_state *s) {
     const double *e = m->missile.direction;
@@ -62,6 +74,8 @@ static void book_work(const sf_model *m, sf_state *s) {
         double normal = m->missile.friction > 0 ? sf_dot3(mean, n) * sf_dot3(slip, n) : lost;
         s->ledger.contact += normal;
         s->ledger.friction += lost - normal;
+        if (m->motion_count > 0)
+            book_drive(m, s, mean, old, travel);
     }
 }
 
@@ -201,12 +215,13 @@ void sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s) {
     const double *e = m->missile.direction;
     double dt_v = 0.5 * (s->dt_old + s->dt), pull = -m->missile.gravity * e[2];
     contact_solve w = {.mobility = mobility_of(m), .shift = s->dt * dt_v};
-    w.free_step = s->dt * (s->missile.velocity + dt_v * pull);
+    w.free_step = m->motion_count > 0 ? sf_motion_displacement(m, s->time + s->dt) - s->missile.displacement
+                                      : s->dt * (s->missile.velocity + dt_v * pull);
     predict_points(m, s, dt_v);
     int64_t active = find_active(m, op, s, w.free_step);
     start_forces(m, s, active, &w);
     relax(m, op, s, active, &w);
     book_work(m, s);
     apply_forces(m, s, active);
-    s->missile.acceleration = pull + w.mobility * sf_dot3(s->missile.force, e);
+    s->missile.acceleration = m->motion_count > 0 ? 0 : pull + w.mobility * sf_dot3(s->missile.force, e);
 }

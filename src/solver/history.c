@@ -21,9 +21,11 @@ static const sf_h5_info columns[SF_HISTORY_COLUMNS] = {
     {"/history/energy_stabilisation", "J", "work of the stabilisation"},
     {"/history/energy_contact", "J", "lost in normal contact"},
     {"/history/energy_friction", "J", "lost in friction"},
-    {"/history/energy_external", "J", "work of gravity on the missile"},
-    {"/history/energy_error", "1", "total without external work over its initial value, minus 1"},
-    {"/history/momentum_error", "1", "momentum change minus impulses, over mass x speed"},
+    {"/history/energy_external", "J", "work of gravity on the missile, or of its prescribed motion"},
+    {"/history/energy_error", "1",
+     "error of the energy balance, over the initial energy or the largest external work"},
+    {"/history/momentum_error", "1",
+     "momentum change minus impulses, over mass x speed or the impulse of contact"},
     {"/history/largest_compression", "1", "1 - smallest principal stretch of all domains"},
     {"/history/smallest_jacobian", "1", "smallest det F"},
     {"/history/contact_nodes", "1", "points in contact, modelled part"},
@@ -44,7 +46,7 @@ sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf
     const double row[SF_HISTORY_COLUMNS] = {
         s->time,
         s->dt,
-        -s->missile.acceleration,
+        m->motion_count > 0 ? 0 : -s->missile.acceleration, /* not -0 */
         s->missile.velocity_now,
         s->missile.displacement,
         fmax(0, -m->missile.direction[2] * travel),

@@ -7,6 +7,39 @@ double sf_ledger_internal(const sf_ledger *l) {
     return l->stored + l->hysteresis + l->viscous + l->stabilisation;
 }
 
+static double total_energy(const sf_ledger *l) {
+    return l->kinetic_missile + l->kinetic_pad + sf_ledger_internal(l) + l->contact + l->friction;
+}
+
+/* Pad and missile against gravity and the constraints. `held` (N): the constraints' force along the
+ * direction; `carried` (kg m s-1): the pad's momentum along it. */
+static void balance_free(const sf_model *m, sf_state *s, double held, double carried, double dt_v) {
+    sf_ledger *l = &s->ledger;
+    double mass = m->missile.mass / (double)m->symmetry_factor;
+    double pull = -m->missile.gravity * m->missile.direction[2];
+    double before = s->missile.velocity - dt_v * s->missile.acceleration;
+    l->kinetic_missile = 0.5 * mass * before * s->missile.velocity;
+    l->external = mass * pull * s->missile.displacement;
+    l->error = (total_energy(l) - l->external) / l->reference - 1;
+
+    l->impulse += dt_v * (mass * pull + held);
+    double change = mass * s->missile.velocity + carried - l->momentum_reference;
+    l->momentum_error = (change - l->impulse) / l->momentum_reference;
+}
+
+/* The pad alone, which starts at rest, against the missile and the constraints. There is no initial value, so
+ * that the errors refer to the largest work and impulse so far, and at first to what state.c has set. */
+static void balance_driven(const sf_model *m, sf_state *s, double held, double carried, double dt_v) {
+    sf_ledger *l = &s->ledger;
+    double pressed = -dt_v * sf_dot3(s->missile.force, m->missile.direction);
+    l->reference = fmax(l->reference, fabs(l->external));
+    l->error = (total_energy(l) - l->external) / l->reference;
+
+    l->impulse += pressed + dt_v * held;
+    l->momentum_reference += fabs(pressed);
+    l->momentum_error = (carried - l->impulse) / l->momentum_reference;
+}
+
 void sf_ledger_close(const sf_model *m, sf_state *s, const double constraint_force[3], double dt_v) {
     sf_ledger *l = &s->ledger;
     const double *e = m->missile.direction;
@@ -34,15 +67,10 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const double constraint_for
     l->stabilisation_drift += drift;
     l->stabilisation = potential - l->stabilisation_drift;
 
-    double mass = m->missile.mass / (double)m->symmetry_factor, pull = -m->missile.gravity * e[2];
-    double before = s->missile.velocity - dt_v * s->missile.acceleration;
-    l->kinetic_missile = 0.5 * mass * before * s->missile.velocity;
-    l->external = mass * pull * s->missile.displacement;
-    double total = l->kinetic_missile + l->kinetic_pad + sf_ledger_internal(l) + l->contact + l->friction;
-    l->error = (total - l->external) / l->initial - 1;
+    double held = sf_dot3(constraint_force, e), carried = sf_dot3(momentum, e);
+    if (m->motion_count > 0)
+        balance_driven(m, s, held, carried, dt_v);
+    else
+        balance_free(m, s, held, carried, dt_v);
     l->largest_error = fmax(l->largest_error, fabs(l->error));
-
-    l->impulse += dt_v * (mass * pull + sf_dot3(constraint_force, e));
-    double change = mass * s->missile.velocity + sf_dot3(momentum, e) - l->momentum_initial;
-    l->momentum_error = (change - l->impulse) / l->momentum_initial;
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The energy ledger and the momentum balance. Stored and hysteretic energy are state functions of W and its
  * maximum, not integrals of the forces: their agreement with the kinetic energy is a check, not an identity.
- */
+ *
+ * A free missile brings the energy and the momentum that errors refer to. With a prescribed motion they refer
+ * to the largest work and the impulse of the motion so far. */
 #ifndef SF_SOLVER_LEDGER_H
 #define SF_SOLVER_LEDGER_H
 

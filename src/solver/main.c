@@ -87,6 +87,7 @@ __attribute__((format(printf, 1, 2))) static void warn(const char *format, ...) 
 static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run) {
     const sf_ledger *l = &s->ledger;
     double whole = (double)m->symmetry_factor;
+    bool driven = m->motion_count > 0;
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     printf("ended: %s at %.3f ms after %lld steps, %.1f s, %.2f million node-steps/s, peak memory %.0f MB\n",
@@ -94,18 +95,22 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
            (double)m->node_count * (double)s->step / run->wall_time / 1e6, (double)usage.ru_maxrss / 1e3);
     printf("energies at the end (J, whole pad): missile %.4f  pad %.4f  stored %.4f  hysteresis %.4f  "
            "viscous %.4f\n"
-           "  stabilisation %.4f  contact %.5f  friction %.5f  gravity's work %.4f\n",
+           "  stabilisation %.4f  contact %.5f  friction %.5f  %s work %.4f\n",
            whole * l->kinetic_missile, whole * l->kinetic_pad, whole * l->stored, whole * l->hysteresis,
            whole * l->viscous, whole * l->stabilisation, whole * l->contact, whole * l->friction,
-           whole * l->external);
+           driven ? "the motion's" : "gravity's", whole * l->external);
     printf("energy error %.2e (largest), momentum error %.1e, |G v| %.1e m/s, penetration %.2g mm\n",
            l->largest_error, run->largest_momentum, run->largest_residual, 1e3 * run->largest_penetration);
     printf("at the peak of the internal energy (%.3f J): stabilisation %.2f %%, contact %.3f %%\n",
            run->peak_internal, 100 * run->stabilisation_share, 100 * run->contact_share);
-    printf("largest acceleration %.2f g at %.3f ms, largest local compression %.4f, speed upwards at the end "
-           "%.3f m/s\n",
-           run->peak_acceleration / 9.80665, 1e3 * run->peak_time, run->largest_compression,
-           fmax(0, -s->missile.velocity_now));
+    if (driven)
+        printf("largest contact force %.2f N at %.3f ms, largest local compression %.4f\n", run->peak_value,
+               1e3 * run->peak_time, run->largest_compression);
+    else
+        printf("largest acceleration %.2f g at %.3f ms, largest local compression %.4f, speed upwards at the "
+               "end %.3f m/s\n",
+               run->peak_value / 9.80665, 1e3 * run->peak_time, run->largest_compression,
+               fmax(0, -s->missile.velocity_now));
     const sf_missile_card *card = &m->missile;
     double height = card->sphere_radius * (1 - card->sphere_cap_cosine);
     if (card->shape == SF_SHAPE_SPHERE && run->largest_indentation > height)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run.h"
 
+#include "core/mat3.h"
 #include "solver/frame.h"
 #include "solver/history.h"
 #include "solver/ledger.h"
@@ -17,7 +18,7 @@ static const double PROGRESS_INTERVAL = 5; /* s of wall time between plain lines
 typedef struct recorder {
     sf_history *history;
     sf_snapshot peak;
-    double peak_kept; /* m s-2, the maximum that `peak` follows */
+    double peak_kept; /* the run's peak_value that `peak` follows */
     int64_t frames;
     double next_frame;       /* s */
     int64_t next_extra;      /* index in model->frame_time */
@@ -30,19 +31,26 @@ static double wall_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/* What a run is watched for: deceleration, or the contact force on a missile whose motion is prescribed. */
+static double peak_measure(const sf_model *m, const sf_state *s) {
+    return m->motion_count > 0 ? -(double)m->symmetry_factor * sf_dot3(s->missile.force, m->missile.direction)
+                               : -s->missile.acceleration;
+}
+
 static void print_progress(const sf_model *m, const sf_state *s, sf_run *run, recorder *r, bool last) {
     double now = wall_clock(), interval = run->terminal ? 0.2 : PROGRESS_INTERVAL;
     if (!last && now - r->last_line < interval)
         return;
     r->last_line = now;
     double done = s->time / m->run.end_time, spent = now - r->start;
+    bool driven = m->motion_count > 0;
     fprintf(
         run->log,
-        "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  a %6.1f g  indentation %5.1f mm  compression %.3f  "
+        "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  %s %6.1f %s  indentation %5.1f mm  compression %.3f  "
         "energy %+.3f %%",
         run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
-        -s->missile.acceleration / 9.80665, 1e3 * (s->missile.displacement - m->missile.gap),
-        s->largest_compression, 100 * s->ledger.error);
+        driven ? "force" : "a", peak_measure(m, s) / (driven ? 1 : 9.80665), driven ? "N" : "g",
+        1e3 * (s->missile.displacement - m->missile.gap), s->largest_compression, 100 * s->ledger.error);
     if (done > 0 && !last)
         fprintf(run->log, "  left <= %.0f s  ", spent * (1 - done) / done);
     if (!run->terminal || last)
@@ -60,10 +68,10 @@ static sf_status write_frame(const sf_model *m, const sf_operators *op, const sf
     return sf_h5_flush(file, err);
 }
 
-/* Extremes over the run, and the fields at the largest acceleration. */
+/* Extremes over the run, and the fields at its peak. */
 static void watch(const sf_model *m, const sf_operators *op, const sf_state *s, sf_run *run, recorder *r) {
     double whole = (double)m->symmetry_factor, internal = whole * sf_ledger_internal(&s->ledger);
-    double a = -s->missile.acceleration;
+    double value = peak_measure(m, s);
     run->largest_compression = fmax(run->largest_compression, s->largest_compression);
     run->largest_indentation =
         fmax(run->largest_indentation, -m->missile.direction[2] * (s->missile.displacement - m->missile.gap));
@@ -75,19 +83,19 @@ static void watch(const sf_model *m, const sf_operators *op, const sf_state *s, 
         run->stabilisation_share = whole * s->ledger.stabilisation / internal;
         run->contact_share = whole * s->ledger.contact / internal;
     }
-    if (a > run->peak_acceleration) {
-        run->peak_acceleration = a;
+    if (value > run->peak_value) {
+        run->peak_value = value;
         run->peak_time = s->time;
-    } else if (run->peak_acceleration > PEAK_GROWTH * r->peak_kept) { /* one step past a maximum */
-        r->peak_kept = run->peak_acceleration;
+    } else if (run->peak_value > PEAK_GROWTH * r->peak_kept) { /* one step past a maximum */
+        r->peak_kept = run->peak_value;
         sf_snapshot_take(m, op, s, &r->peak);
     }
 }
 
-/* Has the missile left the pad for good? */
+/* Has the missile left the pad for good? A driven one may come back. */
 static bool has_rebounded(const sf_model *m, const sf_state *s) {
-    return m->run.stop_after_rebound && s->missile.velocity < 0 && s->contact_count == 0 &&
-           s->time - s->missile.release_time > REBOUND_WAIT;
+    return m->motion_count == 0 && m->run.stop_after_rebound && s->missile.velocity < 0 &&
+           s->contact_count == 0 && s->time - s->missile.release_time > REBOUND_WAIT;
 }
 
 /* Is a frame due? Advances both schedules past the present time. */
@@ -165,7 +173,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     if (err->status == SF_ERR_NUMERIC)
         write_frame(m, op, s, &r, file, &late);
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC || err->status == SF_INTERRUPTED) {
-        if (run->peak_acceleration > PEAK_GROWTH * r.peak_kept) /* it was still rising */
+        if (run->peak_value > PEAK_GROWTH * r.peak_kept) /* it was still rising */
             sf_snapshot_take(m, op, s, &r.peak);
         sf_history_write(r.history, file, &late);
         sf_snapshot_write(m, &r.peak, "/peak", file, &late);

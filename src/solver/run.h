@@ -18,9 +18,9 @@ typedef struct sf_run {
     bool terminal;                     /* progress as one line rewritten in place */
     int threads;
     /* out */
-    double wall_time;           /* s */
-    double peak_acceleration;   /* m s-2 */
-    double peak_time;           /* s */
+    double wall_time;  /* s */
+    double peak_value; /* m s-2, largest acceleration; of a driven missile N, largest contact force */
+    double peak_time;  /* s */
     double largest_compression; /* - */
     double largest_indentation; /* m, along z */
     double largest_penetration; /* m */

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/state.h"
 
+#include "core/curve.h"
+#include "core/motion.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy, see start_driven */
 
 /* One list of the arrays: allocation, release and size. Rows: n nodes, b blocks of lanes, c contact points, k
  * chunks. */
@@ -60,6 +64,32 @@ static int64_t rows_of(const sf_model *model, char rows) {
     }
 }
 
+static void start_free(const sf_model *m, sf_state *s) {
+    double mass = m->missile.mass / (double)m->symmetry_factor;
+    s->missile.velocity = s->missile.velocity_now = m->missile.speed;
+    s->ledger.reference = 0.5 * mass * m->missile.speed * m->missile.speed;
+    s->ledger.momentum_reference = mass * m->missile.speed;
+}
+
+/* A driven missile brings no energy. Until it has done more work, its errors refer to the pad at the motion's
+ * top speed, and to a part of the energy of a pad that is compressed evenly as far as the motion goes. */
+static sf_status start_driven(const sf_model *m, sf_state *s, sf_error *err) {
+    double mass = 0, depth = 0, stress, slope, energy, speed = sf_motion_top_speed(m);
+    sf_curve curve;
+    if (sf_curve_build(&m->foam, 0, &curve, err) != SF_OK)
+        return err->status;
+    for (int64_t i = 0; i < m->node_count; i++)
+        mass += m->mass[i];
+    for (int64_t k = 0; k < m->motion_count; k++)
+        depth = fmax(depth, -m->missile.direction[2] * (m->motion_displacement[k] - m->missile.gap));
+    sf_curve_evaluate(&curve, fmin(depth / m->thickness, curve.start), &stress, &slope, &energy);
+    sf_curve_free(&curve);
+    s->missile.velocity = s->missile.velocity_now = sf_motion_velocity(m, 0);
+    s->ledger.reference = 0.5 * mass * speed * speed + LEAST_WORK * energy * mass / m->foam.density;
+    s->ledger.momentum_reference = mass * speed;
+    return SF_OK;
+}
+
 sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
     memset(s, 0, sizeof *s);
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
@@ -78,12 +108,12 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
         memcpy(&s->contact_position[3 * c], &model->position[3 * (int64_t)model->contact_node[c]],
                3 * sizeof(double));
     s->tightness = 1;
-    s->missile.velocity = s->missile.velocity_now = model->missile.speed;
     s->missile.contact_time = s->missile.release_time = NAN;
-    double mass = model->missile.mass / (double)model->symmetry_factor;
-    s->ledger.initial = 0.5 * mass * model->missile.speed * model->missile.speed;
-    s->ledger.momentum_initial = mass * model->missile.speed;
-    return SF_OK;
+    if (model->motion_count == 0)
+        start_free(model, s);
+    else if (start_driven(model, s, err) != SF_OK)
+        sf_state_free(s);
+    return err->status;
 }
 
 void sf_state_free(sf_state *s) {

@@ -31,14 +31,14 @@ typedef struct sf_partial {
 typedef struct sf_ledger {
     double kinetic_missile, kinetic_pad;
     double stored, hysteresis, viscous, stabilisation, contact, friction;
-    double external;            /* work of gravity on the missile */
-    double initial;             /* J, total at t = 0 */
+    double external;            /* work of gravity on the missile, or of what drives it */
+    double reference;           /* J, what errors refer to: total at t = 0; see ledger.h */
     double stabilisation_drift; /* J, work that changed stiffness put into the pairs, to date */
-    double error;               /* total / initial - 1 */
+    double error;               /* of the balance, over `reference` */
     double largest_error;       /* largest |error| so far */
-    double momentum_initial;    /* kg m s-1, along the missile's direction */
-    double impulse;             /* N s, of gravity and constraints, along it */
-    double momentum_error;      /* relative to mass x speed */
+    double momentum_reference;  /* kg m s-1, along the missile's direction: likewise */
+    double impulse;             /* N s, of gravity and constraints, and of a driven missile, along it */
+    double momentum_error;      /* over momentum_reference */
 } sf_ledger;
 
 /* The missile: one translational degree of freedom along model->missile.direction. Forces are the modelled

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/step.h"
 
+#include "core/motion.h"
 #include "solver/contact.h"
 #include "solver/domain_stress.h"
 #include "solver/internal_force.h"
@@ -43,14 +44,14 @@ static sf_status check_step(const sf_model *m, const sf_state *s, sf_error *err)
 /* The energy limit is a stop, not a tolerance: beyond it the run has become unstable. */
 static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *err) {
     double least = fmin(s->ledger.contact, s->ledger.stabilisation);
-    if (least < -m->run.energy_limit * s->ledger.initial)
+    if (least < -m->run.energy_limit * s->ledger.reference)
         return SF_FAIL(
             err, SF_ERR_NUMERIC,
             "at t = %.6g s (step %lld) contact or stabilisation has put %.3g J into the pad (contact %.3g J, "
-            "stabilisation %.3g J; limit %.2f %% of the impact energy): is the missile pressed in beyond its "
+            "stabilisation %.3g J; limit %.2f %% of the %s): is the missile pressed in beyond its "
             "touching surface?",
             s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
-            100 * m->run.energy_limit);
+            100 * m->run.energy_limit, m->motion_count > 0 ? "largest work of the motion" : "impact energy");
     if (fabs(s->ledger.error) <= m->run.energy_limit)
         return SF_OK;
     return SF_FAIL(
@@ -80,6 +81,18 @@ static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
     }
 }
 
+/* The missile's velocities now and at the next half step. */
+static void move_missile(const sf_model *m, sf_state *s, double dt_v) {
+    sf_missile *missile = &s->missile;
+    if (m->motion_count > 0) {
+        missile->velocity_now = sf_motion_velocity(m, s->time);
+        missile->velocity = (sf_motion_displacement(m, s->time + s->dt) - missile->displacement) / s->dt;
+        return;
+    }
+    missile->velocity_now = missile->velocity + 0.5 * s->dt_old * missile->acceleration;
+    missile->velocity += dt_v * missile->acceleration;
+}
+
 sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
     sf_domain_stress(m, op, s); /* F, P, history */
     if (check_domains(m, s, err) != SF_OK)
@@ -97,8 +110,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     s->constraint_residual = held.residual;
 
     accelerate(m, s, dt_v); /* v at the next half step */
-    s->missile.velocity_now = s->missile.velocity + 0.5 * s->dt_old * s->missile.acceleration;
-    s->missile.velocity += dt_v * s->missile.acceleration;
+    move_missile(m, s, dt_v);
     sf_ledger_close(m, s, held.all, dt_v);
     if (check_step(m, s, err) != SF_OK)
         return err->status;
@@ -111,8 +123,11 @@ void sf_step_advance(const sf_model *m, sf_state *s) {
     for (int64_t k = 0; k < 3 * m->node_count; k++)
         s->d[k] += dt * s->v[k];
     s->missile_old = s->missile.displacement;
-    s->missile.displacement += dt * s->missile.velocity;
     s->time += dt;
+    if (m->motion_count > 0)
+        s->missile.displacement = sf_motion_displacement(m, s->time);
+    else
+        s->missile.displacement += dt * s->missile.velocity;
     s->dt_old = dt;
     s->step++;
 }

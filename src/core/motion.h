@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The prescribed motion of a missile that a machine drives (model->motion_*): displacement along its
+ * direction, linear between the points of the table, whatever the forces. For models with motion_count > 0
+ * only. */
+#ifndef SF_CORE_MOTION_H
+#define SF_CORE_MOTION_H
+
+#include "core/model.h"
+
+/* Relative rounding of times that come from different units. */
+#define SF_MOTION_SLACK 1e-12
+#define SF_MOTION_MAX_SPEED 200.0 /* m s-1 */
+
+/* Displacement (m) at `time` >= 0 (s). The last piece goes on beyond the end of the table: the last step of a
+ * run passes its end time by less than a step. */
+double sf_motion_displacement(const sf_model *model, double time);
+/* Velocity (m s-1) of the piece that begins at or before `time`. */
+double sf_motion_velocity(const sf_model *model, double time);
+/* Largest speed of all pieces (m s-1). */
+double sf_motion_top_speed(const sf_model *model);
+
+#endif
