@@ -495,6 +495,31 @@ static void results_are_replaced_only_by_force(void **state) {
     assert_int_not_equal(access(program_path(&place, "other"), F_OK), 0);
 }
 
+/* The solver presses a cube of the fitted foam, 1200 times faster than the test. */
+static void simulated_cube_agrees_with_the_material_point(void **state) {
+    (void)state;
+    double loading, unloading;
+    const sheet s = good_sheet(1);
+    char case_path[512];
+    snprintf(case_path, sizeof case_path, "%s/examples/compression/case.cfg", getenv("SF_SOURCE_DIR"));
+    write_sheet("slow.csv", &s);
+    write_text("fit.cfg", "density = \"35 kg/m3\";\n" TEST_LIST);
+    program_result r = program_run(&place, "fit", "compression fit.cfg -o cube --simulate '%s'", case_path);
+    assert_int_equal(r.code, SF_ERR_INPUT); /* no specimen */
+    write_text(
+        "fit.cfg",
+        "density = \"35 kg/m3\";\nspecimen = { side = \"20 mm\"; thickness = \"20 mm\"; };\n" TEST_LIST);
+    r = program_succeed(&place, "fit", "compression fit.cfg -o cube --force --simulate '%s' --friction 0.2",
+                        case_path);
+    const char *line = strstr(r.out, "largest difference");
+    assert_non_null(line);
+    assert_int_equal(
+        sscanf(line, "largest difference %lf %% loading, %lf %% unloading", &loading, &unloading), 2);
+    assert_in_range((int)(1000 * loading), 1, 500);
+    assert_in_range((int)(1000 * unloading), 1, 3000);
+    assert_int_equal(access(program_path(&place, "cube/simulation.csv"), R_OK), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wrong_tests_are_refused_with_their_line),
@@ -509,6 +534,7 @@ int main(void) {
         cmocka_unit_test(without_unloading_there_is_no_hysteresis_and_it_is_said),
         cmocka_unit_test(written_material_is_the_card_of_the_fit),
         cmocka_unit_test(results_are_replaced_only_by_force),
+        cmocka_unit_test(simulated_cube_agrees_with_the_material_point),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

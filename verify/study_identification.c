@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { REPETITIONS = 200, CHOICES = 12, TESTS = 3, LOADING = 120, UNLOADING = 80, TABLE = 800, PLACES = 7 };
+enum { REPETITIONS = 150, CHOICES = 12, TESTS = 3, LOADING = 120, UNLOADING = 80, TABLE = 800, PLACES = 7 };
 static const double RATE[TESTS] = {0.1 / 60, 2.0 / 60, 10.0 / 60}; /* s-1 */
 static const double TURN = 0.8;
 static const double ABSOLUTE = 300, RELATIVE = 0.006; /* Pa, -: of the scatter */

@@ -51,6 +51,9 @@ static sf_status hash_case(const sf_case *c, uint64_t *hash, sf_error *err) {
     *hash = hash_bytes(*hash, c->parameters, strlen(c->parameters));
     *hash = hash_bytes(*hash, foam->curve_strain, points);
     *hash = hash_bytes(*hash, foam->curve_stress, points);
+    *hash = hash_bytes(*hash, c->motion_time, (size_t)c->motion_count * sizeof *c->motion_time);
+    *hash =
+        hash_bytes(*hash, c->motion_displacement, (size_t)c->motion_count * sizeof *c->motion_displacement);
     if (hash_file(hash, c->pad.path, err) == SF_OK && c->missile.path)
         hash_file(hash, c->missile.path, err);
     return err->status;
@@ -235,6 +238,11 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
     if (read_result(at.results, result, err) != SF_OK)
         return err->status;
     result->reused = reused;
+    result->results = strdup(at.results);
+    if (!result->results) {
+        sf_runner_result_free(result);
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", at.results);
+    }
     *(reused ? &runner->reused : &runner->simulated) += 1;
     if (runner->log) {
         fprintf(runner->log, "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s\n",
@@ -247,5 +255,6 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
 
 void sf_runner_result_free(sf_runner_result *result) {
     sf_series_free(&result->curve);
+    free(result->results);
     *result = (sf_runner_result){0};
 }

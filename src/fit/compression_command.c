@@ -7,12 +7,13 @@
 #include <argp.h>
 #include <stdio.h>
 
-enum { KEY_FORCE = 256 };
+enum { KEY_FORCE = 256, KEY_SIMULATE, KEY_FRICTION };
 
 typedef struct options {
     const char *path;
     const char *directory;
     bool force;
+    sf_cube_options cube;
 } options;
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
@@ -24,6 +25,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     case KEY_FORCE:
         o->force = true;
         break;
+    case KEY_SIMULATE:
+        o->cube.case_path = text;
+        break;
+    case KEY_FRICTION:
+        o->cube.friction = text;
+        break;
     case ARGP_KEY_ARG:
         if (o->path)
             argp_error(state, "one file is expected, found \"%s\" as well", text);
@@ -32,6 +39,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     case ARGP_KEY_END:
         if (!o->path || !o->directory)
             argp_error(state, "give the file that names the tests, and the output directory with -o");
+        if (o->cube.friction && !o->cube.case_path)
+            argp_error(state, "--friction needs --simulate");
         break;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -49,6 +58,12 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
     static const struct argp_option known[] = {
         {"output", 'o', "DIR", 0, "write everything there (required)", 0},
         {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier fit in DIR", 0},
+        {"simulate", KEY_SIMULATE, "CASE", 0,
+         "press a cube of the fitted material between platens too, as CASE says "
+         "(examples/compression/case.cfg), and "
+         "compare it with the material point",
+         1},
+        {"friction", KEY_FRICTION, "MU", 0, "of the upper platen in --simulate (default: that of CASE)", 1},
         {0},
     };
     const struct argp parser = {
@@ -71,7 +86,7 @@ static sf_status run(const options *o, sf_error *err) {
     sf_compression_fit fit = {0};
     if (sf_compression_config_read(o->path, &config, err) == SF_OK &&
         sf_compression_fit_run(&config, &fit, err) == SF_OK)
-        sf_compression_output(&fit, o->path, o->directory, o->force, err);
+        sf_compression_output(&fit, o->path, o->directory, o->force, &o->cube, err);
     sf_compression_fit_free(&fit);
     sf_compression_config_free(&config);
     return err->status;

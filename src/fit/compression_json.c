@@ -83,6 +83,21 @@ static void put_quality(sf_json *json, const sf_compression_fit *fit, const sf_c
     sf_json_number(json, "card_difference_percent", check->card_percent);
 }
 
+static void put_simulation(sf_json *json, const sf_compression_fit *fit, const sf_compression_check *check) {
+    sf_json_open(json, "simulation", '[');
+    for (int k = 0; check->simulated && k < fit->data.config->test_count; k++) {
+        const sf_cube_test *t = &check->cube[k];
+        sf_json_open(json, NULL, '{');
+        sf_json_number(json, "rate_1_s", fit->data.config->test[k].rate);
+        sf_json_number(json, "speed_up", t->speed_up);
+        sf_json_number(json, "loading_difference_percent", t->percent[0]);
+        sf_json_number(json, "unloading_difference_percent", t->percent[1]);
+        sf_json_number(json, "energy_error", t->energy_error);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
 sf_status sf_compression_write_json(const sf_output *output, const sf_compression_fit *fit,
                                     const sf_compression_check *check, const char *path, sf_error *err) {
     sf_json json = {.file = sf_output_open(output, "fit.json", err)};
@@ -96,6 +111,7 @@ sf_status sf_compression_write_json(const sf_output *output, const sf_compressio
     put_choice(&json, fit);
     put_estimates(&json, fit);
     put_quality(&json, fit, check);
+    put_simulation(&json, fit, check);
     sf_json_close(&json, '}');
     return sf_output_close(json.file, "fit.json", err);
 }

@@ -4,30 +4,22 @@
 #include "campaign/material_file.h"
 #include "fit/material_point.h"
 
+#include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const double CARD_STEP = 5e-4; /* strain, of the check by the solver's law */
 
 /* Every file that may be written; the material file comes last, when the curves it names are there. */
-static const char *const output_names[] = {"fit.csv",
-                                           "loading_curve.csv",
-                                           "fit.gp",
-                                           "fit.png",
-                                           "fit.json",
-                                           "report.md",
-                                           "material.csv",
-                                           "material-1.csv",
-                                           "material-2.csv",
-                                           "material-3.csv",
-                                           "material-4.csv",
-                                           "material-5.csv",
-                                           "material-6.csv",
-                                           "material-7.csv",
-                                           "material-8.csv",
-                                           "material.cfg",
-                                           NULL};
+static const char *const output_names[] = {"simulation.csv", "fit.csv",        "loading_curve.csv",
+                                           "fit.gp",         "fit.png",        "fit.json",
+                                           "report.md",      "material.csv",   "material-1.csv",
+                                           "material-2.csv", "material-3.csv", "material-4.csv",
+                                           "material-5.csv", "material-6.csv", "material-7.csv",
+                                           "material-8.csv", "material.cfg",   NULL};
 
 const char *sf_compression_rate_phrase(sf_rate_model model) {
     static const char *const phrases[SF_RATE_MODELS] = {
@@ -185,6 +177,30 @@ static sf_status write_curves(const sf_output *output, const sf_compression_fit 
     return sf_output_close(file, "loading_curve.csv", err);
 }
 
+/* Simulates the tests in DIR/simulation, which stays, and writes the curves. */
+static sf_status write_simulation(const sf_output *output, const sf_compression_fit *fit,
+                                  const sf_foam_card *card, const sf_cube_options *cube,
+                                  sf_compression_check *check, sf_error *err) {
+    char folder[PATH_MAX];
+    if (!cube->case_path)
+        return SF_OK;
+    snprintf(folder, sizeof folder, "%s/simulation", output->directory);
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", folder, strerror(errno));
+    if (sf_compression_simulate(fit, card, cube, folder, check->cube, err) != SF_OK)
+        return err->status;
+    check->simulated = true;
+    FILE *file = sf_output_open(output, "simulation.csv", err);
+    if (!file)
+        return err->status;
+    fputs("test,strain,cube_kPa,point_kPa\n", file);
+    for (int k = 0; k < fit->data.config->test_count; k++)
+        for (int i = 0; i < check->cube[k].count; i++)
+            fprintf(file, "%d,%.9g,%.9g,%.9g\n", k + 1, check->cube[k].strain[i],
+                    1e-3 * check->cube[k].cube[i], 1e-3 * check->cube[k].point[i]);
+    return sf_output_close(file, "simulation.csv", err);
+}
+
 /* ---- the summary ---- */
 
 static void print_summary(const sf_compression_fit *fit, const sf_compression_check *check,
@@ -216,7 +232,7 @@ static void print_summary(const sf_compression_fit *fit, const sf_compression_ch
 }
 
 sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *directory,
-                                bool force, sf_error *err) {
+                                bool force, const sf_cube_options *cube, sf_error *err) {
     sf_compression_check check = {.card_percent = 0};
     sf_foam_card card;
     sf_output output;
@@ -228,6 +244,7 @@ sf_status sf_compression_output(const sf_compression_fit *fit, const char *path,
         sf_output_begin(directory, output_names, force, &output, err) == SF_OK) {
         if (write_points(&output, fit, err) == SF_OK && write_curves(&output, fit, err) == SF_OK &&
             write_material(&output, fit, &card, err) == SF_OK &&
+            write_simulation(&output, fit, &card, cube, &check, err) == SF_OK &&
             sf_compression_write_json(&output, fit, &check, path, err) == SF_OK &&
             sf_compression_write_plot(&output, fit, warning, sizeof warning, err) == SF_OK &&
             sf_compression_write_report(&output, fit, &check, path, err) == SF_OK &&

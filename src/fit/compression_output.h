@@ -4,6 +4,7 @@
 #ifndef SF_FIT_COMPRESSION_OUTPUT_H
 #define SF_FIT_COMPRESSION_OUTPUT_H
 
+#include "fit/compression_cube.h"
 #include "fit/compression_fit.h"
 #include "post/output.h"
 
@@ -14,11 +15,14 @@ typedef struct sf_compression_check {
     double percent[SF_COMPRESSION_TESTS][2]; /* root mean square of deviation, % of the stress, counted as one
                                                 hundredth of the largest at least */
     double card_percent;                     /* largest difference of card and fit, counted likewise */
+    bool simulated;
+    sf_cube_test cube[SF_COMPRESSION_TESTS]; /* if simulated */
 } sf_compression_check;
 
-/* Writes into `directory` (sf_output) and prints the summary. `path`: FIT.cfg, as given. */
+/* Writes into `directory` (sf_output) and prints the summary. `path`: FIT.cfg, as given. Simulates the tests
+ * first if `cube` names a case. */
 sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *directory,
-                                bool force, sf_error *err);
+                                bool force, const sf_cube_options *cube, sf_error *err);
 
 /* Parts, each into the staging directory. */
 sf_status sf_compression_write_report(const sf_output *output, const sf_compression_fit *fit,
