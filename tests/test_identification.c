@@ -161,6 +161,30 @@ static void scatter_about_zero_and_percent_are_read(void **state) {
     sf_compression_test_free(&test);
 }
 
+/* 1201 points up and 1200 down: means of three, the turn as it is. */
+static void long_branches_are_condensed_to_means(void **state) {
+    (void)state;
+    sf_compression_test test;
+    sf_error err = SF_ERROR_INIT;
+    const char *path = program_path(&place, "long.csv");
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs("strain,stress_kPa\n", out);
+    for (int i = 1; i <= 2401; i++) {
+        double e = 0.6 * (i <= 1201 ? i : 2402 - i) / 1201;
+        fprintf(out, "%.12g,%.12g\n", e, 100 * e);
+    }
+    assert_int_equal(fclose(out), 0);
+    assert_int_equal(sf_compression_test_read(path, 2, &test, &err), SF_OK);
+    assert_int_equal(test.loading, 401);
+    assert_int_equal(test.count, 801);
+    assert_close(test.strain[400], 0.6, 1e-12);
+    assert_close(test.strain[0], 0.6 * 2 / 1201, 1e-12);
+    for (int i = 0; i < test.count; i++)
+        assert_close(test.stress[i], 1e5 * test.strain[i], 1e-6);
+    sf_compression_test_free(&test);
+}
+
 /* ---- FIT.cfg ---- */
 
 #define TEST_LIST "tests = ( { file = \"slow.csv\"; rate = \"0.1 1/min\"; } );\n"
@@ -524,6 +548,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wrong_tests_are_refused_with_their_line),
         cmocka_unit_test(scatter_about_zero_and_percent_are_read),
+        cmocka_unit_test(long_branches_are_condensed_to_means),
         cmocka_unit_test(wrong_files_are_refused_with_their_line),
         cmocka_unit_test(spline_rows_are_value_slope_and_integral),
         cmocka_unit_test(knots_ascend_and_leave_two_points_between),

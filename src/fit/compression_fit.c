@@ -50,6 +50,8 @@ static double search(const sf_compression_model *model, gsl_vector *x, gsl_matri
     gsl_multifit_nlinear_fdf fdf = {.f = deviations, .df = derivatives, .n = n, .p = p, .params = &context};
     gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
     how.solver = gsl_multifit_nlinear_solver_cholesky;
+    how.scale =
+        gsl_multifit_nlinear_scale_levenberg; /* parameters are logarithms: a flat one stays where it is */
     gsl_multifit_nlinear_workspace *w =
         n > p ? gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, n, p) : NULL;
     double chi2 = INFINITY;
@@ -59,7 +61,8 @@ static double search(const sf_compression_model *model, gsl_vector *x, gsl_matri
     } else if (w && gsl_multifit_nlinear_init(x, &fdf, w) == GSL_SUCCESS) {
         gsl_multifit_nlinear_driver(ITERATIONS, STEP_TOLERANCE, GRADIENT_TOLERANCE, 0, NULL, NULL, &info, w);
         gsl_blas_ddot(gsl_multifit_nlinear_residual(w), gsl_multifit_nlinear_residual(w), &chi2);
-        gsl_vector_memcpy(x, gsl_multifit_nlinear_position(w));
+        if (isfinite(chi2))
+            gsl_vector_memcpy(x, gsl_multifit_nlinear_position(w));
         if (covariance)
             gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), RANK_TOLERANCE, covariance);
     }

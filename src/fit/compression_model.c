@@ -174,16 +174,15 @@ static double rate_logarithm(const sf_compression_model *model, int test) {
 /* ---- derivatives into the parameter vector ---- */
 
 /* Adds `factor` times a gradient by the coefficients of a curve: an increment raises all coefficients after
- * it.
- */
-static void add_coefficients(const sf_compression_model *model, const gsl_vector *parameters, int curve,
-                             const double *by, double factor, double *gradient) {
+ * it, and is its own derivative by its logarithm. */
+static void add_coefficients(const sf_compression_model *model, const numbers *n, int curve, const double *by,
+                             double factor, double *gradient) {
     int per_curve = model->spline.count - 1;
+    const double *c = n->coefficient[curve];
     double sum = 0;
     for (int j = per_curve - 1; j >= 0; j--) {
-        size_t index = (size_t)(curve * per_curve + j);
         sum += by[j + 1];
-        gradient[index] += factor * sum * exp(gsl_vector_get(parameters, index));
+        gradient[curve * per_curve + j] += factor * sum * (c[j + 1] - c[j]);
     }
 }
 
@@ -229,7 +228,7 @@ static double predict_loading(const sf_compression_model *model, const gsl_vecto
     evaluate(model, n->coefficient[curve], n, d->strain[i], &model->value_row[i * model->spline.count], NULL,
              &o);
     if (gradient) {
-        add_coefficients(model, parameters, curve, o.stress_by, factor, gradient);
+        add_coefficients(model, n, curve, o.stress_by, factor, gradient);
         add_densification(model, parameters, factor * o.stress_by_exponent, factor * o.stress_by_limit,
                           gradient);
         add_number(model, parameters, SF_NUMBER_LOG_RATE, logarithm * o.stress, gradient);
@@ -254,9 +253,9 @@ static double predict_unloading(const sf_compression_model *model, const gsl_vec
     double factor = hu + (1 - hu) * power, bend = (1 - hu) * shape * power * o.stress;
     if (gradient) {
         double by_energy = bend / fmax(o.energy, 1e-12 * peak.energy), by_peak = -bend / peak.energy;
-        add_coefficients(model, parameters, 0, o.stress_by, factor, gradient);
-        add_coefficients(model, parameters, 0, o.energy_by, by_energy, gradient);
-        add_coefficients(model, parameters, 0, peak.energy_by, by_peak, gradient);
+        add_coefficients(model, n, 0, o.stress_by, factor, gradient);
+        add_coefficients(model, n, 0, o.energy_by, by_energy, gradient);
+        add_coefficients(model, n, 0, peak.energy_by, by_peak, gradient);
         add_densification(model, parameters,
                           factor * o.stress_by_exponent + by_energy * o.energy_by_exponent +
                               by_peak * peak.energy_by_exponent,
@@ -296,7 +295,7 @@ double sf_compression_exponent(const sf_compression_model *model, const gsl_vect
         return n.value[SF_NUMBER_EXPONENT];
     }
     double exponent = natural_exponent(model, n.coefficient[0], by);
-    add_coefficients(model, parameters, 0, by, 1, gradient);
+    add_coefficients(model, &n, 0, by, 1, gradient);
     return exponent;
 }
 
@@ -312,7 +311,7 @@ double sf_compression_curve(sf_compression_model *model, const gsl_vector *param
     double factor = 1 + n.value[SF_NUMBER_LOG_RATE] * logarithm;
     if (gradient) {
         memset(gradient, 0, (size_t)model->parameter_count * sizeof *gradient);
-        add_coefficients(model, parameters, curve, o.stress_by, factor, gradient);
+        add_coefficients(model, &n, curve, o.stress_by, factor, gradient);
         add_densification(model, parameters, factor * o.stress_by_exponent, factor * o.stress_by_limit,
                           gradient);
         add_number(model, parameters, SF_NUMBER_LOG_RATE, logarithm * o.stress, gradient);

@@ -23,17 +23,17 @@ static void put_style(FILE *g) {
           g);
 }
 
-/* Points and lines of every test; `columns`: what is plotted over the strain. */
+/* Points and lines of every test; `
 static void put_tests(FILE *g, const sf_compression_fit *fit, bool titles) {
     int tests = fit->data.config->test_count;
     fputs("plot ", g);
     for (int k = 0; k < tests; k++)
         fprintf(g,
-                "'fit.csv' skip 1 using ($1 == %d ? $3 : NaN):4 with points pt 7 ps 0.5 lc rgb '%s' notitle, "
+                "'fit.csv' skip 1 using ($1 == %d ? $3 : NaN):4 with points pt 7 ps 0.9 lc rgb '%s' notitle, "
                 "\\\n     ",
                 k + 1, POINT[k]);
     for (int k = 0; k < tests; k++) {
-        fprintf(g, "'fit.csv' skip 1 using ($1 == %d ? $3 : NaN):5 with lines lw 2.5 lc rgb '%s' ", k + 1,
+        fprintf(g, "'fit.csv' skip 1 using ($1 == %d ? $3 : NaN):5 with lines lw 1.8 lc rgb '%s' ", k + 1,
                 LINE[k]);
         if (titles)
             fprintf(g, "title 'fit at %.3g 1/s'", fit->data.config->test[k].rate);

@@ -172,6 +172,32 @@ static sf_status check_test(sf_compression_test *t, const double scale[2], sf_er
     return check_unloading(t, scale[1], err);
 }
 
+/* Means of `group` neighbours from `first` up to `end`, written from `to` on; returns the place after them.
+ */
+static int average(sf_compression_test *t, int first, int end, int group, int to) {
+    for (int i = first; i < end; i += group, to++) {
+        int n = end - i < group ? end - i : group;
+        double strain = 0, stress = 0;
+        for (int k = i; k < i + n; k++) {
+            strain += t->strain[k] / n;
+            stress += t->stress[k] / n;
+        }
+        t->strain[to] = strain;
+        t->stress[to] = stress;
+        t->line[to] = t->line[i];
+    }
+    return to;
+}
+
+static void condense(sf_compression_test *t) {
+    enum { MOST = SF_COMPRESSION_BRANCH_POINTS };
+    int turn = t->loading - 1, unloading = t->count - t->loading;
+    int loading = average(t, 0, turn, (t->loading + MOST - 1) / MOST, 0);
+    loading = average(t, turn, t->loading, 1, loading);
+    t->count = unloading ? average(t, t->loading, t->count, (unloading + MOST - 1) / MOST, loading) : loading;
+    t->loading = loading;
+}
+
 sf_status sf_compression_test_read(const char *path, double rate, sf_compression_test *test, sf_error *err) {
     *test = (sf_compression_test){.path = strdup(path), .rate = rate};
     sf_case_csv table = {0};
@@ -179,7 +205,8 @@ sf_status sf_compression_test_read(const char *path, double rate, sf_compression
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
     if (sf_case_csv_read(path, &layout, &table, err) == SF_OK) {
         take_table(&table, test);
-        check_test(test, table.scale, err);
+        if (check_test(test, table.scale, err) == SF_OK)
+            condense(test);
     }
     sf_case_csv_free(&table);
     if (err->status != SF_OK)

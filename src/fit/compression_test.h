@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A compression test from a CSV file: loading, then perhaps unloading, at a constant nominal rate. Columns
  * `strain` or `strain_percent` and `stress_Pa`, `stress_kPa` or `stress_MPa`; engineering strain and nominal
- * stress, positive in compression, with the scatter of a measurement. */
+ * stress, positive in compression, with the scatter of a measurement.
+ *
+ * Of a branch with more than SF_COMPRESSION_BRANCH_POINTS points the means of neighbours are kept: they hold
+ * as much about the law, and the fit stays quick. The turn is kept as it is. */
 #ifndef SF_FIT_COMPRESSION_TEST_H
 #define SF_FIT_COMPRESSION_TEST_H
 
 #include "core/error.h"
 
 enum { SF_COMPRESSION_LOADING_POINTS = 20, SF_COMPRESSION_UNLOADING_POINTS = 8 }; /* the least of them */
+enum { SF_COMPRESSION_BRANCH_POINTS = 500 };
 
 typedef struct sf_compression_test {
     char *path;            /* owned */
