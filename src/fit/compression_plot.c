@@ -23,7 +23,7 @@ static void put_style(FILE *g) {
           g);
 }
 
-/* Points and lines of every test; `
+/* Points and lines of every test. */
 static void put_tests(FILE *g, const sf_compression_fit *fit, bool titles) {
     int tests = fit->data.config->test_count;
     fputs("plot ", g);
