@@ -371,6 +371,7 @@ static void sleep_ms(long ms) {
 static int interrupt(const program_place *p, int number) {
     char program[1024];
     snprintf(program, sizeof program, "%s/softfall-solve", getenv("SF_BIN_DIR"));
+    program_write_file(program_path(p, "interrupted.log"), "", 0); /* none of an earlier run */
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {

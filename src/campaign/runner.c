@@ -44,16 +44,33 @@ static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     return SF_OK;
 }
 
+/* The case's list of values without the names of files, whose contents count. */
+static uint64_t hash_values(uint64_t hash, const char *values) {
+    static const char *const files[] = {"geometry.file ", "geometry.missile_file ", "material.curve ",
+                                        "material.curves ", "missile.motion "};
+    while (*values) {
+        size_t length = strcspn(values, "\n"), skipped = 0;
+        for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
+            skipped += strncmp(values, files[k], strlen(files[k])) == 0;
+        if (!skipped)
+            hash = hash_bytes(hash, values, length);
+        values += length + (values[length] == '\n');
+    }
+    return hash;
+}
+
 static sf_status hash_case(const sf_case *c, uint64_t *hash, sf_error *err) {
     const sf_foam_card *foam = &c->foam;
-    size_t points = (size_t)foam->curve_points * sizeof *foam->curve_strain;
+    size_t points = (size_t)foam->curve_points * sizeof *foam->curve_strain,
+           curves = (size_t)foam->curve_count * sizeof *foam->curve_rate,
+           motion = (size_t)c->motion_count * sizeof *c->motion_time;
     *hash = hash_bytes(FNV_OFFSET, SF_GIT_REVISION, strlen(SF_GIT_REVISION));
-    *hash = hash_bytes(*hash, c->parameters, strlen(c->parameters));
+    *hash = hash_values(*hash, c->parameters);
     *hash = hash_bytes(*hash, foam->curve_strain, points);
     *hash = hash_bytes(*hash, foam->curve_stress, points);
-    *hash = hash_bytes(*hash, c->motion_time, (size_t)c->motion_count * sizeof *c->motion_time);
-    *hash =
-        hash_bytes(*hash, c->motion_displacement, (size_t)c->motion_count * sizeof *c->motion_displacement);
+    *hash = hash_bytes(*hash, foam->curve_rate, curves);
+    *hash = hash_bytes(*hash, c->motion_time, motion);
+    *hash = hash_bytes(*hash, c->motion_displacement, motion);
     if (hash_file(hash, c->pad.path, err) == SF_OK && c->missile.path)
         hash_file(hash, c->missile.path, err);
     return err->status;
@@ -198,6 +215,15 @@ static bool is_finished(const char *path) {
     return finished;
 }
 
+static sf_status result_path(const char *path, sf_runner_result *out, sf_error *err) {
+    out->path = strdup(path);
+    if (!out->path) {
+        sf_runner_result_free(out);
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    }
+    return SF_OK;
+}
+
 static sf_status read_result(const char *path, sf_runner_result *out, sf_error *err) {
     sf_results r;
     sf_figures f = {0};
@@ -217,6 +243,7 @@ static sf_status read_result(const char *path, sf_runner_result *out, sf_error *
                                   .steps = r.steps,
                                   .curve = f.filtered};
         f.filtered = (sf_series){0};
+        result_path(path, out, err);
     }
     sf_figures_free(&f);
     sf_results_close(&r);
@@ -238,11 +265,6 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
     if (read_result(at.results, result, err) != SF_OK)
         return err->status;
     result->reused = reused;
-    result->results = strdup(at.results);
-    if (!result->results) {
-        sf_runner_result_free(result);
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", at.results);
-    }
     *(reused ? &runner->reused : &runner->simulated) += 1;
     if (runner->log) {
         fprintf(runner->log, "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s\n",
@@ -255,6 +277,6 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
 
 void sf_runner_result_free(sf_runner_result *result) {
     sf_series_free(&result->curve);
-    free(result->results);
+    free(result->path);
     *result = (sf_runner_result){0};
 }

@@ -40,7 +40,7 @@ typedef struct sf_runner_result {
     double energy_error;     /* - */
     int64_t nodes, steps;
     sf_series curve; /* s, g: filtered; owned */
-    char *results;   /* path of results.h5; owned */
+    char *path;      /* of its results.h5; owned */
     bool reused;
 } sf_runner_result;
 

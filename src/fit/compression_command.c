@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/compression_command.h"
 
-#include "build_info.h"
 #include "fit/compression_output.h"
 
 #include <argp.h>
@@ -48,11 +47,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
 }
 
-static void print_version(FILE *stream, struct argp_state *state) {
-    (void)state;
-    fputs("softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")\n", stream);
-}
-
 static sf_status parse_command(int argc, char **argv, options *o, sf_error *err) {
     static char name[] = "softfall-fit compression";
     static const struct argp_option known[] = {
@@ -74,7 +68,6 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
                "Writes material.cfg with its curves, report.md, fit.json, fit.png (and .gp), fit.csv and "
                "loading_curve.csv. docs/identification.md explains FIT.cfg and the report.",
     };
-    argp_program_version_hook = print_version;
     argv[0] = name;
     if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
         return SF_FAIL(err, SF_ERR_INPUT, "the command line cannot be read");

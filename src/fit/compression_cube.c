@@ -160,7 +160,7 @@ static sf_status simulate(const sf_compression_fit *fit, const sf_foam_card *car
         sf_runner_run(&runner, &drop, &result, err) != SF_OK)
         return err->status;
     test->energy_error = result.energy_error;
-    read_test(result.results, card, lab, turn_time, test, err);
+    read_test(result.path, card, lab, turn_time, test, err);
     sf_runner_result_free(&result);
     return err->status;
 }

@@ -2,7 +2,9 @@
 /* softfall-fit WORD ...: material parameters from measurements. The first word chooses what is measured. */
 #include "build_info.h"
 #include "fit/compression_command.h"
+#include "fit/drop_command.h"
 
+#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,6 +14,7 @@ static const struct {
     const char *meaning;
 } commands[] = {
     {"compression", sf_fit_compression_main, "from compression tests of a foam cube to a material file"},
+    {"drop", sf_fit_drop_main, "from measured drops to a material file"},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -26,6 +29,7 @@ static void print_usage(FILE *file) {
 
 int main(int argc, char **argv) {
     const char *word = argc > 1 ? argv[1] : "";
+    argp_program_version = "softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")";
     for (int k = 0; k < COMMANDS; k++)
         if (strcmp(word, commands[k].word) == 0)
             return commands[k].run(argc - 1, argv + 1);
@@ -34,7 +38,7 @@ int main(int argc, char **argv) {
         return 0;
     }
     if (strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0) {
-        puts("softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")");
+        puts(argp_program_version);
         return 0;
     }
     if (argc > 1)

@@ -93,10 +93,6 @@ sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const co
 /* The readers of SF_KEY_CURVE and SF_KEY_CURVES. */
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err);
-/* The folder part of a path, "." if there is none; from malloc. */
-char *sf_case_folder_of(const char *path, sf_error *err);
-/* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
-const char *sf_case_override_file(const char *text);
 /* The reader of SF_KEY_MOTION, and the rules that join the motion with mass, velocity, gravity and end time.
  */
 sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *setting, char *detail,
@@ -108,6 +104,10 @@ bool sf_case_is_given(const sf_case_reader *reader, const char *group, const cha
 sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
 /* Location of a key "group.name", or of its group, or of the file: whatever is there. */
 const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
+/* The folder part of a path, "." if there is none; from malloc. */
+char *sf_case_folder_of(const char *path, sf_error *err);
+/* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
+const char *sf_case_override_file(const char *text);
 /* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
 /* The text of the case with its includes put in place and the overrides as comments; from malloc. Also

@@ -88,8 +88,8 @@ static principal base_law(const sf_foam *foam, const double stretch[3]) {
     return law;
 }
 
-/* Rate overstress sigma(eps, rate) - sigma(eps, slowest), interpolated over the logarithm of the rate. */
-static double overstress(const sf_foam *foam, double strain, double rate, double *slope, double *rate_slope) {
+double sf_foam_overstress(const sf_foam *foam, double strain, double rate, double *slope,
+                          double *rate_slope) {
     const double *r = foam->curve_rate;
     int64_t k = foam->curve_count - 2;
     *slope = *rate_slope = 0;
@@ -126,7 +126,7 @@ static double add_overstress(const sf_foam *foam, double dt, sf_foam_batch *b, i
     b->rate[l] += -expm1(-dt / foam->filter_time) * (fastest - b->rate[l]);
     for (int i = 0; i < 3; i++) {
         double slope, rate_slope;
-        extra[i] = overstress(foam, 1 - b->stretch[i][l], b->rate[l], &slope, &rate_slope);
+        extra[i] = sf_foam_overstress(foam, 1 - b->stretch[i][l], b->rate[l], &slope, &rate_slope);
         s[i] -= extra[i] / b->stretch[i][l];
         bound = fmax(bound, slope);
         rates += rate_slope * rate_slope;

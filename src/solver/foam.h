@@ -65,6 +65,10 @@ void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *batch);
 /* Recoverable energy and energy lost to hysteresis (J m-3) at W and its maximum (theory eq. 15, 16). */
 void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost);
 
+/* Rate overstress sigma(eps, rate) - sigma(eps, slowest curve) in Pa, interpolated over the logarithm of the rate
+ * (s-1), with its derivatives by strain and rate. Needs two curves or more. */
+double sf_foam_overstress(const sf_foam *foam, double strain, double rate, double *slope, double *rate_slope);
+
 /* Eigenvalues of symmetric matrices by cyclic Jacobi: a [6][lane] in, its diagonal = eigenvalues out, v
  * [9][lane] eigenvectors as columns. */
 void sf_foam_eigen(double a[6][SF_LANES], double v[9][SF_LANES]);

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "campaign/config.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
+                           const char *format, ...) {
+    char sentence[768];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    unsigned line = setting ? (unsigned)config_setting_source_line(setting) : 0;
+    if (line == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s", config->path, sentence);
+    return SF_FAIL(err, SF_ERR_INPUT, "%s:%u: %s", config->path, line, sentence);
+}
+
+sf_status sf_config_open(const char *path, sf_config *config, sf_error *err) {
+    *config = (sf_config){.path = path};
+    struct stat info;
+    config_init(&config->config);
+    const char *slash = strrchr(path, '/');
+    config->folder = !slash          ? strdup(".")
+                     : slash == path ? strdup("/")
+                                     : strndup(path, (size_t)(slash - path));
+    if (!config->folder)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    if (stat(path, &info) != 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "the file %s cannot be read: %s", path, strerror(errno));
+    if (!S_ISREG(info.st_mode))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s is not a plain file", path);
+    if (!config_read_file(&config->config, path))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, config_error_line(&config->config),
+                       config_error_text(&config->config));
+    return sf_units_open(&config->units, err);
+}
+
+void sf_config_close(sf_config *config) {
+    sf_units_close(&config->units);
+    config_destroy(&config->config);
+    free(config->folder);
+    *config = (sf_config){0};
+}
+
+static bool is_listed(const char *name, const char *names) {
+    size_t length = strlen(name);
+    for (const char *at = names; at; at = strchr(at, '|')) {
+        at += *at == '|';
+        if (strncmp(at, name, length) == 0 && (at[length] == '|' || at[length] == '\0'))
+            return true;
+    }
+    return false;
+}
+
+sf_status sf_config_names(const sf_config *config, const config_setting_t *group, const char *names,
+                          sf_error *err) {
+    for (int k = 0; k < config_setting_length(group); k++) {
+        const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
+        if (is_listed(config_setting_name(item), names))
+            continue;
+        char list[256];
+        size_t used = 0;
+        for (const char *c = names; *c && used + 3 < sizeof list; c++) {
+            if (*c == '|')
+                list[used++] = ',';
+            list[used++] = *c == '|' ? ' ' : *c;
+        }
+        list[used] = '\0';
+        return sf_config_refuse(config, item, err, "unknown key \"%.80s\"; the keys here are %s",
+                                config_setting_name(item), list);
+    }
+    return SF_OK;
+}
+
+/* The setting; records the failure if a required one is missing. */
+static const config_setting_t *find(const sf_config *config, const config_setting_t *group, const char *name,
+                                    bool required, sf_error *err) {
+    const config_setting_t *setting = config_setting_get_member(group, name);
+    if (!setting && required)
+        sf_config_refuse(config, group, err, "%s is missing", name);
+    return setting;
+}
+
+sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
+                           bool required, double low, double high, double *out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, required, err);
+    if (!s)
+        return err->status;
+    int type = config_setting_type(s);
+    if (type == CONFIG_TYPE_FLOAT)
+        *out = config_setting_get_float(s);
+    else if (type == CONFIG_TYPE_INT)
+        *out = config_setting_get_int(s);
+    else
+        return sf_config_refuse(config, s, err, "%s must be a number", name);
+    if (!(*out >= low && *out <= high))
+        return sf_config_refuse(config, s, err, "%s is %g, outside %g to %g", name, *out, low, high);
+    return SF_OK;
+}
+
+sf_status sf_config_text(const sf_config *config, const config_setting_t *group, const char *name,
+                         bool required, const char **out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, required, err);
+    if (!s)
+        return err->status;
+    const char *text = config_setting_get_string(s);
+    if (!text || !*text)
+        return sf_config_refuse(config, s, err, "%s must be a text", name);
+    *out = text;
+    return SF_OK;
+}
+
+sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
+                             sf_quantity kind, bool required, double low, double *out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, required, err);
+    sf_error inner = SF_ERROR_INIT;
+    if (!s)
+        return err->status;
+    const char *text = config_setting_get_string(s);
+    if (!text)
+        return sf_config_refuse(config, s, err, "%s must be a text with its unit, for example \"%s\"", name,
+                                sf_quantity_example(kind));
+    if (sf_units_parse(config->units, text, kind, out, &inner) != SF_OK)
+        return sf_config_refuse(config, s, err, "%s: %s", name, inner.text);
+    if (!(*out >= low))
+        return sf_config_refuse(config, s, err, "%s is %s, below %g %s", name, text, low,
+                                sf_quantity_unit(kind));
+    return SF_OK;
+}
+
+sf_status sf_config_file(const sf_config *config, const config_setting_t *group, const char *name,
+                         bool required, char **out, sf_error *err) {
+    const char *text = NULL;
+    if (sf_config_text(config, group, name, required, &text, err) != SF_OK || !text)
+        return err->status;
+    char *path = NULL;
+    if (*text == '/')
+        path = strdup(text);
+    else if (asprintf(&path, "%s/%s", config->folder, text) < 0)
+        path = NULL;
+    if (!path)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", text);
+    if (access(path, R_OK) != 0) {
+        sf_config_refuse(config, config_setting_get_member(group, name), err, "%s: %s cannot be read: %s",
+                         name, path, strerror(errno));
+        free(path);
+        return err->status;
+    }
+    *out = path;
+    return SF_OK;
+}
+
+sf_status sf_config_list(const sf_config *config, const config_setting_t *group, const char *name,
+                         bool required, int most, const config_setting_t **out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, required, err);
+    *out = NULL;
+    if (!s)
+        return err->status;
+    if (!config_setting_is_list(s) || config_setting_length(s) == 0)
+        return sf_config_refuse(config, s, err, "%s must be a list: %s = ( { ... }, { ... } )", name, name);
+    if (config_setting_length(s) > most)
+        return sf_config_refuse(config, s, err, "%s has %d entries; at most %d are taken", name,
+                                config_setting_length(s), most);
+    for (int k = 0; k < config_setting_length(s); k++)
+        if (!config_setting_is_group(config_setting_get_elem(s, (unsigned)k)))
+            return sf_config_refuse(config, config_setting_get_elem(s, (unsigned)k), err,
+                                    "%s: each entry must be a group: { ... }", name);
+    *out = s;
+    return SF_OK;
+}

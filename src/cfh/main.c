@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-cfh CASE -o DIR: critical fall height of a pad, from drops that it simulates. */
+#include "cfh/options.h"
+#include "cfh/plot.h"
+#include "cfh/series.h"
+#include "io/provenance.h"
+#include "pre/case.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_DROPS = 8 };
+
+static volatile sig_atomic_t stop_requested;
+
+static void request_stop(int signal_number) {
+    (void)signal_number;
+    stop_requested = 1;
+}
+
+/* What is known of the drop before the first is simulated. */
+typedef struct setting {
+    double speed; /* m s-1, of the case */
+    double mass;  /* kg */
+    double
+        table_end; /* -, strain where the shortest compression table ends or the densification law begins */
+} setting;
+
+static double find_table_end(const sf_foam_card *foam) {
+    double end = 1;
+    for (int64_t k = 0; k < foam->curve_count; k++)
+        end = fmin(end, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
+    return foam->densification_start > 0 ? fmin(end, foam->densification_start) : end;
+}
+
+static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *err) {
+    sf_case c;
+    char *material = NULL;
+    const char *list[SF_RUNNER_OVERRIDES + 1];
+    int count = 0;
+    if (o->material) {
+        if (asprintf(&material, "material=@%s", o->material) < 0)
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", o->material);
+        list[count++] = material;
+    }
+    for (int k = 0; k < o->override_count; k++)
+        list[count++] = o->overrides[k];
+    if (sf_case_read(o->case_path, count, list, &c, err) == SF_OK) {
+        *out = (setting){c.missile_card.speed, c.missile_card.mass, find_table_end(&c.foam)};
+        if (c.missile_card.direction[2] > -1 + 1e-9)
+            SF_FAIL(err, SF_ERR_INPUT,
+                    "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");
+        sf_case_free(&c);
+    }
+    free(material);
+    return err->status;
+}
+
+/* The options' heights, those of the rig if there is one, as heights of free fall. */
+static sf_cfh_plan make_plan(const sf_cfh_options *o, const sf_cfh_rig *rig, const setting *s) {
+    double unit = 1 / sf_cfh_rig_height(rig, 1);
+    sf_cfh_plan plan = {.max_height = o->max_height * unit,
+                        .max_drops = MAX_DROPS,
+                        .list_count = o->list_count,
+                        .unit = unit};
+    memcpy(plan.limit, o->limit, sizeof plan.limit);
+    plan.first = o->height > 0 ? o->height * unit : sf_cfh_free_fall_height(s->speed);
+    plan.first = fmin(plan.first, plan.max_height);
+    for (int k = 0; k < o->list_count; k++)
+        plan.list[k] = o->list[k] * unit;
+    return plan;
+}
+
+static sf_status write_output(sf_output *output, const sf_cfh_report *report, sf_error *err) {
+    char warning[512] = "";
+    if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_json(output, report, err) != SF_OK ||
+        sf_cfh_plot(output, report, warning, sizeof warning, err) != SF_OK ||
+        sf_cfh_write_markdown(output, report, warning, err) != SF_OK ||
+        sf_output_commit(output, err) != SF_OK)
+        return err->status;
+    sf_cfh_print(stdout, report);
+    printf("Written: %s/report.md, cfh.json, cfh.csv%s\n", output->directory,
+           warning[0] ? "" : ", cfh.png (cfh.gp)");
+    fflush(stdout);
+    for (int k = 0; k < report->points->count; k++)
+        if (report->points->point[k].note[0])
+            fprintf(stderr, "softfall-cfh: warning: at %.3f m: %s\n", report->points->point[k].height,
+                    report->points->point[k].note);
+    if (warning[0])
+        fprintf(stderr, "softfall-cfh: warning: %s\n", warning);
+    return SF_OK;
+}
+
+static sf_status simulate(const sf_cfh_options *o, sf_output *output, sf_cfh_report *report,
+                          sf_cfh_points *points, sf_error *err) {
+    char folder[4096];
+    if ((size_t)snprintf(folder, sizeof folder, "%s/runs", output->directory) >= sizeof folder)
+        return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
+    sf_runner runner = {.folder = folder, .threads = o->threads, .log = stdout};
+    sf_runner_drop base = {
+        .case_path = o->case_path, .material = o->material, .override_count = o->override_count};
+    memcpy(base.overrides, o->overrides, sizeof base.overrides);
+    const sf_cfh_series series = {report->plan, report->rig, &base, report->table_end, &stop_requested};
+    printf("%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
+           o->list_count ? o->list_count : MAX_DROPS, folder,
+           report->rig->pairs ? "on the rig" : "of free fall");
+    fflush(stdout);
+    if (sf_cfh_simulate(&series, &runner, points, &report->ending, err) != SF_OK)
+        return err->status;
+    printf("%lld drops simulated, %lld were there\n", (long long)runner.simulated, (long long)runner.reused);
+    return SF_OK;
+}
+
+/* Every file that this program writes; cfh.json last, so that it speaks of files that are there. */
+static const char *const output_names[] = {"cfh.csv", "cfh.gp", "cfh.png", "report.md", "cfh.json", NULL};
+
+static sf_status run(const sf_cfh_options *o, const char *command, sf_output *output, sf_error *err) {
+    sf_cfh_rig rig = sf_cfh_free_fall();
+    sf_cfh_points points = {0};
+    sf_cfh_result result;
+    setting s = {0};
+    if ((o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) ||
+        read_setting(o, &s, err) != SF_OK)
+        return err->status;
+    const sf_cfh_plan plan = make_plan(o, &rig, &s);
+    sf_cfh_report report = {.case_path = o->case_path,
+                            .material = o->material,
+                            .command_line = command,
+                            .rig_path = o->rig_path,
+                            .plan = &plan,
+                            .rig = &rig,
+                            .points = &points,
+                            .result = &result,
+                            .mass = s.mass,
+                            .table_end = s.table_end};
+    if (sf_output_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
+        simulate(o, output, &report, &points, err) != SF_OK)
+        return err->status;
+    sf_cfh_evaluate(&points, plan.limit, &result);
+    if (write_output(output, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)
+        *err = result.problem;
+    return err->status;
+}
+
+int main(int argc, char **argv) {
+    sf_cfh_options options;
+    sf_output output = {0};
+    sf_error err = SF_ERROR_INIT;
+    char *command = sf_command_line(argc, argv);
+    struct sigaction action = {.sa_handler = request_stop};
+    sigaction(SIGINT, &action, NULL); /* the programs that run get the signal too and end their drop */
+    sigaction(SIGTERM, &action, NULL);
+    if (sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)
+        run(&options, command ? command : "softfall-cfh", &output, &err);
+    sf_output_end(&output);
+    free(command);
+    return sf_error_report(&err, "softfall-cfh");
+}

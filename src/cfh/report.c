@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cfh/report.h"
+
+#include "build_info.h"
+#include "cfh/series.h"
+#include "post/json.h"
+#include <math.h>
+
+static const char caution[] = "Indicative, not a certification: a computed height from one simulated impact "
+                              "site, not the test of ASTM F1292 or EN 1177.";
+
+static const sf_cfh_crossing *deciding(const sf_cfh_report *r) {
+    return &r->result->crossing[r->result->deciding];
+}
+
+/* Plain text that ends in a full stop. */
+void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
+    const sf_cfh_result *v = r->result;
+    const char *name = sf_cfh_name(v->deciding), *unit = sf_cfh_unit(v->deciding);
+    double limit = r->plan->limit[v->deciding];
+    switch (v->verdict) {
+    case SF_CFH_FOUND:
+        snprintf(text, size,
+                 "Critical fall height %.3f m of free fall (95 %% interval of the fit %.3f to %.3f m): %s "
+                 "reaches %g%s first.",
+                 deciding(r)->height, deciding(r)->low, deciding(r)->high, name, limit, unit);
+        break;
+    case SF_CFH_ABOVE:
+        snprintf(text, size,
+                 "Critical fall height above %.3f m of free fall: neither a_max %g g nor HIC %g is reached.",
+                 v->highest, r->plan->limit[SF_CFH_A_MAX], r->plan->limit[SF_CFH_HIC]);
+        break;
+    case SF_CFH_BELOW:
+        snprintf(text, size,
+                 "Critical fall height below %.3f m of free fall: %s exceeds %g%s at the lowest height.",
+                 v->lowest, name, limit, unit);
+        break;
+    case SF_CFH_UNKNOWN:
+        snprintf(text, size, "Critical fall height not determined: %s.", v->problem.text);
+        break;
+    }
+}
+
+/* The same on the rig; "" without a rig or a height. */
+static void rig_text(const sf_cfh_report *r, char *text, size_t size) {
+    double height = NAN, margin = 0;
+    const char *side = "";
+    text[0] = '\0';
+    if (r->result->verdict == SF_CFH_FOUND) {
+        height = deciding(r)->height;
+        margin = deciding(r)->margin;
+    } else if (r->result->verdict == SF_CFH_ABOVE) {
+        height = r->result->highest;
+        side = "above ";
+    } else if (r->result->verdict == SF_CFH_BELOW) {
+        height = r->result->lowest;
+        side = "below ";
+    }
+    if (r->rig->pairs == 0 || isnan(height))
+        return;
+    height = sf_cfh_rig_height(r->rig, height);
+    margin = sf_cfh_rig_margin(r->rig, margin);
+    snprintf(
+        text, size,
+        "On the rig: %s%.3f m (95 %% interval with that of g_eff %.3f to %.3f m); g_eff = %.3f +- %.3f m/s2 "
+        "from %d pairs.",
+        side, height, height * exp(-margin), height * exp(margin), r->rig->gravity, r->rig->standard_error,
+        r->rig->pairs);
+}
+
+static bool is_fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
+    const sf_cfh_fit *fit = &r->result->crossing[c].fit;
+    int k = 0; /* index among the successes */
+    for (const sf_cfh_point *q = r->points->point; q < p; q++)
+        k += !q->failed;
+    return !p->failed && fit->count > 0 && k >= fit->first && k < fit->first + fit->count;
+}
+
+/* ln(value / fit), NaN for a point that is not in the fit. */
+static double residual(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
+    return is_fitted(r, c, p) ? log(p->value[c] / sf_cfh_fit_at(&r->result->crossing[c].fit, p->height))
+                              : NAN;
+}
+
+/* ---- cfh.json ---- */
+
+static const char *side_word(const sf_cfh_crossing *crossing) {
+    static const char *const words[] = {"crossed", "not reached", "exceeded at the lowest height"};
+    return crossing->side == SF_CFH_CROSSED && isnan(crossing->height) ? "not determined"
+                                                                       : words[crossing->side];
+}
+
+static void put_interval(sf_json *json, const char *prefix, double height, double margin) {
+    char key[64];
+    snprintf(key, sizeof key, "%s_m", prefix);
+    sf_json_number(json, key, height);
+    snprintf(key, sizeof key, "%s_low_m", prefix);
+    sf_json_number(json, key, height * exp(-margin));
+    snprintf(key, sizeof key, "%s_high_m", prefix);
+    sf_json_number(json, key, height * exp(margin));
+}
+
+/* Height of free fall and, if there is a rig, on the rig, each with its interval. */
+static void put_heights(sf_json *json, const sf_cfh_report *r, double height, double margin) {
+    put_interval(json, "height", height, margin);
+    if (r->rig->pairs > 0)
+        put_interval(json, "rig_height", sf_cfh_rig_height(r->rig, height),
+                     sf_cfh_rig_margin(r->rig, margin));
+}
+
+static void put_verdict(sf_json *json, const sf_cfh_report *r) {
+    static const char *const words[] = {"found", "above the highest point", "below the lowest point",
+                                        "not determined"};
+    const sf_cfh_result *v = r->result;
+    bool found = v->verdict == SF_CFH_FOUND, decided = found || v->verdict == SF_CFH_BELOW;
+    sf_json_open(json, "critical_fall_height", '{');
+    sf_json_text(json, "verdict", words[v->verdict]);
+    sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
+    sf_json_text(json, "deciding", decided ? sf_cfh_name(v->deciding) : NULL);
+    put_heights(json, r, found ? deciding(r)->height : NAN, found ? deciding(r)->margin : NAN);
+    sf_json_number(json, "speed_m_s", found ? sf_cfh_speed(deciding(r)->height) : NAN);
+    sf_json_number(json, "confidence", 0.95);
+    sf_json_number(json, "lowest_simulated_m", v->lowest);
+    sf_json_number(json, "highest_simulated_m", v->highest);
+    sf_json_text(json, "search_ended", sf_cfh_step_text(r->ending));
+    sf_json_close(json, '}');
+}
+
+static void put_fit(sf_json *json, const sf_cfh_fit *fit) {
+    sf_json_open(json, "fit", '{');
+    sf_json_text(json, "form", "ln(value) = c0 + c1 d + c2 d^2, d = ln(height_m) - centre");
+    sf_json_number(json, "centre", fit->count ? fit->centre : NAN);
+    sf_json_number(json, "c0", fit->count ? fit->c[0] : NAN);
+    sf_json_number(json, "c1", fit->count ? fit->c[1] : NAN);
+    sf_json_number(json, "c2", fit->count ? fit->c[2] : NAN);
+    sf_json_integer(json, "points", fit->count);
+    sf_json_number(json, "rms_residual", fit->count ? fit->rms : NAN);
+    sf_json_close(json, '}');
+}
+
+static void put_criteria(sf_json *json, const sf_cfh_report *r) {
+    sf_json_open(json, "criteria", '[');
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_crossing *crossing = &r->result->crossing[c];
+        sf_json_open(json, NULL, '{');
+        sf_json_text(json, "criterion", sf_cfh_name(c));
+        sf_json_number(json, c == SF_CFH_A_MAX ? "limit_g" : "limit", r->plan->limit[c]);
+        sf_json_text(json, "state", side_word(crossing));
+        put_heights(json, r, crossing->height, crossing->margin);
+        put_fit(json, &crossing->fit);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+static void put_points(sf_json *json, const sf_cfh_report *r) {
+    sf_json_open(json, "points", '[');
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        sf_json_open(json, NULL, '{');
+        sf_json_number(json, "height_m", p->height);
+        if (r->rig->pairs > 0)
+            sf_json_number(json, "rig_height_m", sf_cfh_rig_height(r->rig, p->height));
+        sf_json_number(json, "speed_m_s", p->speed);
+        sf_json_bool(json, "failed", p->failed);
+        sf_json_number(json, "a_max_g", p->failed ? NAN : p->value[SF_CFH_A_MAX]);
+        sf_json_number(json, "hic", p->failed ? NAN : p->value[SF_CFH_HIC]);
+        sf_json_number(json, "a_max_residual", residual(r, SF_CFH_A_MAX, p));
+        sf_json_number(json, "hic_residual", residual(r, SF_CFH_HIC, p));
+        sf_json_number(json, "v_rebound_m_s", p->failed ? NAN : p->v_rebound);
+        sf_json_number(json, "max_indentation_mm", p->failed ? NAN : p->max_indentation * 1e3);
+        sf_json_number(json, "max_local_strain", p->failed ? NAN : p->max_local_strain);
+        sf_json_number(json, "energy_error", p->failed ? NAN : p->energy_error);
+        sf_json_text(json, "note", p->note[0] ? p->note : NULL);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+sf_status sf_cfh_write_json(const sf_output *output, const sf_cfh_report *r, sf_error *err) {
+    FILE *file = sf_output_open(output, "cfh.json", err);
+    if (!file)
+        return err->status;
+    sf_json json = {.file = file};
+    sf_json_open(&json, NULL, '{');
+    sf_json_text(&json, "program", "softfall-cfh " SF_VERSION);
+    sf_json_text(&json, "command_line", r->command_line);
+    sf_json_text(&json, "caution", caution);
+    sf_json_text(&json, "case", r->case_path);
+    sf_json_text(&json, "material", r->material);
+    sf_json_number(&json, "missile_mass_kg", r->mass);
+    sf_json_number(&json, "compression_table_end", r->table_end);
+    put_verdict(&json, r);
+    sf_json_open(&json, "rig", '{');
+    sf_json_text(&json, "file", r->rig_path);
+    sf_json_integer(&json, "pairs", r->rig->pairs);
+    sf_json_number(&json, "g_eff_m_s2", r->rig->gravity);
+    sf_json_number(&json, "standard_error_m_s2", r->rig->pairs ? r->rig->standard_error : NAN);
+    sf_json_close(&json, '}');
+    put_criteria(&json, r);
+    put_points(&json, r);
+    sf_json_close(&json, '}');
+    return sf_output_close(file, "cfh.json", err);
+}
+
+/* ---- cfh.csv ---- */
+
+static void put_cell(FILE *file, double value) {
+    if (isfinite(value))
+        fprintf(file, ",%.9g", value);
+    else
+        fputc(',', file);
+}
+
+sf_status sf_cfh_write_csv(const sf_output *output, const sf_cfh_report *r, sf_error *err) {
+    FILE *file = sf_output_open(output, "cfh.csv", err);
+    if (!file)
+        return err->status;
+    fputs("height_m,speed_m_s,a_max_g,hic_1,a_max_fit_g,hic_fit_1,v_rebound_m_s,max_indentation_mm,"
+          "max_local_strain_1,energy_error_1,failed_1",
+          file);
+    fputs(r->rig->pairs > 0 ? ",rig_height_m\n" : "\n", file);
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        fprintf(file, "%.9g,%.9g", p->height, p->speed);
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, p->failed ? NAN : p->value[c]);
+        for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, is_fitted(r, c, p) ? sf_cfh_fit_at(&r->result->crossing[c].fit, p->height) : NAN);
+        put_cell(file, p->failed ? NAN : p->v_rebound);
+        put_cell(file, p->failed ? NAN : p->max_indentation * 1e3);
+        put_cell(file, p->failed ? NAN : p->max_local_strain);
+        put_cell(file, p->failed ? NAN : p->energy_error);
+        fprintf(file, ",%d", p->failed);
+        if (r->rig->pairs > 0)
+            put_cell(file, sf_cfh_rig_height(r->rig, p->height));
+        fputc('\n', file);
+    }
+    return sf_output_close(file, "cfh.csv", err);
+}
+
+/* ---- report.md ---- */
+
+/* A cell of the table, or "-". */
+static void put_column(FILE *file, int digits, double value) {
+    if (isfinite(value))
+        fprintf(file, " %.*f |", digits, value);
+    else
+        fputs(" - |", file);
+}
+
+static void put_criteria_table(FILE *file, const sf_cfh_report *r) {
+    bool rig = r->rig->pairs > 0;
+    fprintf(file,
+            "| limit | state | height (m) | 95 %% interval (m) |%s points in the fit | rms residual (%%) |\n",
+            rig ? " on the rig (m) |" : "");
+    fprintf(file, "|---|---|---:|---:|%s---:|---:|\n", rig ? "---:|" : "");
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_crossing *crossing = &r->result->crossing[c];
+        fprintf(file, "| %s %g%s | %s |", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c),
+                side_word(crossing));
+        put_column(file, 3, crossing->height);
+        if (isfinite(crossing->low))
+            fprintf(file, " %.3f to %.3f |", crossing->low, crossing->high);
+        else
+            fputs(" - |", file);
+        if (rig)
+            put_column(file, 3, sf_cfh_rig_height(r->rig, crossing->height));
+        fprintf(file, " %d |", crossing->fit.count);
+        put_column(file, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
+        fputc('\n', file);
+    }
+}
+
+static void put_point_table(FILE *file, const sf_cfh_report *r) {
+    bool rig = r->rig->pairs > 0;
+    fprintf(
+        file,
+        "| height (m) |%s speed (m/s) | a_max (g) | residual (%%) | HIC | residual (%%) | rebound (m/s) | "
+        "largest local strain |\n",
+        rig ? " on the rig (m) |" : "");
+    fprintf(file, "|---:|%s---:|---:|---:|---:|---:|---:|---:|\n", rig ? "---:|" : "");
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        fputc('|', file);
+        put_column(file, 3, p->height);
+        if (rig)
+            put_column(file, 3, sf_cfh_rig_height(r->rig, p->height));
+        put_column(file, 3, p->speed);
+        put_column(file, 1, p->failed ? NAN : p->value[SF_CFH_A_MAX]);
+        put_column(file, 2, 100 * residual(r, SF_CFH_A_MAX, p));
+        put_column(file, 0, p->failed ? NAN : p->value[SF_CFH_HIC]);
+        put_column(file, 2, 100 * residual(r, SF_CFH_HIC, p));
+        put_column(file, 2, p->failed ? NAN : p->v_rebound);
+        put_column(file, 3, p->failed ? NAN : p->max_local_strain);
+        fputc('\n', file);
+    }
+}
+
+static void put_notes(FILE *file, const sf_cfh_report *r) {
+    bool any = false;
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        if (!p->note[0])
+            continue;
+        fputs(any ? "" : "\n## Warnings\n\n", file);
+        fprintf(file, "- %.3f m: %s.\n", p->height, p->note);
+        any = true;
+    }
+}
+
+sf_status sf_cfh_write_markdown(const sf_output *output, const sf_cfh_report *r, const char *plot_warning,
+                                sf_error *err) {
+    char verdict[1200], rig[400];
+    FILE *file = sf_output_open(output, "report.md", err);
+    if (!file)
+        return err->status;
+    sf_cfh_verdict_text(r, verdict, sizeof verdict);
+    rig_text(r, rig, sizeof rig);
+    fprintf(file, "# Critical fall height\n\n**%s**\n%s%s\n%s\n\n", verdict, rig[0] ? "\n" : "", rig,
+            caution);
+    fprintf(file, "Case `%s`, %s%s%s, missile of %g kg. The search ended because %s.\n\n", r->case_path,
+            r->material ? "material `" : "its own material", r->material ? r->material : "",
+            r->material ? "`" : "", r->mass, sf_cfh_step_text(r->ending));
+    if (plot_warning[0])
+        fprintf(file, "%s.\n\n", plot_warning);
+    else
+        fputs("![a_max and HIC over the drop height](cfh.png)\n\n", file);
+    put_criteria_table(file, r);
+    fputs("\n## Simulated drops\n\n", file);
+    put_point_table(file, r);
+    fprintf(file,
+            "\nHeights are those of free fall, v^2 = 2 g h, unless they say otherwise. Residuals: simulated "
+            "value against the fit, ln(value) quadratic in ln(height); a dash: not in the fit, or no value. "
+            "The compression table ends at a strain of %.3f; beyond it the foam's curve is extrapolated.\n",
+            r->table_end);
+    put_notes(file, r);
+    return sf_output_close(file, "report.md", err);
+}
+
+/* ---- terminal ---- */
+
+void sf_cfh_print(FILE *out, const sf_cfh_report *r) {
+    char text[1200];
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_crossing *crossing = &r->result->crossing[c];
+        fprintf(out, "  %-5s %6g%-2s  ", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+        if (isfinite(crossing->height))
+            fprintf(out, "at %.3f m (%.3f to %.3f m), %d points, rms residual %.2f %%\n", crossing->height,
+                    crossing->low, crossing->high, crossing->fit.count, 100 * crossing->fit.rms);
+        else
+            fprintf(out, "%s\n", side_word(crossing));
+    }
+    sf_cfh_verdict_text(r, text, sizeof text);
+    fprintf(out, "%s\n", text);
+    rig_text(r, text, sizeof text);
+    if (text[0])
+        fprintf(out, "%s\n", text);
+    fprintf(out, "%s\n", caution);
+}

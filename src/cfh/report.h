@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What softfall-cfh says: cfh.json, cfh.csv, report.md, and the lines on the terminal. */
+#ifndef SF_CFH_REPORT_H
+#define SF_CFH_REPORT_H
+
+#include "cfh/search.h"
+#include "post/output.h"
+
+typedef struct sf_cfh_report {
+    const char *case_path;
+    const char *material; /* file, NULL: the case's own */
+    const char *command_line;
+    const char *rig_path; /* NULL: free fall */
+    const sf_cfh_plan *plan;
+    const sf_cfh_rig *rig;
+    const sf_cfh_points *points;
+    const sf_cfh_result *result;
+    sf_cfh_step ending;
+    double mass;      /* kg */
+    double table_end; /* - */
+} sf_cfh_report;
+
+/* The critical fall height in one sentence. */
+void sf_cfh_verdict_text(const sf_cfh_report *report, char *text, size_t size);
+
+sf_status sf_cfh_write_json(const sf_output *output, const sf_cfh_report *report, sf_error *err);
+sf_status sf_cfh_write_csv(const sf_output *output, const sf_cfh_report *report, sf_error *err);
+/* `plot_warning`: why there is no picture, or "". */
+sf_status sf_cfh_write_markdown(const sf_output *output, const sf_cfh_report *report,
+                                const char *plot_warning, sf_error *err);
+void sf_cfh_print(FILE *out, const sf_cfh_report *report);
+
+#endif

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cfh/series.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+static const double GOOD_ENERGY_ERROR = 0.01;
+
+__attribute__((format(printf, 2, 3))) static void add_note(sf_cfh_point *point, const char *format, ...) {
+    size_t used = strlen(point->note);
+    va_list args;
+    if (used > 0)
+        used += (size_t)snprintf(point->note + used, sizeof point->note - used, "; ");
+    if (used >= sizeof point->note)
+        return;
+    va_start(args, format);
+    vsnprintf(point->note + used, sizeof point->note - used, format, args);
+    va_end(args);
+}
+
+static void take_result(const sf_runner_result *r, double table_end, sf_cfh_point *p) {
+    p->value[SF_CFH_A_MAX] = r->a_max_g;
+    p->value[SF_CFH_HIC] = r->hic;
+    p->v_rebound = r->v_rebound;
+    p->max_indentation = r->max_indentation;
+    p->max_local_strain = r->max_local_strain;
+    p->energy_error = r->energy_error;
+    if (isnan(r->v_rebound))
+        add_note(p, "contact had not ended at the end of the run: a_max and HIC may be too low");
+    if (r->energy_error > GOOD_ENERGY_ERROR)
+        add_note(p, "energy error %.1f %%: do not trust these figures", 100 * r->energy_error);
+    if (r->max_local_strain > table_end + SF_CFH_STRAIN_MARGIN)
+        add_note(p, "largest local strain %.3f, the compression table ends at %.3f: extrapolated curve",
+                 r->max_local_strain, table_end);
+}
+
+static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, double height, sf_cfh_point *p,
+                          sf_error *err) {
+    char label[32], velocity[64];
+    sf_runner_drop drop = *s->base;
+    sf_runner_result result;
+    sf_error failure = SF_ERROR_INIT;
+    *p = (sf_cfh_point){.height = height, .speed = sf_cfh_speed(height)};
+    snprintf(label, sizeof label, "h%.4gm", sf_cfh_rig_height(s->rig, height));
+    snprintf(velocity, sizeof velocity, "missile.velocity=%.12g m/s", p->speed);
+    drop.label = label;
+    drop.overrides[drop.override_count++] = velocity;
+    if (sf_runner_run(runner, &drop, &result, &failure) == SF_ERR_NUMERIC) {
+        p->failed = true;
+        add_note(p, "the simulation failed: %.300s", failure.text);
+        fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
+        return SF_OK;
+    }
+    if (failure.status != SF_OK) {
+        *err = failure;
+        return err->status;
+    }
+    take_result(&result, s->table_end, p);
+    sf_runner_result_free(&result);
+    return SF_OK;
+}
+
+sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_points *points,
+                          sf_cfh_step *ending, sf_error *err) {
+    double height = 0;
+    *points = (sf_cfh_points){0};
+    while ((*ending = sf_cfh_next(s->plan, points, &height)) == SF_CFH_SIMULATE) {
+        sf_cfh_point point;
+        if (run_drop(s, runner, height, &point, err) != SF_OK)
+            return err->status;
+        sf_cfh_points_add(points, &point);
+        if (*s->stop)
+            return SF_FAIL(err, SF_INTERRUPTED,
+                           "interrupted; finished drops are kept: the same command goes on from here");
+    }
+    return SF_OK;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Simulates drop after drop until the search has what it needs. */
+#ifndef SF_CFH_SERIES_H
+#define SF_CFH_SERIES_H
+
+#include "campaign/runner.h"
+#include "cfh/search.h"
+#include <signal.h>
+
+#define SF_CFH_STRAIN_MARGIN 0.02 /* -, how far beyond the compression table a strain is worth a warning */
+
+typedef struct sf_cfh_series {
+    const sf_cfh_plan *plan;
+    const sf_cfh_rig *rig;
+    const sf_runner_drop *base;        /* case, material, overrides; the speed is added here */
+    double table_end;                  /* -, strain up to which the compression curve is given */
+    const volatile sig_atomic_t *stop; /* not 0: end after the present drop */
+} sf_cfh_series;
+
+/* Runs the search. A drop whose simulation fails numerically becomes a point that failed, with a note; every
+ * other failure ends the series. SF_INTERRUPTED: the same command goes on from there. */
+sf_status sf_cfh_simulate(const sf_cfh_series *series, sf_runner *runner, sf_cfh_points *points,
+                          sf_cfh_step *ending, sf_error *err);
+
+#endif

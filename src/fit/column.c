@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/column.h"
+
+#include "post/injury.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- the law of a point ---- */
+
+double sf_uniaxial_advance(const sf_foam *foam, double dt, double strain, sf_uniaxial *point) {
+    double stress, slope, energy, rate_slope, stretch = 1 - strain, old = 1 - point->strain;
+    double green_rate = 0.5 * (stretch * stretch - old * old) / dt;
+    if (strain > 0) {
+        sf_curve_evaluate(&foam->curve[0], strain, &stress, &slope, &energy);
+    } else {
+        stress = fmax(foam->modulus * strain, -foam->cutoff);
+        energy = 0.5 * stress * stress / foam->modulus - stress * (stress / foam->modulus - strain);
+    }
+    if (energy >= point->peak) {
+        point->peak = energy;
+    } else {
+        double ratio = energy / point->peak;
+        stress *= 1 - (1 - foam->hu) * (1 - (foam->shape == 1 ? ratio : pow(ratio, foam->shape)));
+    }
+    if (foam->curve_count > 1) {
+        double fastest = fmax(0, -green_rate / stretch);
+        point->rate += -expm1(-dt / foam->filter_time) * (fastest - point->rate);
+        stress += sf_foam_overstress(foam, strain, point->rate, &slope, &rate_slope);
+    }
+    if (foam->maxwell > 0)
+        point->maxwell = exp(-foam->maxwell_rate * dt) * point->maxwell -
+                         foam->maxwell / foam->maxwell_rate * expm1(-foam->maxwell_rate * dt) * green_rate;
+    point->strain = strain;
+    return stress - stretch * (point->maxwell + foam->kelvin * green_rate);
+}
+
+/* ---- columns below the missile ---- */
+
+enum { PARTS = 4 }; /* a triangle is cut into PARTS^2, so that large ones spread over the gaps they have */
+
+typedef struct outline {
+    double low[2], high[2]; /* m, of the pad from above */
+    double lowest;          /* m, z of the missile's lowest point */
+} outline;
+
+static outline find_outline(const sf_results *r) {
+    outline o = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY};
+    for (int64_t i = 0; i < r->node_count; i++)
+        for (int c = 0; c < 2; c++) {
+            o.low[c] = fmin(o.low[c], r->position[3 * i + c]);
+            o.high[c] = fmax(o.high[c], r->position[3 * i + c]);
+        }
+    for (int64_t i = 0; i < r->surface_node_count; i++)
+        o.lowest = fmin(o.lowest, r->surface_position[3 * i + 2]);
+    return o;
+}
+
+/* Adds a patch of projected area `area` around `x`; gaps are summed with the area as weight. */
+static void add_patch(const outline *o, const double x[3], double area, sf_columns *out) {
+    int k = (int)((x[2] - o->lowest) / out->thickness * SF_COLUMNS);
+    bool inside = x[0] >= o->low[0] && x[0] <= o->high[0] && x[1] >= o->low[1] && x[1] <= o->high[1];
+    if (!inside || k < 0 || k >= SF_COLUMNS)
+        return;
+    out->area[k] += area;
+    out->gap[k] += area * (x[2] - o->lowest);
+}
+
+static void add_triangle(const outline *o, const double *a, const double *b, const double *c, double factor,
+                         sf_columns *out) {
+    double twice =
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); /* z of the outward normal */
+    if (!(twice < 0))
+        return;
+    double part = -0.5 * twice * factor / (PARTS * PARTS), x[3];
+    for (int i = 0; i < PARTS; i++)
+        for (int j = 0; j < PARTS - i; j++)
+            for (int turned = 0; turned <= (i + j < PARTS - 1); turned++) {
+                double third = turned ? 2. / 3 : 1. / 3, p = (i + third) / PARTS, q = (j + third) / PARTS;
+                for (int k = 0; k < 3; k++)
+                    x[k] = a[k] + p * (b[k] - a[k]) + q * (c[k] - a[k]);
+                add_patch(o, x, part, out);
+            }
+}
+
+sf_status sf_columns_build(const sf_results *r, sf_columns *out, sf_error *err) {
+    *out = (sf_columns){.mass = r->missile_mass,
+                        .speed = -r->missile_speed * r->missile_direction[2],
+                        .thickness = r->thickness};
+    outline o = find_outline(r);
+    for (int64_t t = 0; t < r->surface_triangle_count; t++) {
+        const int32_t *v = &r->surface_triangle[3 * t];
+        add_triangle(&o, &r->surface_position[3 * (int64_t)v[0]], &r->surface_position[3 * (int64_t)v[1]],
+                     &r->surface_position[3 * (int64_t)v[2]], (double)r->symmetry_factor, out);
+    }
+    for (int k = 0; k < SF_COLUMNS; k++) {
+        if (!(out->area[k] > 0))
+            continue;
+        out->gap[out->count] = out->gap[k] / out->area[k];
+        out->area[out->count++] = out->area[k];
+    }
+    if (out->count == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "no part of the missile's surface faces the pad");
+    return SF_OK;
+}
+
+/* ---- the drop ---- */
+
+static const double STEP = 20e-6, LONGEST = 0.2; /* s */
+
+static double force(const sf_columns *columns, const sf_foam *foam, double indentation, sf_uniaxial *point) {
+    double sum = 0;
+    for (int k = 0; k < columns->count && columns->gap[k] < indentation; k++) {
+        double stress =
+            sf_uniaxial_advance(foam, STEP, (indentation - columns->gap[k]) / columns->thickness, &point[k]);
+        sum += columns->area[k] * fmax(0, stress); /* the missile does not pull */
+    }
+    return sum;
+}
+
+sf_status sf_columns_drop(const sf_columns *columns, const sf_foam *foam, sf_series *curve, sf_error *err) {
+    sf_uniaxial point[SF_COLUMNS] = {{0}};
+    int64_t most = (int64_t)(LONGEST / STEP), count = 0;
+    double depth = 0, speed = columns->speed;
+    if (sf_series_create(most, curve, err) != SF_OK)
+        return err->status;
+    while (count < most) {
+        double f = force(columns, foam, depth, point);
+        if (!isfinite(f)) {
+            sf_series_free(curve);
+            return SF_FAIL(err, SF_ERR_NUMERIC, "the foam of the columns collapsed at an indentation of %g m",
+                           depth);
+        }
+        curve->time[count] = (double)count * STEP;
+        curve->value[count++] = f / columns->mass / SF_STANDARD_GRAVITY;
+        if (speed < 0 && f == 0)
+            break;
+        speed += STEP * (SF_STANDARD_GRAVITY - f / columns->mass);
+        depth += STEP * speed;
+    }
+    curve->count = count;
+    return SF_OK;
+}

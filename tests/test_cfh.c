@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Critical fall height: crossings of laws whose answer is known, the search on such laws, the rig. */
+#include "model_fixture.h"
+
+#include "cfh/search.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+
+enum { POINTS = 7 };
+
+static const double heights[POINTS] = {1.2, 1.4, 1.6, 1.7, 1.9, 2.1, 2.3};
+
+/* ln(value) = ln(level) + slope ln(h / at) + bend ln(h / at)^2: reaches `level` at the height `at`. */
+typedef struct law {
+    double level, at, slope, bend;
+} law;
+
+static double evaluate(const law *l, double height) {
+    double d = log(height / l->at);
+    return l->level * exp(l->slope * d + l->bend * d * d);
+}
+
+static double gaussian(uint64_t *seed) {
+    double sum = 0;
+    for (int k = 0; k < 12; k++)
+        sum += 0.5 * fixture_random(seed); /* variance 1/12 each */
+    return sum;
+}
+
+static void the_crossing_of_an_exact_quadratic_is_exact(void **state) {
+    (void)state;
+    static const law laws[] = {{200, 1.63, 1.7, 0.34}, {1000, 2.0, 2.8, -0.6}, {5, 1.25, 0.9, 0}};
+    for (size_t q = 0; q < sizeof laws / sizeof laws[0]; q++) {
+        double value[POINTS];
+        sf_error err = SF_ERROR_INIT;
+        sf_cfh_crossing c;
+        for (int k = 0; k < POINTS; k++)
+            value[k] = evaluate(&laws[q], heights[k]);
+        assert_int_equal(sf_cfh_cross("a_max", POINTS, heights, value, laws[q].level, &c, &err), SF_OK);
+        assert_int_equal(c.side, SF_CFH_CROSSED);
+        assert_relative(c.height, laws[q].at, 1e-9);
+        assert_close(c.margin, 0, 1e-6);
+        assert_close(c.fit.rms, 0, 1e-9);
+        assert_relative(sf_cfh_fit_at(&c.fit, 1.77), evaluate(&laws[q], 1.77), 1e-9);
+    }
+}
+
+/* 95 % of the intervals of noisy points hold the true crossing; 600 trials scatter by 0.9 %. */
+static void the_interval_covers_as_often_as_it_says(void **state) {
+    (void)state;
+    const law truth = {200, 1.65, 1.7, 0.3};
+    const double noise = 0.01;
+    enum { TRIALS = 600 };
+    uint64_t seed = 7;
+    int covered = 0;
+    double width = 0;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        double value[POINTS];
+        sf_error err = SF_ERROR_INIT;
+        sf_cfh_crossing c;
+        for (int k = 0; k < POINTS; k++)
+            value[k] = evaluate(&truth, heights[k]) * exp(noise * gaussian(&seed));
+        if (sf_cfh_cross("a_max", POINTS, heights, value, truth.level, &c, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        covered += c.low <= truth.at && truth.at <= c.high;
+        width += c.margin / TRIALS;
+    }
+    assert_close((double)covered / TRIALS, 0.95, 0.03);
+    assert_true(width > 0.2 * noise && width < 2 * noise); /* neither certain nor useless */
+}
+
+/* A law whose far ends are bent away from any quadratic: only what is near the crossing enters. */
+static void points_far_from_the_crossing_stay_out(void **state) {
+    (void)state;
+    const double wide[POINTS] = {0.3, 1.4, 1.6, 1.7, 1.9, 2.1, 5};
+    const law truth = {200, 1.65, 1.7, 0.3};
+    sf_error err = SF_ERROR_INIT;
+    sf_cfh_crossing c;
+    double value[POINTS];
+    for (int k = 0; k < POINTS; k++)
+        value[k] = evaluate(&truth, wide[k]);
+    value[0] *= 0.5;
+    value[POINTS - 1] *= 3;
+    assert_int_equal(sf_cfh_cross("a_max", POINTS, wide, value, truth.level, &c, &err), SF_OK);
+    assert_int_equal(c.fit.first, 1);
+    assert_int_equal(c.fit.count, POINTS - 2);
+    assert_relative(c.height, truth.at, 1e-9);
+}
+
+static void limits_outside_the_points_are_no_crossing(void **state) {
+    (void)state;
+    const law l = {200, 1.65, 1.7, 0.3};
+    sf_error err = SF_ERROR_INIT;
+    sf_cfh_crossing c;
+    double value[POINTS];
+    for (int k = 0; k < POINTS; k++)
+        value[k] = evaluate(&l, heights[k]);
+    assert_int_equal(sf_cfh_cross("a_max", POINTS, heights, value, 1.001 * value[6], &c, &err), SF_OK);
+    assert_int_equal(c.side, SF_CFH_NOT_REACHED);
+    assert_true(isnan(c.height));
+    assert_int_equal(sf_cfh_cross("a_max", POINTS, heights, value, 0.999 * value[0], &c, &err), SF_OK);
+    assert_int_equal(c.side, SF_CFH_EXCEEDED);
+    assert_true(isnan(c.height));
+}
+
+static void points_that_give_no_crossing_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        int count;
+        double height[5], value[5];
+        sf_status status;
+        const char *part;
+    } cases[] = {
+        {0, {0}, {0}, SF_ERR_INPUT, "no points"},
+        {3, {1, 1.5, 2}, {100, 150, 250}, SF_ERR_INPUT, "has 3 points"},
+        {5, {1, 1.2, 1.4, 1.6, 1.8}, {100, 150, 140, 220, 250}, SF_ERR_NUMERIC, "falls from 150 at 1.2 m"},
+        {5, {1, 1.2, 1.4, 1.6, 1.8}, {300, 250, 200, 150, 100}, SF_ERR_NUMERIC, "falls from 300"},
+        {5, {1, 1.2, 1.1, 1.6, 1.8}, {100, 150, 180, 220, 250}, SF_ERR_INPUT, "out of order"},
+        {5, {1, 1.2, 1.4, 1.6, 1.8}, {100, 150, -1, 220, 250}, SF_ERR_INPUT, "not positive"},
+        {5, {1, 1.2, 1.4, 1.6, 1.8}, {100, 150, NAN, 220, 250}, SF_ERR_INPUT, "not positive"},
+    };
+    for (size_t q = 0; q < sizeof cases / sizeof cases[0]; q++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_cfh_crossing c;
+        assert_int_equal(
+            sf_cfh_cross("a_max", cases[q].count, cases[q].height, cases[q].value, 200, &c, &err),
+            cases[q].status);
+        if (!strstr(err.text, cases[q].part))
+            fail_msg("\"%s\" is missing in: %s", cases[q].part, err.text);
+        assert_true(isnan(c.height));
+    }
+}
+
+/* A pad whose figures follow two laws; simulations fail above `collapse`. */
+typedef struct pad {
+    law a_max, hic;
+    double collapse;
+} pad;
+
+static sf_cfh_plan plan_from(double first, double max_height) {
+    return (sf_cfh_plan){
+        .limit = {200, 1000}, .first = first, .max_height = max_height, .max_drops = 8, .unit = 1};
+}
+
+static sf_cfh_step search(const pad *p, const sf_cfh_plan *plan, sf_cfh_points *points) {
+    double height = 0;
+    sf_cfh_step step;
+    *points = (sf_cfh_points){0};
+    while ((step = sf_cfh_next(plan, points, &height)) == SF_CFH_SIMULATE) {
+        sf_cfh_point point = {.height = height, .failed = height > p->collapse};
+        point.value[SF_CFH_A_MAX] = evaluate(&p->a_max, height);
+        point.value[SF_CFH_HIC] = evaluate(&p->hic, height);
+        assert_true(points->count < plan->max_drops || plan->list_count > 0);
+        assert_true(height > 0 && height <= plan->max_height);
+        sf_cfh_points_add(points, &point);
+    }
+    return step;
+}
+
+static int count_sides(const sf_cfh_points *points, sf_cfh_criterion c, double limit, bool above) {
+    int count = 0;
+    for (int k = 0; k < points->count; k++)
+        count += !points->point[k].failed && (points->point[k].value[c] >= limit) == above;
+    return count;
+}
+
+static void the_search_finds_the_criterion_that_is_met_first(void **state) {
+    (void)state;
+    static const struct {
+        pad pad;
+        sf_cfh_criterion deciding;
+    } cases[] = {
+        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY}, SF_CFH_HIC},
+        {{{200, 1.64, 1.7, 0.3}, {1000, 1.70, 2.8, 0.5}, INFINITY}, SF_CFH_A_MAX},
+        {{{200, 0.31, 1.1, 0.1}, {1000, 0.90, 2.0, 0.2}, INFINITY}, SF_CFH_A_MAX},
+        {{{200, 9.00, 0.7, 0.1}, {1000, 4.20, 2.0, 0.1}, INFINITY}, SF_CFH_HIC},
+        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.0}, SF_CFH_HIC}, /* fails not far above */
+    };
+    static const double first[] = {0.5, 1.0, 1.65, 3.0};
+    for (size_t q = 0; q < sizeof cases / sizeof cases[0]; q++)
+        for (size_t f = 0; f < sizeof first / sizeof first[0]; f++) {
+            const sf_cfh_plan plan = plan_from(first[f], 10);
+            sf_cfh_criterion d = cases[q].deciding;
+            sf_cfh_points points;
+            sf_cfh_result result;
+            search(&cases[q].pad, &plan, &points);
+            sf_cfh_evaluate(&points, plan.limit, &result);
+            assert_int_equal(result.verdict, SF_CFH_FOUND);
+            assert_int_equal(result.deciding, d);
+            const law *l = d == SF_CFH_HIC ? &cases[q].pad.hic : &cases[q].pad.a_max;
+            assert_relative(result.crossing[d].height, l->at, 1e-6);
+            assert_true(points.count >= SF_CFH_MIN_POINTS);
+            assert_true(count_sides(&points, d, plan.limit[d], false) > 0);
+            assert_true(count_sides(&points, d, plan.limit[d], true) > 0);
+        }
+}
+
+static void the_search_ends_at_its_limits_and_says_so(void **state) {
+    (void)state;
+    const pad soft = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY};
+    const pad weak = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 1.3};
+    const pad stiff = {{200, 0.001, 1.2, 0}, {1000, 0.002, 2.4, 0}, INFINITY};
+    const pad broken = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 0};
+    sf_cfh_plan plan = plan_from(1, 1.5);
+    sf_cfh_points points;
+    sf_cfh_result result;
+    assert_int_equal(search(&soft, &plan, &points), SF_CFH_AT_MAX_HEIGHT);
+    sf_cfh_evaluate(&points, plan.limit, &result);
+    assert_int_equal(result.verdict, SF_CFH_ABOVE);
+    assert_close(result.highest, 1.5, 1e-12);
+    plan = plan_from(1, 10);
+    assert_int_equal(search(&weak, &plan, &points), SF_CFH_COLLAPSED);
+    sf_cfh_evaluate(&points, plan.limit, &result);
+    assert_int_equal(result.verdict, SF_CFH_ABOVE);
+    assert_true(result.highest > 1.1 && result.highest <= 1.3);
+    plan = plan_from(0.05, 10);
+    assert_int_equal(search(&stiff, &plan, &points), SF_CFH_AT_MIN_HEIGHT);
+    sf_cfh_evaluate(&points, plan.limit, &result);
+    assert_int_equal(result.verdict, SF_CFH_BELOW);
+    plan.max_drops = 3;
+    plan.first = 10;
+    assert_int_equal(search(&stiff, &plan, &points), SF_CFH_AT_CAP);
+    assert_int_equal(points.count, 3);
+    plan = plan_from(1, 10);
+    search(&broken, &plan, &points);
+    sf_cfh_evaluate(&points, plan.limit, &result);
+    assert_int_equal(result.verdict, SF_CFH_UNKNOWN);
+    assert_non_null(strstr(result.problem.text, "no simulation succeeded"));
+}
+
+static void a_list_of_heights_is_followed(void **state) {
+    (void)state;
+    const pad p = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.2};
+    sf_cfh_plan plan = plan_from(1, 10);
+    sf_cfh_points points;
+    sf_cfh_result result;
+    plan.list_count = POINTS;
+    memcpy(plan.list, heights, sizeof heights);
+    assert_int_equal(search(&p, &plan, &points), SF_CFH_LIST_DONE);
+    assert_int_equal(points.count, POINTS);
+    for (int k = 0; k < POINTS; k++)
+        assert_close(points.point[k].height, heights[k], 0);
+    assert_true(points.point[POINTS - 1].failed);
+    sf_cfh_evaluate(&points, plan.limit, &result);
+    assert_relative(result.crossing[SF_CFH_HIC].height, 1.64, 1e-6);
+}
+
+/* g_eff = sum(2 h v^2) / sum((2 h)^2) of the paper's three drops, worked out by hand. */
+static void the_rig_of_the_paper(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_cfh_rig rig;
+    if (sf_cfh_rig_read(fixture_source("examples/data/penta2018_table2_70mm.csv"), &rig, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_int_equal(rig.pairs, 3);
+    assert_close(rig.gravity, 7.9668, 5e-4);
+    assert_close(rig.standard_error, 0.0736, 5e-4);
+    assert_close(rig.margin, 4.3027 * 0.0736 / 7.9668, 5e-4);
+    assert_relative(sf_cfh_rig_height(&rig, 1), 9.80665 / rig.gravity, 1e-12);
+    /* The fitted rig gives the speeds of the paper back. */
+    assert_relative(sf_cfh_speed(1.709 / sf_cfh_rig_height(&rig, 1)), 5.2, 0.01);
+    assert_relative(sf_cfh_free_fall_height(sf_cfh_speed(1.3)), 1.3, 1e-12);
+}
+
+static void tables_of_the_rig_that_make_no_sense_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *part;
+    } tables[] = {
+        {"", "0 pairs"},
+        {"height_m,speed_m_s\n1,4\n", "1 pairs"},
+        {"height,speed_m_s\n1,4\n2,5\n", ":1: the heading needs a column height_m"},
+        {"height_m,speed\n1,4\n2,5\n", ":1: the heading needs a column speed_m_s"},
+        {"height_m,h_m,speed_m_s\n1,1,4\n", "two columns of heights"},
+        {"height_m,speed_m_s\n1,4\n2,fast\n", ":3: \"fast\" is not a number"},
+        {"height_m,speed_m_s\n1,4\n2\n", ":3: the row has too few columns"},
+        {"height_m,speed_m_s\n1,4\n-2,5\n", "pair 2, -2 m and 5 m/s, is not positive"},
+        {"height_m,speed_m_s\n1,4\n1.1,5.5\n", "faster than free fall"},
+    };
+    char path[] = "/tmp/softfall-rig-XXXXXX";
+    int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    close(descriptor);
+    for (size_t q = 0; q < sizeof tables / sizeof tables[0]; q++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_cfh_rig rig;
+        FILE *file = fopen(path, "w");
+        assert_non_null(file);
+        fputs(tables[q].text, file);
+        fclose(file);
+        assert_int_equal(sf_cfh_rig_read(path, &rig, &err), SF_ERR_INPUT);
+        if (!strstr(err.text, tables[q].part))
+            fail_msg("\"%s\" is missing in: %s", tables[q].part, err.text);
+    }
+    remove(path);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_crossing_of_an_exact_quadratic_is_exact),
+        cmocka_unit_test(the_interval_covers_as_often_as_it_says),
+        cmocka_unit_test(points_far_from_the_crossing_stay_out),
+        cmocka_unit_test(limits_outside_the_points_are_no_crossing),
+        cmocka_unit_test(points_that_give_no_crossing_are_refused),
+        cmocka_unit_test(the_search_finds_the_criterion_that_is_met_first),
+        cmocka_unit_test(the_search_ends_at_its_limits_and_says_so),
+        cmocka_unit_test(a_list_of_heights_is_followed),
+        cmocka_unit_test(the_rig_of_the_paper),
+        cmocka_unit_test(tables_of_the_rig_that_make_no_sense_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-cfh on the example case with a coarse pad. */
+#include "model_fixture.h"
+#include "program_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+
+static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
+static const double SPACING = 15;
+
+static int set_up(void **state) {
+    program_place *p = calloc(1, sizeof *p);
+    *state = p;
+    program_set_up(p);
+    return 0;
+}
+
+static int tear_down(void **state) {
+    program_tear_down(*state);
+    free(*state);
+    return 0;
+}
+
+/* The number after the first "key": in the text that follows `after`; NaN for null. */
+static double number_of(const char *json, const char *after, const char *key) {
+    char quoted[64];
+    const char *at = strstr(json, after);
+    snprintf(quoted, sizeof quoted, "\"%s\": ", key);
+    at = at ? strstr(at, quoted) : NULL;
+    if (!at)
+        fail_msg("no %s after %s in: %s", key, after, json);
+    char *end;
+    double value = strtod(at + strlen(quoted), &end);
+    return end == at + strlen(quoted) ? NAN : value;
+}
+
+static char *read_text(const program_place *p, const char *name) {
+    program_bytes bytes = program_read_file(program_path(p, name));
+    bytes.data[bytes.size] = '\0';
+    return bytes.data;
+}
+
+static int count_of(const char *text, const char *part) {
+    int count = 0;
+    for (; (text = strstr(text, part)) != NULL; text++)
+        count++;
+    return count;
+}
+
+/* HIC is put out of reach, so that a_max decides; a drop from the height found must then reach 200 g. */
+static void the_height_found_gives_the_limit_when_it_is_simulated(void **state) {
+    const program_place *p = *state;
+    program_result r =
+        program_succeed(p, "cfh", "'%s' -o out -t 1 --limit-hic 1e6 %s --rig '%s'", fixture_source(EXAMPLE),
+                        program_coarse(SPACING), fixture_source("examples/data/penta2018_table2_70mm.csv"));
+    char *json = read_text(p, "out/cfh.json"), *report = read_text(p, "out/report.md");
+    double height = number_of(json, "critical_fall_height", "height_m");
+    double speed = number_of(json, "critical_fall_height", "speed_m_s");
+    assert_non_null(strstr(json, "\"deciding\": \"a_max\""));
+    assert_true(count_of(json, "\"speed_m_s\"") - 1 >= 4); /* points; one is the verdict's */
+    assert_relative(speed * speed, 2 * 9.80665 * height, 1e-6);
+    assert_true(number_of(json, "critical_fall_height", "height_low_m") <= height);
+    assert_true(number_of(json, "critical_fall_height", "height_high_m") >= height);
+    assert_relative(number_of(json, "critical_fall_height", "rig_height_m"), height * 9.80665 / 7.9668, 1e-4);
+    assert_non_null(strstr(report, "Indicative, not a certification"));
+    assert_non_null(strstr(r.out, "a_max reaches 200 g first"));
+    assert_int_equal(
+        program_shell(p, "test -s out/cfh.png && test -s out/cfh.gp && test -s out/cfh.csv").code, 0);
+
+    program_succeed(p, "pre", "'%s' -o m.h5 %s --set missile.velocity='%.9g m/s'", fixture_source(EXAMPLE),
+                    program_coarse(SPACING), speed);
+    program_succeed(p, "solve", "m.h5 -o r.h5 --threads 1");
+    program_succeed(p, "post", "r.h5 -o one");
+    char *one = read_text(p, "one/summary.json");
+    assert_relative(number_of(one, "{", "a_max_g"), 200, 0.01);
+    free(one);
+    free(json);
+    free(report);
+}
+
+/* Goes on from the drops of the test before: nothing is simulated again, and the answer is the same. */
+static void a_second_run_uses_every_drop_again(void **state) {
+    const program_place *p = *state;
+    program_bytes csv = program_read_file(program_path(p, "out/cfh.csv"));
+    const char *pairs = fixture_source("examples/data/penta2018_table2_70mm.csv");
+    program_result refused =
+        program_run(p, "cfh", "'%s' -o out -t 1 %s", fixture_source(EXAMPLE), program_coarse(SPACING));
+    assert_int_equal(refused.code, 2);
+    assert_non_null(strstr(refused.err, "--force"));
+    program_shell(p, "rm out/cfh.* out/report.md"); /* as after an interruption: only the drops are there */
+    program_result r = program_succeed(p, "cfh", "'%s' -o out -t 1 --limit-hic 1e6 %s --rig '%s'",
+                                       fixture_source(EXAMPLE), program_coarse(SPACING), pairs);
+    assert_non_null(strstr(r.out, "\n0 drops simulated"));
+    assert_true(count_of(r.out, "(was there)") >= 4);
+    program_assert_unchanged(program_path(p, "out/cfh.csv"), &csv);
+}
+
+/* A limit that is not reached up to --max-height is said as a bound, not as a failure. A table that ends
+ * early is warned of with the strain. */
+static void bounds_and_extrapolation_are_said(void **state) {
+    const program_place *p = *state;
+    program_result r = program_succeed(p, "cfh", "'%s' -o low -t 1 --max-height '50 cm' %s",
+                                       fixture_source(EXAMPLE), program_coarse(20));
+    assert_non_null(strstr(r.out, "Critical fall height above 0.500 m"));
+    char *report = read_text(p, "low/report.md");
+    assert_non_null(strstr(report, "greatest height allowed"));
+    assert_null(strstr(report, "## Warnings"));
+    free(report);
+    program_shell(p, "sed '/^0.[6-9]/d' '%s' > short.csv",
+                  fixture_source("examples/materials/eva35.csv"));
+    r = program_succeed(p, "cfh",
+                        "'%s' -o short -t 1 --max-height '50 cm' %s --set material.curve=\"$PWD/short.csv\"",
+                        fixture_source(EXAMPLE), program_coarse(20));
+    report = read_text(p, "short/report.md");
+    assert_non_null(strstr(report, "the compression table ends at 0.580: extrapolated curve"));
+    assert_non_null(strstr(r.err, "softfall-cfh: warning: at 0.500 m: largest local strain 0."));
+    free(report);
+}
+
+static void command_lines_that_cannot_be_meant_are_refused(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        const char *words, *part;
+    } lines[] = {
+        {"", "output directory"},
+        {"--limit-g 0", "--limit-g 0: not a positive number"},
+        {"--limit-hic many", "--limit-hic many: not a positive number"},
+        {"--height 2", "has no unit"},
+        {"--height '2 kg'", "--height"},
+        {"--height '0 m'", "not between 1 cm"},
+        {"--height '12 m'", "above the greatest height"},
+        {"--heights '1 m,2 m,3 m'", "at least 4"},
+        {"--heights '1 m,2 m,3 m,200 cm'", "2 m stands twice"},
+        {"--heights '1 m,2 m,3 m,4 m' --height '1 m'", "--height does not go with it"},
+        {"--heights '1 m,2 m,3 m,4 m' --max-height '9 m'", "--max-height does not go with it"},
+        {"--set missile.velocity='3 m/s'", "the drop height decides the speed"},
+        {"--set missile.direction='[1.0, 0.0, -1.0]'", "vertical fall"},
+        {"--set missile.speed=3", "velocity"}, /* what exists */
+        {"--material none.cfg", "none.cfg"},
+        {"--rig none.csv", "none.csv"},
+        {"--threads 0", "1 to 1024"},
+    };
+    for (size_t k = 0; k < sizeof lines / sizeof lines[0]; k++) {
+        program_result r =
+            k == 0 ? program_run(p, "cfh", "'%s'", fixture_source(EXAMPLE))
+                   : program_run(p, "cfh", "'%s' -o new %s", fixture_source(EXAMPLE), lines[k].words);
+        if (r.code <= 0 || r.code >= 128 || !strstr(r.err, lines[k].part))
+            fail_msg("exit code %d, \"%s\" expected in: %s", r.code, lines[k].part, r.err);
+        if (count_of(r.err, "\n") != 1 && !strstr(r.err, "--help"))
+            fail_msg("more than a sentence: %s", r.err);
+    }
+    assert_int_equal(program_shell(p, "test -e new").code, 1); /* none was begun */
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_height_found_gives_the_limit_when_it_is_simulated),
+        cmocka_unit_test(a_second_run_uses_every_drop_again),
+        cmocka_unit_test(bounds_and_extrapolation_are_said),
+        cmocka_unit_test(command_lines_that_cannot_be_meant_are_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,432 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Identification from drops: the gas curve, the columns against the foam law and the closed form, space
+ * mapping against what it approximates, the input's refusals, and a whole fit on a coarse mesh. */
+#include "fit/column.h"
+#include "fit/drop_input.h"
+#include "fit/gas_curve.h"
+#include "fit/space_mapping.h"
+#include "foam_fixture.h"
+#include "program_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+static const sf_gas_curve eva = {0.4136e6, 7.4e3, 134e3, 23e3, 2.8};
+
+static void gas_curve_rises_from_its_modulus(void **state) {
+    (void)state;
+    assert_true(sf_gas_curve_stress(&eva, 0) == 0);
+    assert_true(fabs(sf_gas_curve_stress(&eva, 1e-7) / 1e-7 / eva.modulus - 1) < 1e-5);
+    for (int k = 1; k < 98; k++)
+        assert_true(sf_gas_curve_stress(&eva, 0.01 * k) > sf_gas_curve_stress(&eva, 0.01 * (k - 1)));
+}
+
+static void gas_curve_table_is_the_curve(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_foam_card card = {.densification_limit = 1};
+    sf_curve curve;
+    assert_int_equal(sf_gas_curve_tabulate(&eva, &card, &err), SF_OK);
+    assert_int_equal(sf_curve_build(&card, 0, &curve, &err), SF_OK);
+    for (int k = 1; k < 1990; k++) {
+        double strain = 0.0005 * k, stress, slope, energy;
+        if (strain > 0.975)
+            break;
+        sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
+        assert_true(fabs(stress / sf_gas_curve_stress(&eva, strain) - 1) < 0.003);
+    }
+    sf_curve_free(&curve);
+    sf_foam_card_free(&card);
+}
+
+/* Compression, release, compression again at changing speed: the point is lane 0 of the batch. */
+static void assert_uniaxial_is_the_law(const point_card *card) {
+    sf_foam foam;
+    sf_foam_batch batch;
+    sf_uniaxial point = {0};
+    double dt = 2e-5, largest = 0, f[9];
+    foam_build(card, &foam);
+    foam_reset(&batch);
+    for (int k = 1; k <= 3000; k++) {
+        double strain = 0.75 * (1 - cos(0.004 * k)) / 2 * (1 + 0.2 * sin(0.011 * k));
+        foam_uniaxial(1 - strain, f);
+        foam_step(&foam, dt, f, &batch);
+        double stress = sf_uniaxial_advance(&foam, dt, strain, &point);
+        largest = fmax(largest, fabs(stress));
+        assert_true(fabs(stress + batch.p[0][0]) < 1e-9 * fmax(largest, 1));
+    }
+    assert_true(largest > 1e4);
+    sf_foam_free(&foam);
+}
+
+static void column_point_is_the_foam_law(void **state) {
+    (void)state;
+    point_card card;
+    point_card_init(&card);
+    point_card_add_eva(&card, 0, 120, 0.9, 1);
+    assert_uniaxial_is_the_law(&card);
+    card.card.hysteresis_hu = 0.05;
+    card.card.hysteresis_shape = 2.5;
+    card.card.maxwell_modulus = 3e6;
+    card.card.maxwell_rate = 4000;
+    card.card.kelvin_viscosity = 300;
+    assert_uniaxial_is_the_law(&card);
+    point_card_add_eva(&card, 1, 120, 0.9, 1.2);
+    point_card_add_eva(&card, 100, 120, 0.9, 1.5);
+    card.card.curve_rate[0] = 0.01;
+    card.card.rate_filter_time = 1e-4;
+    assert_uniaxial_is_the_law(&card);
+}
+
+/* A missile whose surface is a fine spherical cap over a wide pad. */
+static void columns_are_the_closed_form(void **state) {
+    (void)state;
+    enum { RINGS = 60, SECTORS = 60 };
+    static double position[3 * (RINGS + 1) * SECTORS];
+    static int32_t triangle[6 * RINGS * SECTORS];
+    const double radius = 0.08, thickness = 0.07;
+    double pad[] = {-1, -1, 0, 1, 1, 0};
+    sf_results r = {.node_count = 2,
+                    .position = pad,
+                    .surface_node_count = (RINGS + 1) * SECTORS,
+                    .surface_position = position,
+                    .surface_triangle = triangle,
+                    .symmetry_factor = 1,
+                    .thickness = thickness,
+                    .missile_mass = 4.6,
+                    .missile_speed = 5,
+                    .missile_direction = {0, 0, -1}};
+    for (int i = 0; i <= RINGS; i++)
+        for (int j = 0; j < SECTORS; j++) {
+            double polar = 0.5 * M_PI * i / RINGS, angle = 2 * M_PI * j / SECTORS,
+                   *x = &position[3 * (i * SECTORS + j)];
+            x[0] = radius * sin(polar) * cos(angle);
+            x[1] = radius * sin(polar) * sin(angle);
+            x[2] = radius * (1 - cos(polar));
+        }
+    for (int i = 0; i < RINGS; i++)
+        for (int j = 0; j < SECTORS; j++) {
+            int a = i * SECTORS + j, b = i * SECTORS + (j + 1) % SECTORS;
+            const int32_t two[6] = {a, b,           a + SECTORS,
+                                    b, b + SECTORS, a + SECTORS}; /* normals outwards: down */
+            memcpy(&triangle[6 * r.surface_triangle_count / 2], two, sizeof two);
+            r.surface_triangle_count += 2;
+        }
+    sf_columns c;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_columns_build(&r, &c, &err), SF_OK);
+    assert_true(c.mass == 4.6 && c.speed == 5);
+    double depth = 0.05, sum = 0, closed = 0, energy = 0;
+    for (int k = 0; k < c.count && c.gap[k] < depth; k++)
+        sum += c.area[k] * sf_gas_curve_stress(&eva, (depth - c.gap[k]) / thickness);
+    int n = 20000; /* F = 2 pi H [(R - delta) W + H int e sigma] */
+    for (int k = 0; k < n; k++) {
+        double strain = depth / thickness * (k + 0.5) / n, part = depth / thickness / n;
+        energy += part * sf_gas_curve_stress(&eva, strain);
+        closed += part * strain * sf_gas_curve_stress(&eva, strain);
+    }
+    closed = 2 * M_PI * thickness * ((radius - depth) * energy + thickness * closed);
+    assert_true(fabs(sum / closed - 1) < 0.01);
+}
+
+static void column_drop_keeps_energy(void **state) {
+    (void)state;
+    point_card card;
+    sf_foam foam;
+    sf_series curve;
+    sf_error err = SF_ERROR_INIT;
+    sf_columns c = {.mass = 2, .speed = 3, .thickness = 0.05, .count = 1, .area = {0.01}, .gap = {0}};
+    point_card_init(&card); /* no hysteresis, no viscosity: the rebound is the impact */
+    point_card_add_eva(&card, 0, 120, 0.9, 1);
+    foam_build(&card, &foam);
+    assert_int_equal(sf_columns_drop(&c, &foam, &curve, &err), SF_OK);
+    double impulse = 0;
+    for (int64_t k = 1; k < curve.count; k++)
+        impulse +=
+            0.5 * (curve.value[k] + curve.value[k - 1] - 2) * 9.80665 * (curve.time[k] - curve.time[k - 1]);
+    assert_true(fabs(impulse / (2 * c.speed) - 1) < 2e-3);
+    sf_series_free(&curve);
+    sf_foam_free(&foam);
+}
+
+/* ---- space mapping ---- */
+
+/* Truth and surrogate of two parameters and three responses. */
+typedef struct toy {
+    bool linear;
+    int simulations;
+} toy;
+
+static sf_status toy_surrogate(void *context, const double *u, double *y, sf_error *err) {
+    const toy *t = context;
+    (void)err;
+    y[0] = u[0] + 0.5 * u[1];
+    y[1] = u[0] - u[1];
+    y[2] = t->linear ? 2 * u[1] : exp(0.5 * u[1]) + 0.1 * u[0];
+    return SF_OK;
+}
+
+static sf_status toy_simulate(void *context, const double *u, double *y, sf_error *err) {
+    toy *t = context;
+    t->simulations++;
+    toy_surrogate(context, u, y, err);
+    if (!t->linear) {
+        y[0] += 0.3 + 0.2 * u[0] - 0.05 * u[0] * u[1];
+        y[1] = 1.15 * y[1] - 0.2;
+        y[2] += 0.1 * u[1];
+    }
+    return SF_OK;
+}
+
+static const double toy_zero[2] = {0, 0}, toy_width[2] = {1, 2}, toy_sd[3] = {0.01, 0.02, 0.03};
+
+static sf_mapping_problem toy_problem(toy *t, const double *measured) {
+    return (sf_mapping_problem){.parameters = 2,
+                                .responses = 3,
+                                .start = toy_zero,
+                                .prior = toy_zero,
+                                .prior_sd = toy_width,
+                                .measured = measured,
+                                .sd = toy_sd,
+                                .surrogate = toy_surrogate,
+                                .simulate = toy_simulate,
+                                .context = t,
+                                .max_iterations = 12,
+                                .tolerance = 0.01};
+}
+
+static void mapping_of_a_linear_problem_is_bayes(void **state) {
+    (void)state;
+    toy t = {.linear = true};
+    const double measured[3] = {0.8, 0.3, 0.5};
+    sf_mapping_problem p = toy_problem(&t, measured);
+    sf_mapping_result r;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_mapping_solve(&p, &r, &err), SF_OK);
+    assert_true(r.converged);
+    assert_int_equal(t.simulations, 2); /* the start and the minimum */
+    const double row[3][2] = {{1, 0.5}, {1, -1}, {0, 2}};
+    double wide[3] = {1 / (toy_width[0] * toy_width[0]), 0, 1 / (toy_width[1] * toy_width[1])}, a[3],
+           b[2] = {0, 0};
+    memcpy(a, wide, sizeof a);
+    for (int i = 0; i < 3; i++) {
+        double w = 1 / (toy_sd[i] * toy_sd[i]);
+        a[0] += w * row[i][0] * row[i][0];
+        a[1] += w * row[i][0] * row[i][1];
+        a[2] += w * row[i][1] * row[i][1];
+        b[0] += w * row[i][0] * measured[i];
+        b[1] += w * row[i][1] * measured[i];
+    }
+    double det = a[0] * a[2] - a[1] * a[1];
+    assert_true(fabs(r.u[0] - (a[2] * b[0] - a[1] * b[1]) / det) < 1e-6);
+    assert_true(fabs(r.u[1] - (a[0] * b[1] - a[1] * b[0]) / det) < 1e-6);
+    assert_true(r.scale > 1); /* the data contradict each other: their weight falls, the prior's does not */
+    for (int k = 0; k < 3; k++)
+        a[k] = (a[k] - wide[k]) / (r.scale * r.scale) + wide[k];
+    det = a[0] * a[2] - a[1] * a[1];
+    assert_true(fabs(r.covariance[0][0] / (a[2] / det) - 1) < 1e-6);
+    assert_true(fabs(r.covariance[0][1] / (-a[1] / det) - 1) < 1e-6);
+    assert_true(r.freedom > 0.9 && r.freedom < 1.1); /* three data, two parameters that they determine */
+    sf_mapping_free(&r);
+}
+
+static void mapping_finds_the_minimum_of_the_simulation(void **state) {
+    (void)state;
+    toy t = {.linear = false};
+    double measured[3];
+    const double truth[2] = {0.6, -0.9};
+    sf_error err = SF_ERROR_INIT;
+    toy_simulate(&t, truth, measured, &err);
+    t.simulations = 0;
+    sf_mapping_problem p = toy_problem(&t, measured);
+    sf_mapping_result r;
+    assert_int_equal(sf_mapping_solve(&p, &r, &err), SF_OK);
+    assert_true(r.converged && t.simulations <= 8);
+    for (int j = 0; j < 2; j++)
+        assert_true(fabs(r.u[j] - truth[j]) < 3e-3); /* but for the prior's pull */
+    assert_true(r.misfit < 0.1);
+    sf_mapping_free(&r);
+}
+
+static sf_status failing_simulate(void *context, const double *u, double *y, sf_error *err) {
+    (void)context;
+    (void)u;
+    (void)y;
+    return SF_FAIL(err, SF_ERR_NUMERIC, "the drop collapsed");
+}
+
+static void mapping_passes_on_a_failed_simulation(void **state) {
+    (void)state;
+    toy t = {.linear = true};
+    const double measured[3] = {0};
+    sf_mapping_problem p = toy_problem(&t, measured);
+    p.simulate = failing_simulate;
+    sf_mapping_result r;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_mapping_solve(&p, &r, &err), SF_ERR_NUMERIC);
+    assert_string_equal(err.text, "the drop collapsed");
+    sf_mapping_free(&r);
+}
+
+/* ---- input and program ---- */
+
+#define DROPS(text) "drops = ( { name = \"a\"; case = \"case.cfg\"; " text " } );\n"
+#define MATERIAL "material = \"start.cfg\";\n"
+#define GOOD MATERIAL DROPS("a_max_g = 60.0; HIC = 180.0;")
+
+static void put(const program_place *place, const char *name, const char *text) {
+    program_write_file(program_path(place, name), text, strlen(text));
+}
+
+/* The case of the 70 mm drop with a coarse mesh, and a start material. */
+static void put_case(const program_place *place) {
+    char text[4096];
+    const char *source = getenv("SF_SOURCE_DIR");
+    snprintf(
+        text, sizeof text,
+        "geometry: { file = \"%s/geo/pad.geo\"; missile_file = \"%s/geo/hemisphere.geo\"; length_unit = "
+        "\"mm\";\n"
+        "parameters = { side = 320.0; thickness = 70.0; zone_side = 200.0; fine_spacing = 17.5; "
+        "outer_spacing = "
+        "30.0; quarter = 1; };\nmissile_parameters = { diameter = 160.0; element_size = 15.0; quarter = 1; "
+        "}; };\n"
+        "material: {\n@include \"start.cfg\"\n};\nmissile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
+        "solver: { end_time = \"40 ms\"; };\n",
+        source, source);
+    put(place, "case.cfg", text);
+    put(place, "start.cfg",
+        "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"start.csv\"; HU = 0.01; ED = \"2 MPa\"; "
+        "BETA1 = \"5000 1/s\";\n");
+    put(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
+}
+
+static void bad_input_gets_one_sentence(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+    } bad[] = {
+        {MATERIAL, "drops is missing"},
+        {MATERIAL "drops = 3;\n", "drops must be a list"},
+        {MATERIAL "drops = ( 3 );\n", "each entry must be a group"},
+        {DROPS("a_max_g = 60.0;"), "material is missing"},
+        {"material = \"none.cfg\";\n" DROPS("a_max_g = 60.0;"), "none.cfg cannot be read"},
+        {MATERIAL DROPS(""), "the drop \"a\" has no a_max_g, no HIC and no curve"},
+        {MATERIAL DROPS("a_max_g = -3.0;"), "a_max_g is -3, outside"},
+        {MATERIAL DROPS("a_max_g = \"60 g\";"), "a_max_g must be a number"},
+        {MATERIAL DROPS("HIC = 100.0; HIC_sd = 0.0;"), "HIC_sd is 0, outside"},
+        {MATERIAL DROPS("amax = 60.0;"), "unknown key \"amax\"; the keys here are name, case, a_max_g"},
+        {MATERIAL DROPS("curve = \"none.csv\";"), "none.csv cannot be read"},
+        {MATERIAL DROPS("curve = \"start.csv\";"), "start.csv"},
+        {MATERIAL "drops = ( { name = \"a b\"; case = \"case.cfg\"; HIC = 3.0; } );\n", "begins file names"},
+        {MATERIAL
+         "drops = ( { name = \"a\"; case = \"case.cfg\"; HIC = 3.0; }, { name = \"a\"; case = \"case.cfg\"; "
+         "HIC = 3.0; } );\n",
+         "two drops are called \"a\""},
+        {MATERIAL "drops = ( { case = \"none.cfg\"; HIC = 3.0; } );\n", "none.cfg cannot be read"},
+        {GOOD "colour = 3;\n", "unknown key \"colour\""},
+        {GOOD "curve_form = \"spline\";\n", "gas or table is expected"},
+        {GOOD "name = \"a/b\";\n", "no slashes"},
+        {GOOD "start: { p0 = \"3 kg\"; };\n", "p0: "},
+        {GOOD "start: { q0 = \"3 kPa\"; };\n", "\"q0\" is no parameter of the foam"},
+        {GOOD "start: { m = 0.5; };\n", "m is 0.5, outside 1 to 10"},
+        {GOOD "start = 3;\n", "start must be a group"},
+        {GOOD "unknown = ( { name = \"p1\"; } );\n", "\"p1\" is no parameter of the foam"},
+        {GOOD "unknown = ( { name = \"stress_scale\"; } );\n", "belongs to curve_form = \"table\""},
+        {GOOD "unknown = ( { name = \"eta\"; } );\n", "eta is 0 in the start material"},
+        {GOOD "unknown = ( { name = \"p0\"; }, { name = \"p0\"; } );\n", "p0 is unknown twice"},
+        {GOOD "unknown = ( { name = \"p0\"; prior_sd = 0.0; } );\n", "prior_sd is 0, outside"},
+        {GOOD "start = ;\n", "syntax error"},
+    };
+    program_place place;
+    program_set_up(&place);
+    put_case(&place);
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        put(&place, "fit.cfg", bad[k].text);
+        program_result r = program_run(&place, "fit", "drop fit.cfg -o out");
+        if (r.code == 0 || !strstr(r.err, bad[k].sentence) || strchr(r.err, '\n') != strrchr(r.err, '\n'))
+            fail_msg("%s\nexit code %d, expected \"%s\", got: %s", bad[k].text, r.code, bad[k].sentence,
+                     r.err);
+    }
+    program_tear_down(&place);
+}
+
+/* Coarse drops with a hidden foam are identified: the responses are met, the second run simulates nothing. */
+static void hidden_foam_is_found(void **state) {
+    (void)state;
+    static const char *const speed[2] = {"4.5 m/s", "6.2 m/s"};
+    program_place place;
+    double a_max[2], hic[2];
+    char text[1024];
+    program_set_up(&place);
+    put_case(&place);
+    put(&place, "hidden.cfg",
+        "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"hidden.csv\"; HU = 0.01; ED = \"3 MPa\"; "
+        "BETA1 = \"5000 1/s\";\n");
+    FILE *curve = fopen(program_path(&place, "hidden.csv"), "w");
+    assert_non_null(curve);
+    fputs("strain,stress_Pa\n", curve);
+    for (int k = 0; k <= 95; k++)
+        fprintf(curve, "%g,%.9g\n", 0.01 * k, sf_gas_curve_stress(&eva, 0.01 * k));
+    fclose(curve);
+    for (int k = 0; k < 2; k++) {
+        program_succeed(&place, "pre",
+                        "case.cfg --set material=@hidden.cfg --set missile.velocity='%s' -o m.h5 --force",
+                        speed[k]);
+        program_succeed(&place, "solve", "m.h5 -o r.h5 --force");
+        program_succeed(&place, "post", "r.h5 -o post --force");
+        program_bytes json = program_read_file(program_path(&place, "post/summary.json"));
+        assert_int_equal(sscanf(strstr(json.data, "\"a_max_g\":"), "\"a_max_g\": %lf", &a_max[k]), 1);
+        assert_int_equal(sscanf(strstr(json.data, "\"hic\":"), "\"hic\": %lf", &hic[k]), 1);
+        free(json.data);
+    }
+    program_shell(&place, "sed 's/4.5 m/6.2 m/' case.cfg > fast.cfg");
+    snprintf(text, sizeof text,
+             "material = \"start.cfg\";\nunknown = ( { name = \"p0\"; }, { name = \"B\"; }, { name = \"ED\"; "
+             "} );\n"
+             "start: { m = 2.8; s0 = \"7.4 kPa\"; };\n"
+             "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = %.9g; HIC = %.9g; },\n"
+             "{ name = \"fast\"; case = \"fast.cfg\"; a_max_g = %.9g; HIC = %.9g; } );\n",
+             a_max[0], hic[0], a_max[1], hic[1]);
+    put(&place, "fit.cfg", text);
+    program_succeed(&place, "fit", "drop fit.cfg -o out -t 1");
+    program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
+    const char *at = json.data;
+    for (int k = 0; k < 2; k++) { /* within a fifth of a standard deviation of the data */
+        double a, h;
+        at = strstr(at, "\"a_max_g\":");
+        assert_non_null(at);
+        assert_int_equal(sscanf(at, "\"a_max_g\": %lf", &a), 1);
+        at = strstr(at, "\"hic\":");
+        assert_int_equal(sscanf(at, "\"hic\": %lf", &h), 1);
+        assert_true(fabs(a / a_max[k] - 1) < 0.004 && fabs(h / hic[k] - 1) < 0.008);
+    }
+    assert_non_null(strstr(json.data, "\"converged\": true"));
+    free(json.data);
+    program_result again = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
+    assert_true(again.code == 2 && strstr(again.err, "--force"));
+    again = program_succeed(&place, "fit", "drop fit.cfg -o out -t 1 --force");
+    assert_non_null(strstr(again.out, "\n0 drops simulated"));
+    program_succeed(&place, "pre", "case.cfg --set material=@out/material.cfg -o m.h5 --force");
+    program_tear_down(&place);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gas_curve_rises_from_its_modulus),
+        cmocka_unit_test(gas_curve_table_is_the_curve),
+        cmocka_unit_test(column_point_is_the_foam_law),
+        cmocka_unit_test(columns_are_the_closed_form),
+        cmocka_unit_test(column_drop_keeps_energy),
+        cmocka_unit_test(mapping_of_a_linear_problem_is_bayes),
+        cmocka_unit_test(mapping_finds_the_minimum_of_the_simulation),
+        cmocka_unit_test(mapping_passes_on_a_failed_simulation),
+        cmocka_unit_test(bad_input_gets_one_sentence),
+        cmocka_unit_test(hidden_foam_is_found),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
