@@ -49,7 +49,11 @@ static const variation variations[] = {
     {PAD, "friction 0.5", {"missile.friction=0.5"}, 0, 0},
     {MATERIAL, "DAMP 0", {"material.DAMP=0.0"}, 0, 0},
     {MATERIAL, "DAMP with L = 5 mm everywhere", {"material.damp_length=5 mm"}, 0, 0},
-    {MATERIAL, "Kelvin 686 Pa s instead of Maxwell", {"material.ED=0 Pa", "material.eta=686 Pa s"}, 0, 0},
+    {MATERIAL,
+     "Kelvin 858 Pa s (ED / BETA1) instead of Maxwell",
+     {"material.ED=0 Pa", "material.eta=858 Pa s"},
+     0,
+     0},
     {MATERIAL, "no rate term", {"material.ED=0 Pa"}, 0, 0},
     {MATERIAL, "no hysteresis (HU = 1)", {"material.HU=1.0"}, 0, 0},
     {MATERIAL, "curve cut at 80 %, then H1", {"material.densification.start=0.8"}, 0, 0},
@@ -66,7 +70,7 @@ static void conclude(sf_study *study, const sf_drop *base, const sf_drop *drop) 
     sf_study_text(study, "\n| kind | largest change of a_max (%%) | by |\n|---|---|---|\n");
     for (int kind = 0; kind < KINDS; kind++) {
         int worst = -1;
-        double largest = -1;
+        double largest = 0;
         for (int k = 0; k < VARIATIONS; k++) {
             double change = 100 * fabs(drop[k].a_max_g / base->a_max_g - 1);
             if ((int)variations[k].kind == kind && change > largest) {
