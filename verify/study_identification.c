@@ -278,8 +278,14 @@ static void study_choice(sf_study *s, const truth *t, gsl_rng *random) {
     else
         sf_study_check(s, right, CHOICES - 1, CHOICES, "%s: choices of %d that find the rate dependence",
                        t->name, CHOICES);
-    if (err.status ==
-        SF_OK) /* H1 is H2 with its limit at 1: scatter may hide a limit near it, not make one up */
+    /* H1 is H2 with its limit at 1. Scatter must not make up a limit; tests to 80 % need not reveal one. */
+    if (err.status == SF_OK && t->rule == SF_RULE_H2)
+        sf_study_text(
+            s,
+            "%s: %d of %d find the limit below 1; the others take H1, which follows data to %g %% as well "
+            "with a parameter less. Only longer tests tell.\n\n",
+            t->name, rule, CHOICES, 100 * TURN);
+    else if (err.status == SF_OK)
         sf_study_check(s, rule, CHOICES - 2, CHOICES, "%s: choices of %d that find the densification rule",
                        t->name, CHOICES);
     close_laboratory(&lab);
