@@ -20,7 +20,7 @@ target_compile_definitions(softfall_options INTERFACE _GNU_SOURCE)
 target_compile_options(softfall_options INTERFACE
     -Wall -Wextra -Wshadow -Wconversion -Wmissing-prototypes -Wvla
     # No errno and no traps from sqrt and friends: lets loops over lanes vectorise without changing any result.
-    -fno-math-errno -fno-trapping-math)
+    -fno-math-errno -fno-trapping-math -fopenmp-simd)
 if(SOFTFALL_WERROR)
     target_compile_options(softfall_options INTERFACE -Werror)
 endif()

@@ -47,7 +47,7 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
     double inverse = s->dt_old > 0 ? 2 / s->dt_old : 0;
     for (int l = 0; l < count; l++) {
         int64_t i = first + l;
-        double v = m->volume[i], c = op->stability[i] * s->tightness, stored, lost;
+        double v = m->volume[i], c = op->stability[i] * s->tightness;
         for (int k = 0; k < 9; k++) {
             s->f[9 * i + k] = b->f[k][l];
             s->stress[9 * i + k] = v * b->p[k][l];
@@ -62,9 +62,8 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
         }
         for (int k = 0; k < 6 && b->directions; k++)
             s->directional[6 * i + k] = b->directional[k][l];
-        sf_foam_energies(&op->foam, b->energy[l], b->peak[l], &stored, &lost);
-        sum->stored += v * stored;
-        sum->hysteresis += v * lost;
+        sum->stored += v * b->stored[l];
+        sum->hysteresis += v * b->lost[l];
         sum->viscous += v * b->work[l];
         sum->load = fmax(sum->load, op->stability[i] * s->tangent[i]);
         sum->shortest = fmin(sum->shortest, fmin(b->stretch[0][l], fmin(b->stretch[1][l], b->stretch[2][l])));
