@@ -6,31 +6,51 @@
 #include <math.h>
 #include <string.h>
 
-/* F of one domain, row-major. */
-static inline void deformation_gradient(const sf_model *m, const double *restrict d, int64_t l, double f[9]) {
-    double g[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
-        const double *restrict x = &d[3 * (int64_t)m->domain_node[k]], *restrict b = &m->domain_b[3 * k];
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                g[3 * i + j] += x[i] * b[j];
+/* Columns of F - I = sum d_J B_J^T of one domain. Two sums run side by side, because each addition waits for
+ * the one before. */
+static inline void displacement_gradient(const sf_vec *restrict d, const uint16_t *restrict local,
+                                         const double *restrict b, int64_t count, sf_vec g[3]) {
+    sf_vec even[3] = {{0}, {0}, {0}}, odd[3] = {{0}, {0}, {0}};
+    for (int64_t k = 0; k + 1 < count; k += 2) {
+        sf_vec x = d[local[k]], y = d[local[k + 1]];
+        for (int c = 0; c < 3; c++) {
+            even[c] += x * b[3 * k + c];
+            odd[c] += y * b[3 * k + 3 + c];
+        }
     }
-    memcpy(f, g, sizeof g);
+    for (int c = 0; c < 3; c++) {
+        g[c] = even[c] + odd[c];
+        if (count % 2)
+            g[c] += d[local[count - 1]] * b[3 * (count - 1) + c];
+    }
 }
 
-/* Lanes first .. first + count - 1 of a batch from the state; spare lanes are an undeformed point. */
-static void load_batch(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t block, int count,
-                       sf_foam_batch *b) {
+/* The coefficients that group g sees, into its array. */
+static void gather_group(const sf_halo *h, int64_t g, const double *d) {
+    for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++) {
+        const double *x = &d[3 * (int64_t)h->node[q]];
+        h->work[q] = (sf_vec){x[0], x[1], x[2]};
+    }
+}
+
+/* Lanes first .. first + count - 1 of a batch from the state and the gathered coefficients `d`; spare lanes
+ * are an undeformed point. */
+static void load_batch(const sf_model *m, const sf_operators *op, const sf_state *s, const sf_vec *d,
+                       int64_t block, int count, sf_foam_batch *b) {
     int64_t first = block * SF_LANES;
     for (int l = 0; l < SF_LANES; l++) {
-        double f[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-        const double *old = l < count ? &s->f[9 * (first + l)] : f;
+        static const double rest[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+        const double *old = l < count ? &s->f[9 * (first + l)] : rest;
+        sf_vec g[3] = {{0}, {0}, {0}};
+        if (l < count) {
+            int64_t k = m->domain_ptr[first + l], end = m->domain_ptr[first + l + 1];
+            displacement_gradient(d, &op->halo.local[k], &m->domain_b[3 * k], end - k, g);
+        }
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                b->f[3 * r + c][l] = (r == c) + g[c][r];
         for (int k = 0; k < 9; k++)
             b->f_old[k][l] = old[k];
-        if (l < count)
-            deformation_gradient(m, s->d, first + l, f);
-        for (int k = 0; k < 9; k++)
-            b->f[k][l] = f[k];
         b->length[l] = l < count ? op->damp_length[first + l] : 1;
     }
     memcpy(b->maxwell, &s->maxwell[block * 6 * SF_LANES], sizeof b->maxwell);
@@ -74,19 +94,29 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
     }
 }
 
+static void update_chunk(const sf_model *m, const sf_operators *op, sf_state *s, const sf_vec *d,
+                         int64_t chunk) {
+    sf_partial *sum = &s->partial[chunk];
+    *sum = (sf_partial){.step = INFINITY, .jacobian = INFINITY, .shortest = INFINITY};
+    for (int64_t block = chunk * (SF_CHUNK / SF_LANES);
+         block < (chunk + 1) * (SF_CHUNK / SF_LANES) && block * SF_LANES < m->node_count; block++) {
+        sf_foam_batch batch;
+        int64_t left = m->node_count - block * SF_LANES;
+        int count = left < SF_LANES ? (int)left : SF_LANES;
+        batch.directions = sf_time_step_due(s);
+        load_batch(m, op, s, d, block, count, &batch);
+        sf_foam_update(&op->foam, s->dt_old, &batch);
+        store_batch(m, op, s, block, count, &batch, sum);
+    }
+}
+
 void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {
-#pragma omp parallel for default(none) shared(m, op, s) schedule(static)
-    for (int64_t chunk = 0; chunk < s->chunk_count; chunk++) {
-        sf_partial *sum = &s->partial[chunk];
-        *sum = (sf_partial){.step = INFINITY, .jacobian = INFINITY, .shortest = INFINITY};
-        for (int64_t block = chunk * (SF_CHUNK / SF_LANES);
-             block < (chunk + 1) * (SF_CHUNK / SF_LANES) && block * SF_LANES < m->node_count; block++) {
-            sf_foam_batch batch = {.directions = sf_time_step_due(s)};
-            int64_t left = m->node_count - block * SF_LANES;
-            int count = left < SF_LANES ? (int)left : SF_LANES;
-            load_batch(m, op, s, block, count, &batch);
-            sf_foam_update(&op->foam, s->dt_old, &batch);
-            store_batch(m, op, s, block, count, &batch, sum);
-        }
+    static const int64_t chunks = SF_GROUP / SF_CHUNK;
+    const sf_halo *h = &op->halo;
+#pragma omp parallel for default(none) shared(m, op, s, h, chunks) schedule(static)
+    for (int64_t g = 0; g < h->group_count; g++) {
+        gather_group(h, g, s->d);
+        for (int64_t chunk = g * chunks; chunk < (g + 1) * chunks && chunk < s->chunk_count; chunk++)
+            update_chunk(m, op, s, &h->work[h->ptr[g]], chunk);
     }
 }
