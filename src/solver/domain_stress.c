@@ -27,10 +27,8 @@ static inline void displacement_gradient(const sf_vec *restrict d, const uint16_
 
 /* The coefficients that group g sees, into its array. */
 static void gather_group(const sf_halo *h, int64_t g, const double *d) {
-    for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++) {
-        const double *x = &d[3 * (int64_t)h->node[q]];
-        h->work[q] = (sf_vec){x[0], x[1], x[2]};
-    }
+    for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
+        h->work[q] = sf_vec_load(&d[3 * (int64_t)h->node[q]]);
 }
 
 /* Lanes first .. first + count - 1 of a batch from the state and the gathered coefficients `d`; spare lanes
