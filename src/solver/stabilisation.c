@@ -11,12 +11,13 @@ double sf_stabilisation_node(const sf_model *m, const double *pair, const double
         double weight = pair[k] * (stiffness[i] + stiffness[j]);
         sf_vec arm = sf_vec_load(&m->position[3 * j]) - xi, dj = sf_vec_load(&d[3 * j]);
         sf_vec_columns(&f[9 * j], fj);
-        sf_vec explained = (fi[0] + fj[0]) * arm[0] + (fi[1] + fj[1]) * arm[1] + (fi[2] + fj[2]) * arm[2];
-        sf_vec e = arm + (dj - di) - 0.5 * explained, pull = weight * e;
-        sum += pair[k] * e * e;
+        sf_vec half = 0.5 * arm;
+        sf_vec explained = (fi[0] + fj[0]) * half[0] + (fi[1] + fj[1]) * half[1] + (fi[2] + fj[2]) * half[2];
+        sf_vec e = arm + (dj - di) - explained, pull = weight * e;
+        sum += pair[k] * (e * e);
         out += pull;
         for (int c = 0; c < 3; c++)
-            moment[c] -= pull * (0.5 * arm[c]);
+            moment[c] -= pull * half[c];
     }
     for (int r = 0; r < 3; r++) {
         force[r] = out[r];
