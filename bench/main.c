@@ -45,6 +45,21 @@ static double held_bytes(void) {
     return (double)info.uordblks + (double)info.hblkhd;
 }
 
+/* Bytes of the model's arrays. What meshing leaves behind in the heap does not count. */
+static double model_bytes(const sf_model *m) {
+    static const double size[] = {
+        [SF_MODEL_F64] = 8, [SF_MODEL_I32] = 4, [SF_MODEL_I64] = 8, [SF_MODEL_U8] = 1};
+    const char *base = (const char *)m;
+    size_t count;
+    const sf_model_field *field = sf_model_fields(&count);
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        if (field[k].rows_offset != SIZE_MAX && *(void *const *)(base + field[k].offset))
+            sum += size[field[k].type] * field[k].columns *
+                   (double)(*(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra);
+    return sum;
+}
+
 static int parse_list(const char *text, double *out) {
     int count = 0;
     for (char *end; *text && count < MOST; text = *end == ',' ? end + 1 : end) {
@@ -271,10 +286,12 @@ static sf_status run_model(const options *o, double spacing, bool full, sf_json 
     sf_model model = {0};
     sf_operators operators = {0};
     struct rusage usage;
-    double before = held_bytes();
-    if (build(o, spacing, full, &model, err) == SF_OK &&
-        sf_operators_build(&model, &operators, err) == SF_OK) {
-        sf_model_drop_mesh(&model);
+    double before;
+    if (build(o, spacing, full, &model, err) != SF_OK)
+        return err->status;
+    sf_model_drop_mesh(&model);
+    before = held_bytes() - model_bytes(&model);
+    if (sf_operators_build(&model, &operators, err) == SF_OK) {
         sf_model_drop_domain_nodes(&model);
         sf_json_open(json, NULL, '{');
         sf_json_number(json, "core_spacing_mm", spacing);
