@@ -19,8 +19,10 @@ add_library(softfall_options INTERFACE)
 target_compile_definitions(softfall_options INTERFACE _GNU_SOURCE)
 target_compile_options(softfall_options INTERFACE
     -Wall -Wextra -Wshadow -Wconversion -Wmissing-prototypes -Wvla
+    # Vectors pass between static inline functions only: how a call would pass them without AVX does not matter.
+    -Wno-psabi
     # No errno and no traps from sqrt and friends: lets loops over lanes vectorise without changing any result.
-    -fno-math-errno -fno-trapping-math)
+    -fno-math-errno -fno-trapping-math -fopenmp-simd)
 if(SOFTFALL_WERROR)
     target_compile_options(softfall_options INTERFACE -Werror)
 endif()

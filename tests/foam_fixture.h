@@ -3,6 +3,7 @@
 #ifndef SF_TESTS_FOAM_FIXTURE_H
 #define SF_TESTS_FOAM_FIXTURE_H
 
+#include "foam_reference.h"
 #include "point_fixture.h"
 #include "solver/foam.h"
 

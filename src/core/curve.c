@@ -158,3 +158,27 @@ void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, dou
     *slope = p->c[1] + t * (2 * p->c[2] + t * 3 * p->c[3]);
     *energy = p->energy + t * (p->c[0] + t * (p->c[1] / 2 + t * (p->c[2] / 3 + t * p->c[3] / 4)));
 }
+
+void sf_curve_evaluate_lanes(const sf_curve *curve, const double strain[SF_LANES], double stress[SF_LANES],
+                             double slope[SF_LANES], double energy[SF_LANES]) {
+    const sf_curve_piece *piece = curve->piece;
+    double step = curve->step, start = curve->start, inverse = 1 / step;
+    int dense = 0;
+#pragma omp simd reduction(| : dense)
+    for (int l = 0; l < SF_LANES; l++) {
+        double inside = sf_smaller(sf_larger(strain[l], 0), start);
+        int k = (int)(inside * inverse);
+        k = k < SF_CURVE_INTERVALS ? k : SF_CURVE_INTERVALS - 1;
+        const sf_curve_piece *p = &piece[k];
+        double t = inside - k * step;
+        stress[l] = p->c[0] + t * (p->c[1] + t * (p->c[2] + t * p->c[3]));
+        slope[l] = p->c[1] + t * (2 * p->c[2] + t * 3 * p->c[3]);
+        energy[l] = p->energy + t * (p->c[0] + t * (p->c[1] / 2 + t * (p->c[2] / 3 + t * p->c[3] / 4)));
+        dense |= strain[l] >= start;
+    }
+    if (!dense)
+        return;
+    for (int l = 0; l < SF_LANES; l++) /* few points at any time */
+        if (strain[l] >= start)
+            evaluate_densification(curve, strain[l], &stress[l], &slope[l], &energy[l]);
+}

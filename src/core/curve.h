@@ -11,6 +11,7 @@
 #define SF_CORE_CURVE_H
 
 #include "core/error.h"
+#include "core/lanes.h"
 #include "core/model.h"
 
 enum { SF_CURVE_INTERVALS = 1024 };
@@ -41,5 +42,9 @@ void sf_curve_free(sf_curve *curve);
 /* Stress (Pa), slope (Pa) and energy (J m-3) at a compressive strain 0 <= strain < limit. At or beyond the
  * limit all three are infinite. */
 void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, double *slope, double *energy);
+
+/* The same at SF_LANES strains; one below 0 counts as 0, NaN too. */
+void sf_curve_evaluate_lanes(const sf_curve *curve, const double strain[SF_LANES], double stress[SF_LANES],
+                             double slope[SF_LANES], double energy[SF_LANES]);
 
 #endif

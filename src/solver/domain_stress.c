@@ -6,31 +6,49 @@
 #include <math.h>
 #include <string.h>
 
-/* F of one domain, row-major. */
-static inline void deformation_gradient(const sf_model *m, const double *restrict d, int64_t l, double f[9]) {
-    double g[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
-        const double *restrict x = &d[3 * (int64_t)m->domain_node[k]], *restrict b = &m->domain_b[3 * k];
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                g[3 * i + j] += x[i] * b[j];
+/* Columns of F - I = sum d_J B_J^T of one domain. Two sums run side by side, because each addition waits for
+ * the one before. */
+static inline void displacement_gradient(const sf_vec *restrict d, const uint16_t *restrict local,
+                                         const double *restrict b, int64_t count, sf_vec g[3]) {
+    sf_vec even[3] = {{0}, {0}, {0}}, odd[3] = {{0}, {0}, {0}};
+    for (int64_t k = 0; k + 1 < count; k += 2) {
+        sf_vec x = d[local[k]], y = d[local[k + 1]];
+        for (int c = 0; c < 3; c++) {
+            even[c] += x * b[3 * k + c];
+            odd[c] += y * b[3 * k + 3 + c];
+        }
     }
-    memcpy(f, g, sizeof g);
+    for (int c = 0; c < 3; c++) {
+        g[c] = even[c] + odd[c];
+        if (count % 2)
+            g[c] += d[local[count - 1]] * b[3 * (count - 1) + c];
+    }
 }
 
-/* Lanes first .. first + count - 1 of a batch from the state; spare lanes are an undeformed point. */
-static void load_batch(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t block, int count,
-                       sf_foam_batch *b) {
+/* The coefficients that group g sees, into its array. */
+static void gather_group(const sf_halo *h, int64_t g, const double *d) {
+    for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
+        h->work[q] = sf_vec_load(&d[3 * (int64_t)h->node[q]]);
+}
+
+/* Lanes first .. first + count - 1 of a batch from the state and the gathered coefficients `d`; spare lanes
+ * are an undeformed point. */
+static void load_batch(const sf_model *m, const sf_operators *op, const sf_state *s, const sf_vec *d,
+                       int64_t block, int count, sf_foam_batch *b) {
     int64_t first = block * SF_LANES;
     for (int l = 0; l < SF_LANES; l++) {
-        double f[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-        const double *old = l < count ? &s->f[9 * (first + l)] : f;
+        static const double rest[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+        const double *old = l < count ? &s->f[9 * (first + l)] : rest;
+        sf_vec g[3] = {{0}, {0}, {0}};
+        if (l < count) {
+            int64_t k = m->domain_ptr[first + l], end = m->domain_ptr[first + l + 1];
+            displacement_gradient(d, &op->halo.local[k], &m->domain_b[3 * k], end - k, g);
+        }
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                b->f[3 * r + c][l] = (r == c) + g[c][r];
         for (int k = 0; k < 9; k++)
             b->f_old[k][l] = old[k];
-        if (l < count)
-            deformation_gradient(m, s->d, first + l, f);
-        for (int k = 0; k < 9; k++)
-            b->f[k][l] = f[k];
         b->length[l] = l < count ? op->damp_length[first + l] : 1;
     }
     memcpy(b->maxwell, &s->maxwell[block * 6 * SF_LANES], sizeof b->maxwell);
@@ -38,56 +56,92 @@ static void load_batch(const sf_model *m, const sf_operators *op, const sf_state
     memcpy(b->rate, &s->rate[block * SF_LANES], sizeof b->rate);
 }
 
-static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, int64_t block, int count,
-                        const sf_foam_batch *b, sf_partial *sum) {
-    int64_t first = block * SF_LANES;
-    memcpy(&s->maxwell[block * 6 * SF_LANES], b->maxwell, sizeof b->maxwell);
-    memcpy(&s->peak[block * SF_LANES], b->peak, sizeof b->peak);
-    memcpy(&s->rate[block * SF_LANES], b->rate, sizeof b->rate);
-    double inverse = s->dt_old > 0 ? 2 / s->dt_old : 0;
+/* Bounds of the time step: effective tangents, and the smallest stable step of every domain; none for a spare
+ * lane. */
+static void bound_steps(const double stability[SF_LANES], double tightness, double dt_old,
+                        const sf_foam_batch *b, double tangent[SF_LANES], double step[SF_LANES]) {
+    double inverse = dt_old > 0 ? 2 / dt_old : 0;
+    for (int l = 0; l < SF_LANES; l++) {
+        tangent[l] = 0;
+        step[l] = INFINITY;
+    }
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double a = b->direction_tangent[i][l], eta = b->direction_viscosity[i][l];
+            tangent[l] = sf_larger(a + eta * inverse, tangent[l]);
+            step[l] = sf_smaller(sf_stability_step(stability[l] * tightness, a, eta), step[l]);
+        }
+}
+
+/* Sums and extremes of a batch, domain by domain. */
+static void add_batch(const sf_model *m, const double stability[SF_LANES], const double tangent[SF_LANES],
+                      const double step[SF_LANES], int64_t first, int count, const sf_foam_batch *b,
+                      sf_partial *sum) {
     for (int l = 0; l < count; l++) {
-        int64_t i = first + l;
-        double v = m->volume[i], c = op->stability[i] * s->tightness, stored, lost;
-        for (int k = 0; k < 9; k++) {
-            s->f[9 * i + k] = b->f[k][l];
-            s->stress[9 * i + k] = v * b->p[k][l];
-        }
-        s->energy[i] = b->energy[l];
-        s->stiffness[i] = b->stiffness[l];
-        s->tangent[i] = 0;
-        for (int k = 0; k < 3; k++) {
-            double a = b->direction_tangent[k][l], eta = b->direction_viscosity[k][l];
-            s->tangent[i] = fmax(s->tangent[i], a + eta * inverse);
-            sum->step = fmin(sum->step, sf_stability_step(c, a, eta));
-        }
-        for (int k = 0; k < 6 && b->directions; k++)
-            s->directional[6 * i + k] = b->directional[k][l];
-        sf_foam_energies(&op->foam, b->energy[l], b->peak[l], &stored, &lost);
-        sum->stored += v * stored;
-        sum->hysteresis += v * lost;
+        double v = m->volume[first + l];
+        sum->stored += v * b->stored[l];
+        sum->hysteresis += v * b->lost[l];
         sum->viscous += v * b->work[l];
-        sum->load = fmax(sum->load, op->stability[i] * s->tangent[i]);
-        sum->shortest = fmin(sum->shortest, fmin(b->stretch[0][l], fmin(b->stretch[1][l], b->stretch[2][l])));
+        sum->step = sf_smaller(step[l], sum->step);
+        sum->load = sf_larger(stability[l] * tangent[l], sum->load);
+        for (int i = 0; i < 3; i++)
+            sum->shortest = sf_smaller(b->stretch[i][l], sum->shortest);
         if (!(b->jacobian[l] >= sum->jacobian) && !isnan(sum->jacobian)) { /* NaN is kept */
             sum->jacobian = b->jacobian[l];
-            sum->jacobian_node = i;
+            sum->jacobian_node = first + l;
         }
     }
 }
 
-void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {
-#pragma omp parallel for default(none) shared(m, op, s) schedule(static)
-    for (int64_t chunk = 0; chunk < s->chunk_count; chunk++) {
-        sf_partial *sum = &s->partial[chunk];
-        *sum = (sf_partial){.step = INFINITY, .jacobian = INFINITY, .shortest = INFINITY};
-        for (int64_t block = chunk * (SF_CHUNK / SF_LANES);
-             block < (chunk + 1) * (SF_CHUNK / SF_LANES) && block * SF_LANES < m->node_count; block++) {
-            sf_foam_batch batch = {.directions = sf_time_step_due(s)};
-            int64_t left = m->node_count - block * SF_LANES;
-            int count = left < SF_LANES ? (int)left : SF_LANES;
-            load_batch(m, op, s, block, count, &batch);
-            sf_foam_update(&op->foam, s->dt_old, &batch);
-            store_batch(m, op, s, block, count, &batch, sum);
+static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, int64_t block, int count,
+                        const sf_foam_batch *b, sf_partial *sum) {
+    int64_t first = block * SF_LANES;
+    double stability[SF_LANES] = {0}, tangent[SF_LANES], step[SF_LANES];
+    memcpy(stability, &op->stability[first], (size_t)count * sizeof *stability);
+    bound_steps(stability, s->tightness, s->dt_old, b, tangent, step);
+    add_batch(m, stability, tangent, step, first, count, b, sum);
+    memcpy(&s->maxwell[block * 6 * SF_LANES], b->maxwell, sizeof b->maxwell);
+    memcpy(&s->peak[block * SF_LANES], b->peak, sizeof b->peak);
+    memcpy(&s->rate[block * SF_LANES], b->rate, sizeof b->rate);
+    memcpy(&s->energy[first], b->energy, (size_t)count * sizeof *b->energy);
+    memcpy(&s->stiffness[first], b->stiffness, (size_t)count * sizeof *b->stiffness);
+    memcpy(&s->tangent[first], tangent, (size_t)count * sizeof *tangent);
+    for (int l = 0; l < count; l++) {
+        int64_t i = first + l;
+        double v = m->volume[i];
+        for (int k = 0; k < 9; k++) {
+            s->f[9 * i + k] = b->f[k][l];
+            s->stress[9 * i + k] = v * b->p[k][l];
         }
+        for (int k = 0; k < 6 && b->directions; k++)
+            s->directional[6 * i + k] = b->directional[k][l];
+    }
+}
+
+static void update_chunk(const sf_model *m, const sf_operators *op, sf_state *s, const sf_vec *d,
+                         int64_t chunk) {
+    sf_partial *sum = &s->partial[chunk];
+    *sum = (sf_partial){.step = INFINITY, .jacobian = INFINITY, .shortest = INFINITY};
+    for (int64_t block = chunk * (SF_CHUNK / SF_LANES);
+         block < (chunk + 1) * (SF_CHUNK / SF_LANES) && block * SF_LANES < m->node_count; block++) {
+        sf_foam_batch batch;
+        int64_t left = m->node_count - block * SF_LANES;
+        int count = left < SF_LANES ? (int)left : SF_LANES;
+        batch.directions = sf_time_step_due(s);
+        load_batch(m, op, s, d, block, count, &batch);
+        sf_foam_update(&op->foam, s->dt_old, &batch);
+        store_batch(m, op, s, block, count, &batch, sum);
+    }
+}
+
+void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {
+    static const int64_t chunks = SF_GROUP / SF_CHUNK;
+    const sf_halo *h = &op->halo;
+#pragma omp parallel for default(none) shared(m, op, s, h, chunks) schedule(static)
+    for (int64_t g = 0; g < h->group_count; g++) {
+        gather_group(h, g, s->d);
+        for (int64_t chunk = g * chunks; chunk < (g + 1) * chunks && chunk < s->chunk_count; chunk++)
+            update_chunk(m, op, s, &h->work[h->ptr[g]], chunk);
     }
 }

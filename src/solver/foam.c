@@ -42,18 +42,13 @@ void sf_foam_free(sf_foam *foam) {
     *foam = (sf_foam){0};
 }
 
-void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost) {
-    double s = foam->shape, hu = foam->hu;
-    *lost = peak * (1 - hu) * s / (1 + s);
-    *stored = peak > 0 ? energy * (hu + (1 - hu) * pow(energy / peak, s) / (1 + s)) : 0;
-}
-
-/* Principal law of one point: nominal stress, slope and energy of each stretch. */
+/* Principal law: nominal stress, slope and energy of each stretch. */
 typedef struct principal {
-    double t[3];        /* Pa */
-    double slope[3];    /* Pa */
-    double steepest[3]; /* Pa, the same; at rest, where tension meets compression, the larger of both sides */
-    double energy;      /* J m-3 */
+    double t[3][SF_LANES];        /* Pa */
+    double slope[3][SF_LANES];    /* Pa */
+    double steepest[3][SF_LANES]; /* Pa, the same; at rest, where tension meets compression, the larger of
+                                     both sides */
+    double energy[SF_LANES];      /* J m-3 */
 } principal;
 
 static const double REST = 1e-6; /* strain below which a direction counts as at rest */
@@ -63,29 +58,28 @@ static double rest_stiffness(const sf_foam *foam) {
     return fmax(foam->modulus, foam->curve[0].piece[0].c[1]);
 }
 
-static principal base_law(const sf_foam *foam, const double stretch[3]) {
-    principal law = {.energy = 0};
+static void base_law(const sf_foam *foam, double stretch[3][SF_LANES], principal *law) {
+    double modulus = foam->modulus, cutoff = foam->cutoff, yield = cutoff / modulus;
+    double rest = rest_stiffness(foam);
+    memset(law->energy, 0, sizeof law->energy);
     for (int i = 0; i < 3; i++) {
-        double strain = 1 - stretch[i], energy;
-        if (strain > 0) {
-            sf_curve_evaluate(&foam->curve[0], strain, &law.t[i], &law.slope[i], &energy);
-            law.t[i] = -law.t[i];
-        } else if (-strain * foam->modulus <= foam->cutoff) {
-            law.t[i] = -strain * foam->modulus;
-            law.slope[i] = foam->modulus;
-            energy = 0.5 * strain * strain * foam->modulus;
-        } else {
-            double yield = foam->cutoff / foam->modulus;
-            law.t[i] = foam->cutoff;
-            law.slope[i] = 0;
-            energy = foam->cutoff * (-strain - 0.5 * yield);
+        double strain[SF_LANES], stress[SF_LANES], slope[SF_LANES], energy[SF_LANES];
+        double *restrict t = law->t[i], *restrict tangent = law->slope[i],
+                         *restrict steepest = law->steepest[i];
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            strain[l] = 1 - stretch[i][l];
+        sf_curve_evaluate_lanes(&foam->curve[0], strain, stress, slope, energy);
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double pull = -strain[l] * modulus, work = 0.5 * strain[l] * strain[l] * modulus;
+            bool squeezed = strain[l] > 0, elastic = pull <= cutoff, still = fabs(strain[l]) < REST;
+            t[l] = squeezed ? -stress[l] : elastic ? pull : cutoff;
+            tangent[l] = squeezed ? slope[l] : elastic ? modulus : 0;
+            steepest[l] = still ? rest : tangent[l];
+            law->energy[l] += squeezed ? energy[l] : elastic ? work : cutoff * (-strain[l] - 0.5 * yield);
         }
-        law.steepest[i] = law.slope[i];
-        if (fabs(strain) < REST)
-            law.steepest[i] = rest_stiffness(foam);
-        law.energy += energy;
     }
-    return law;
 }
 
 double sf_foam_overstress(const sf_foam *foam, double strain, double rate, double *slope,
@@ -179,77 +173,99 @@ static void compose(const double value[3][SF_LANES], double v[9][SF_LANES], doub
 }
 
 /* Viscosity of DAMP (theory eq. 21), Pa s. */
-static double damp_viscosity(const sf_foam *foam, const sf_foam_batch *b, int l) {
-    return foam->damp * b->length[l] * sqrt(foam->density * b->stiffness[l]);
+static void damp_viscosity(const sf_foam *foam, const sf_foam_batch *b, double eta[SF_LANES]) {
+    double damp = foam->damp, density = foam->density;
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        eta[l] = damp * b->length[l] * sqrt(density * b->stiffness[l]);
 }
 
-/* Bounds by direction of lane l; `extra` is what the overstress adds to each. */
-static void bound_tangent(const sf_foam *foam, const principal *law, double softening, double extra,
-                          sf_foam_batch *b, int l) {
-    sf_foam_principal point = {.factor = b->factor[l], .softening = softening};
-    double a[3], eta[3];
-    for (int i = 0; i < 3; i++) {
-        point.stretch[i] = b->stretch[i][l];
-        point.stress[i] = law->t[i];
-        point.slope[i] = law->steepest[i];
-    }
-    sf_foam_tangent_elastic(&point, foam->maxwell, a);
-    sf_foam_tangent_viscous(point.stretch, foam->kelvin, damp_viscosity(foam, b, l), eta);
-    for (int i = 0; i < 3; i++) {
-        b->direction_tangent[i][l] = a[i] + extra;
-        b->direction_viscosity[i][l] = eta[i];
+/* Hysteresis (theory eq. 14 to 16) at W of the batch: its factor and `softening`, its derivative by W, the
+ * new largest W, and the energies. */
+static void hysteresis(const sf_foam *foam, sf_foam_batch *b, double softening[SF_LANES]) {
+    double hu = foam->hu, shape = foam->shape, power[SF_LANES];
+    double kept = (1 - hu) / (1 + shape);
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        power[l] = b->energy[l] < b->peak[l] ? b->energy[l] / b->peak[l] : 1;
+    for (int l = 0; l < SF_LANES && shape != 1; l++)
+        if (power[l] != 1)
+            power[l] = pow(power[l], shape);
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double w = b->energy[l], ratio = (1 - hu) * shape * power[l] / w;
+        bool unloaded = w < b->peak[l];
+        b->factor[l] = unloaded ? 1 - (1 - hu) * (1 - power[l]) : 1;
+        softening[l] = unloaded && w > 0 ? ratio : 0;
+        b->peak[l] = unloaded ? b->peak[l] : w;
+        b->stored[l] = w * (hu + kept * power[l]);
+        b->lost[l] = b->peak[l] * kept * shape;
     }
 }
 
-/* Elastic part of every lane: second Piola-Kirchhoff stress into s [6][lane], with energies and bounds. */
+/* Adds the rate overstress of every lane to the principal stresses `part`, books its work and says what it
+ * adds to the bounds. */
+static void rate_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double v[9][SF_LANES],
+                        double rate_of_e[6][SF_LANES], double part[3][SF_LANES], double extra[SF_LANES]) {
+    for (int l = 0; l < SF_LANES; l++) {
+        double e[6], s[3];
+        for (int k = 0; k < 6; k++)
+            e[k] = rate_of_e[k][l];
+        for (int i = 0; i < 3; i++)
+            s[i] = part[i][l];
+        extra[l] = add_overstress(foam, dt, b, l, v, e, s);
+        for (int i = 0; i < 3; i++) {
+            double quadratic = 0;
+            for (int p = 0; p < 3; p++)
+                for (int q = 0; q < 3; q++)
+                    quadratic += v[3 * p + i][l] * e[SYM[p][q]] * v[3 * q + i][l];
+            b->work[l] += (s[i] - part[i][l]) * quadratic * dt;
+            part[i][l] = s[i];
+        }
+    }
+}
+
+/* Elastic part of every lane: second Piola-Kirchhoff stress into s [6][lane], with energies and bounds; `eta`
+ * is the viscosity of DAMP. */
 static void elastic_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double c[6][SF_LANES],
-                           double rate_of_e[6][SF_LANES], double s[6][SF_LANES]) {
-    double v[9][SF_LANES], eigen[6][SF_LANES], principal_s[3][SF_LANES];
+                           double rate_of_e[6][SF_LANES], double s[6][SF_LANES], double eta[SF_LANES]) {
+    double v[9][SF_LANES], eigen[6][SF_LANES], part[3][SF_LANES], softening[SF_LANES], extra[SF_LANES] = {0};
+    double rest = rest_stiffness(foam);
+    principal law;
     memcpy(eigen, c, sizeof eigen);
     sf_foam_eigen(eigen, v);
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            b->stretch[i][l] = sqrt(eigen[i][l]);
+    base_law(foam, b->stretch, &law);
+    memcpy(b->energy, law.energy, sizeof b->energy);
+    hysteresis(foam, b, softening);
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            part[i][l] = b->factor[l] * law.t[i][l] / b->stretch[i][l];
+#pragma omp simd
     for (int l = 0; l < SF_LANES; l++) {
-        double stretch[3], factor = 1, softening = 0, extra = 0, part[3];
-        for (int i = 0; i < 3; i++)
-            b->stretch[i][l] = stretch[i] = sqrt(eigen[i][l]);
-        principal law = base_law(foam, stretch);
-        b->energy[l] = law.energy;
-        if (law.energy >= b->peak[l]) {
-            b->peak[l] = law.energy;
-        } else {
-            double ratio = law.energy / b->peak[l];
-            double power = foam->shape == 1 ? ratio : pow(ratio, foam->shape);
-            factor = 1 - (1 - foam->hu) * (1 - power);
-            if (law.energy > 0)
-                softening = (1 - foam->hu) * foam->shape * power / law.energy;
-        }
-        b->factor[l] = factor;
-        for (int i = 0; i < 3; i++)
-            part[i] = factor * law.t[i] / stretch[i];
-        b->stiffness[l] = fmax(rest_stiffness(foam), fmax(law.slope[0], fmax(law.slope[1], law.slope[2])));
-        if (foam->curve_count > 1 && dt > 0) {
-            double e[6];
-            for (int k = 0; k < 6; k++)
-                e[k] = rate_of_e[k][l];
-            extra = add_overstress(foam, dt, b, l, v, e, part);
-            b->work[l] = 0;
-            for (int i = 0; i < 3; i++) {
-                double quadratic = 0;
-                for (int p = 0; p < 3; p++)
-                    for (int q = 0; q < 3; q++)
-                        quadratic += v[3 * p + i][l] * e[SYM[p][q]] * v[3 * q + i][l];
-                b->work[l] += (part[i] - factor * law.t[i] / stretch[i]) * quadratic * dt;
-            }
-        } else {
-            b->work[l] = 0;
-        }
-        bound_tangent(foam, &law, softening, extra, b, l);
-        for (int i = 0; i < 3; i++)
-            principal_s[i][l] = part[i];
+        b->stiffness[l] =
+            sf_larger(law.slope[0][l], sf_larger(law.slope[1][l], sf_larger(law.slope[2][l], rest)));
+        b->work[l] = 0;
     }
-    compose(principal_s, v, s);
+    if (foam->curve_count > 1 && dt > 0)
+        rate_stress(foam, dt, b, v, rate_of_e, part, extra);
+    compose(part, v, s);
+    damp_viscosity(foam, b, eta);
+    sf_foam_tangent_elastic(&(sf_foam_principal){b->stretch, law.t, law.steepest, b->factor, softening},
+                            foam->maxwell, b->direction_tangent);
+    sf_foam_tangent_viscous(b->stretch, foam->kelvin, eta, b->direction_viscosity);
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            b->direction_tangent[i][l] += extra[l];
     if (b->directions) {
         double inverse = dt > 0 ? 2 / dt : 0, effective[3][SF_LANES];
         for (int i = 0; i < 3; i++)
+#pragma omp simd
             for (int l = 0; l < SF_LANES; l++)
                 effective[i][l] = b->direction_tangent[i][l] + inverse * b->direction_viscosity[i][l];
         compose(effective, v, b->directional);
@@ -266,7 +282,6 @@ static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
     double norm[SF_LANES] = {0}, work[SF_LANES] = {0};
     for (int k = 0; k < 6; k++) {
         double *restrict m = b->maxwell[k], *restrict out = s[k], *restrict rate = rate_of_e[k];
-        double *restrict geometric = b->directional[k];
         double twice = k < 3 ? 1 : 2;
 #pragma omp simd
         for (int l = 0; l < SF_LANES; l++) {
@@ -275,7 +290,11 @@ static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
             out[l] += m[l] + kelvin;
             work[l] += twice * (0.5 * (old + m[l]) + kelvin) * rate[l] * dt;
             norm[l] += twice * (m[l] + kelvin) * (m[l] + kelvin);
-            geometric[l] += m[l] + kelvin; /* dF S: exactly of the directional form */
+        }
+        if (b->directions) { /* dF S: exactly of the directional form */
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                b->directional[k][l] += m[l] + foam->kelvin * rate[l];
         }
     }
 #pragma omp simd
@@ -285,22 +304,19 @@ static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
         b->tangent[l] = b->viscosity[l] = 0;
         for (int i = 0; i < 3; i++) {
             b->direction_tangent[i][l] += geometric;
-            b->tangent[l] = fmax(b->tangent[l], b->direction_tangent[i][l]);
-            b->viscosity[l] = fmax(b->viscosity[l], b->direction_viscosity[i][l]);
+            b->tangent[l] = sf_larger(b->direction_tangent[i][l], b->tangent[l]);
+            b->viscosity[l] = sf_larger(b->direction_viscosity[i][l], b->viscosity[l]);
         }
     }
 }
 
 /* DAMP: sigma = DAMP rho c L D with everything current (theory eq. 21), added to p, and its work. */
-static void damping_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double a[9][SF_LANES]) {
-    double inverse = 1 / dt, rate[9][SF_LANES], jd[9][SF_LANES], eta[SF_LANES];
+static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF_LANES], sf_foam_batch *b) {
+    double inverse = 1 / dt, rate[9][SF_LANES], jd[9][SF_LANES];
     for (int k = 0; k < 9; k++)
 #pragma omp simd
         for (int l = 0; l < SF_LANES; l++)
             rate[k][l] = (b->f[k][l] - b->f_old[k][l]) * inverse;
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++)
-        eta[l] = damp_viscosity(foam, b, l);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++)
 #pragma omp simd
@@ -324,7 +340,8 @@ static void damping_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
 }
 
 void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *b) {
-    double c[6][SF_LANES], old[6][SF_LANES], rate_of_e[6][SF_LANES] = {{0}}, s[6][SF_LANES], a[9][SF_LANES];
+    double c[6][SF_LANES], old[6][SF_LANES], rate_of_e[6][SF_LANES] = {{0}}, s[6][SF_LANES], a[9][SF_LANES],
+                                             eta[SF_LANES];
     right_cauchy_green(b->f, c);
     if (dt > 0) {
         right_cauchy_green(b->f_old, old);
@@ -335,7 +352,7 @@ void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *b) {
                 rate_of_e[k][l] = half * (c[k][l] - old[k][l]);
     }
     cofactor(b, a);
-    elastic_stress(foam, dt, b, c, rate_of_e, s);
+    elastic_stress(foam, dt, b, c, rate_of_e, s, eta);
     viscous_stress(foam, dt, b, rate_of_e, s);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -344,5 +361,5 @@ void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *b) {
                 b->p[3 * i + j][l] = b->f[3 * i][l] * s[SYM[0][j]][l] + b->f[3 * i + 1][l] * s[SYM[1][j]][l] +
                                      b->f[3 * i + 2][l] * s[SYM[2][j]][l];
     if (foam->damp > 0 && dt > 0)
-        damping_stress(foam, dt, b, a);
+        damping_stress(dt, eta, a, b);
 }

@@ -8,9 +8,8 @@
 
 #include "core/curve.h"
 #include "core/error.h"
+#include "core/lanes.h"
 #include "core/model.h"
-
-enum { SF_LANES = 8 };
 
 typedef struct sf_foam {
     double density;      /* kg m-3 */
@@ -57,16 +56,14 @@ typedef struct sf_foam_batch {
     double directional[6][SF_LANES];         /* Pa, A with dF : dP <= trace(dF A dF^T), of a + 2 eta / dt, if
                                                 `directions` */
     double work[SF_LANES];                   /* J m-3, viscous work of the step */
+    double stored[SF_LANES], lost[SF_LANES]; /* J m-3, recoverable energy; energy lost to hysteresis */
 } sf_foam_batch;
 
 /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
 void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *batch);
 
-/* Recoverable energy and energy lost to hysteresis (J m-3) at W and its maximum (theory eq. 15, 16). */
-void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost);
-
-/* Rate overstress sigma(eps, rate) - sigma(eps, slowest curve) in Pa, interpolated over the logarithm of the rate
- * (s-1), with its derivatives by strain and rate. Needs two curves or more. */
+/* Rate overstress sigma(eps, rate) - sigma(eps, slowest curve) in Pa, interpolated over the logarithm of the
+ * rate (s-1), with its derivatives by strain and rate. Needs two curves or more. */
 double sf_foam_overstress(const sf_foam *foam, double strain, double rate, double *slope, double *rate_slope);
 
 /* Eigenvalues of symmetric matrices by cyclic Jacobi: a [6][lane] in, its diagonal = eigenvalues out, v

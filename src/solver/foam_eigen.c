@@ -9,18 +9,20 @@
 enum { MAX_SWEEPS = 8 };
 
 /* One rotation in the plane (p, q); r is the third index. The columns of v are given by their first row's
- * pointer: element (row, column) of v is v[3 * row + column]. */
+ * pointer: element (row, column) of v is v[3 * row + column]. With d = aqq - app, h = sqrt(d^2 + 4 apq^2) the
+ * tangent of the angle is 2 apq / (d +- h), and the eigenvalues move by (h - |d|) / 2. */
 static inline void rotate(double *restrict app, double *restrict aqq, double *restrict apq,
                           double *restrict arp, double *restrict arq, double v[9][SF_LANES], int p, int q) {
     double c[SF_LANES], s[SF_LANES];
 #pragma omp simd
     for (int l = 0; l < SF_LANES; l++) {
-        double d = aqq[l] - app[l], o = apq[l];
-        double t = 2 * o / (d + copysign(sqrt(d * d + 4 * o * o) + 1e-300, d));
-        c[l] = 1 / sqrt(1 + t * t);
-        s[l] = t * c[l];
-        app[l] -= t * o;
-        aqq[l] += t * o;
+        double d = aqq[l] - app[l], o = 2 * apq[l], oo = o * o;
+        double h = sqrt(d * d + oo), u = fabs(d) + h + 1e-150, r = 1 / sqrt(u * u + oo);
+        double shift = copysign(0.5 * (h - fabs(d)), d);
+        c[l] = u * r;
+        s[l] = copysign(1, d) * o * r;
+        app[l] -= shift;
+        aqq[l] += shift;
         apq[l] = 0;
         double rp = arp[l], rq = arq[l];
         arp[l] = c[l] * rp - s[l] * rq;
@@ -42,13 +44,14 @@ void sf_foam_eigen(double a[6][SF_LANES], double v[9][SF_LANES]) {
         for (int l = 0; l < SF_LANES; l++)
             v[k][l] = k % 4 == 0;
     for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
-        double worst = 0;
+        int left = 0;
+#pragma omp simd reduction(| : left)
         for (int l = 0; l < SF_LANES; l++) {
             double trace = a[0][l] + a[1][l] + a[2][l];
             double off = a[3][l] * a[3][l] + a[4][l] * a[4][l] + a[5][l] * a[5][l];
-            worst = fmax(worst, off / (trace * trace));
+            left |= off > 1e-34 * trace * trace;
         }
-        if (worst < 1e-34)
+        if (!left)
             break;
         rotate(a[0], a[1], a[3], a[5], a[4], v, 0, 1);
         rotate(a[0], a[2], a[5], a[3], a[4], v, 0, 2);

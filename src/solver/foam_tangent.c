@@ -4,54 +4,87 @@
 #include "solver/foam_tangent.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <string.h>
 
-/* Raises a[i], a[j] until a[j] x^2 + a[i] y^2 covers p x^2 + 2 o x y + q y^2, x = dF_ij, y = dF_ji; the
- * larger one first, since little of it then makes the other superfluous. */
-static void cover_pair(double *ai, double *aj, double p, double o, double q) {
-    if (*ai > *aj) {
-        double *other = ai;
-        ai = aj;
-        aj = other;
-        double swap = p;
-        p = q;
-        q = swap;
-    }
-    if (*ai >= q && *aj >= p && (*aj - p) * (*ai - q) >= o * o)
-        return;
-    *aj = fmax(*aj, p + fabs(o));
-    if (*aj > p)
-        *ai = fmax(*ai, q + o * o / (*aj - p));
+/* Raises ai, aj until aj x^2 + ai y^2 covers p x^2 + 2 o x y + q y^2, x = dF_ij, y = dF_ji; the larger one
+ * first, since little of it then makes the other superfluous. */
+static inline void cover_pair(double *ai, double *aj, double p, double o, double q) {
+    bool turned = *ai > *aj;
+    double low = turned ? *aj : *ai, high = turned ? *ai : *aj;
+    double under_high = turned ? q : p, under_low = turned ? p : q;
+    bool covered =
+        (low >= under_low) & (high >= under_high) & ((high - under_high) * (low - under_low) >= o * o);
+    double raised = sf_larger(under_high + fabs(o), high), room = raised - under_high;
+    double other = room > 0 ? sf_larger(under_low + o * o / room, low) : low;
+    high = covered ? high : raised;
+    low = covered ? low : other;
+    *ai = turned ? high : low;
+    *aj = turned ? low : high;
 }
 
-void sf_foam_tangent_elastic(const sf_foam_principal *law, double maxwell, double a[3]) {
-    const double *t = law->stress, *stretch = law->stretch;
-    double size = fabs(t[0]) + fabs(t[1]) + fabs(t[2]), half = 0.5 * maxwell;
-    for (int i = 0; i < 3; i++) /* |T_i| sum |T_j| covers the rank-one term T T^T of unloading */
-        a[i] = law->factor * law->slope[i] + law->softening * fabs(t[i]) * size +
-               maxwell * stretch[i] * stretch[i];
+void sf_foam_tangent_elastic(const sf_foam_principal *law, double maxwell, double a[3][SF_LANES]) {
+    double half = 0.5 * maxwell, size[SF_LANES];
+    const double *factor = law->factor, *softening = law->softening;
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        size[l] = fabs(law->stress[0][l]) + fabs(law->stress[1][l]) + fabs(law->stress[2][l]);
+    for (int i = 0; i < 3; i++) { /* |T_i| sum |T_j| covers the rank-one term T T^T of unloading */
+        const double *t = law->stress[i], *slope = law->slope[i], *stretch = law->stretch[i];
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            a[i][l] = factor[l] * slope[l] + softening[l] * fabs(t[l]) * size[l] +
+                      maxwell * stretch[l] * stretch[l];
+    }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
-        double gap = stretch[i] - stretch[j];
-        double equal = fabs(gap) > 1e-7 ? (t[i] - t[j]) / gap : fmax(law->slope[i], law->slope[j]);
-        double opposite = (t[i] + t[j]) / (stretch[i] + stretch[j]);
-        double mean = 0.5 * law->factor * (equal + opposite),
-               difference = 0.5 * law->factor * (equal - opposite);
-        cover_pair(&a[i], &a[j], mean + half * stretch[i] * stretch[i],
-                   difference + half * stretch[i] * stretch[j], mean + half * stretch[j] * stretch[j]);
+        const double *ti = law->stress[i], *tj = law->stress[j], *xi = law->stretch[i], *xj = law->stretch[j];
+        const double *slope_i = law->slope[i], *slope_j = law->slope[j];
+        double *restrict ai = a[i], *restrict aj = a[j];
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double gap = xi[l] - xj[l], secant = (ti[l] - tj[l]) / gap;
+            double equal = fabs(gap) > 1e-7 ? secant : sf_larger(slope_i[l], slope_j[l]);
+            double opposite = (ti[l] + tj[l]) / (xi[l] + xj[l]);
+            double mean = 0.5 * factor[l] * (equal + opposite),
+                   difference = 0.5 * factor[l] * (equal - opposite);
+            double first = ai[l], second = aj[l];
+            cover_pair(&first, &second, mean + half * xi[l] * xi[l], difference + half * xi[l] * xj[l],
+                       mean + half * xj[l] * xj[l]);
+            ai[l] = first;
+            aj[l] = second;
+        }
     }
 }
 
-void sf_foam_tangent_viscous(const double stretch[3], double kelvin, double damp, double eta[3]) {
+/* Kelvin viscosity alone. */
+static void kelvin_bounds(double stretch[3][SF_LANES], double kelvin, double eta[3][SF_LANES]) {
+    double half = 0.5 * kelvin;
     for (int i = 0; i < 3; i++)
-        eta[i] = kelvin * stretch[i] * stretch[i];
-    for (int i = 0; i < 3 && kelvin > 0; i++) {
+        for (int l = 0; l < SF_LANES; l++)
+            eta[i][l] = kelvin * stretch[i][l] * stretch[i][l];
+    for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
-        double half = 0.5 * kelvin;
-        cover_pair(&eta[i], &eta[j], half * stretch[i] * stretch[i], half * stretch[i] * stretch[j],
-                   half * stretch[j] * stretch[j]);
+        for (int l = 0; l < SF_LANES; l++) {
+            double xi = stretch[i][l], xj = stretch[j][l];
+            cover_pair(&eta[i][l], &eta[j][l], half * xi * xi, half * xi * xj, half * xj * xj);
+        }
     }
+}
+
+void sf_foam_tangent_viscous(double stretch[3][SF_LANES], double kelvin, const double damp[SF_LANES],
+                             double eta[3][SF_LANES]) {
+    if (kelvin > 0)
+        kelvin_bounds(stretch, kelvin, eta);
+    else
+        memset(eta, 0, 3 * sizeof eta[0]);
     for (int i = 0; i < 3; i++) { /* DAMP needs no more than its normal parts */
-        double area = stretch[(i + 1) % 3] * stretch[(i + 2) % 3];
-        eta[i] += damp * area * area;
+        const double *x = stretch[(i + 1) % 3], *y = stretch[(i + 2) % 3];
+        double *restrict out = eta[i];
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double area = x[l] * y[l];
+            out[l] += damp[l] * area * area;
+        }
     }
 }

@@ -1,16 +1,37 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/internal_force.h"
 
-void sf_internal_force(const sf_model *m, const sf_operators *op, sf_state *s) {
-#pragma omp parallel for default(none) shared(m, op, s) schedule(static)
-    for (int64_t i = 0; i < m->node_count; i++) {
-        double f[3] = {0};
-        for (int64_t k = op->force_ptr[i]; k < op->force_ptr[i + 1]; k++) {
-            const double *restrict p = &s->stress[9 * (int64_t)op->force_domain[k]], *restrict b =
-                                                                                         &op->force_b[3 * k];
-            for (int r = 0; r < 3; r++)
-                f[r] += p[3 * r] * b[0] + p[3 * r + 1] * b[1] + p[3 * r + 2] * b[2];
+#include <string.h>
+
+/* V P B of one domain on the nodes it sees. */
+static inline void add_domain(const double *restrict p, const uint16_t *restrict local,
+                              const double *restrict b, int64_t count, sf_vec *restrict sum) {
+    const sf_vec x = {p[0], p[3], p[6]}, y = {p[1], p[4], p[7]}, z = {p[2], p[5], p[8]};
+    for (int64_t k = 0; k < count; k++)
+        sum[local[k]] += x * b[3 * k] + y * b[3 * k + 1] + z * b[3 * k + 2];
+}
+
+static void collect_groups(const sf_model *m, const sf_halo *h, const sf_state *s) {
+#pragma omp parallel for default(none) shared(m, h, s) schedule(static)
+    for (int64_t g = 0; g < h->group_count; g++) {
+        sf_vec *sum = &h->work[h->ptr[g]];
+        memset(sum, 0, (size_t)(h->ptr[g + 1] - h->ptr[g]) * sizeof *sum);
+        for (int64_t l = g * SF_GROUP; l < sf_halo_end(m, g); l++) {
+            int64_t first = m->domain_ptr[l];
+            add_domain(&s->stress[9 * l], &h->local[first], &m->domain_b[3 * first],
+                       m->domain_ptr[l + 1] - first, sum);
         }
+    }
+}
+
+void sf_internal_force(const sf_model *m, const sf_operators *op, sf_state *s) {
+    const sf_halo *h = &op->halo;
+    collect_groups(m, h, s);
+#pragma omp parallel for default(none) shared(m, h, s) schedule(static)
+    for (int64_t i = 0; i < m->node_count; i++) {
+        sf_vec f = {0};
+        for (int64_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
+            f += h->work[h->slot[q]];
         for (int r = 0; r < 3; r++)
             s->force[3 * i + r] -= f[r];
     }

@@ -151,6 +151,7 @@ static sf_status solve(const options *o, const char *command, sf_error *err) {
         sf_results_create(o->output, &model, model_file, &provenance, &file, err) != SF_OK)
         goto done;
     sf_model_drop_mesh(&model);
+    sf_model_drop_domain_nodes(&model);
     sf_run run = {.stop = &stop_requested,
                   .log = stdout,
                   .terminal = isatty(STDOUT_FILENO),

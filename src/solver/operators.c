@@ -5,26 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static sf_status transpose_gradient(const sf_model *m, sf_operators *op, sf_error *err) {
-    int64_t n = m->node_count;
-    op->force_ptr = sf_alloc(err, (unsigned long)n + 2, sizeof *op->force_ptr, "force lists");
-    op->force_domain = sf_alloc(err, (unsigned long)m->domain_nnz, sizeof *op->force_domain, "force lists");
-    op->force_b = sf_alloc(err, 3 * (unsigned long)m->domain_nnz, sizeof *op->force_b, "force lists");
-    if (err->status != SF_OK)
-        return err->status;
-    for (int64_t k = 0; k < m->domain_nnz; k++)
-        op->force_ptr[m->domain_node[k] + 2]++;
-    for (int64_t i = 0; i < n; i++)
-        op->force_ptr[i + 2] += op->force_ptr[i + 1];
-    for (int64_t l = 0; l < n; l++)
-        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
-            int64_t slot = op->force_ptr[m->domain_node[k] + 1]++;
-            op->force_domain[slot] = (int32_t)l;
-            memcpy(&op->force_b[3 * slot], &m->domain_b[3 * k], 3 * sizeof *op->force_b);
-        }
-    return SF_OK;
-}
-
 static sf_status build_pairs(const sf_model *m, sf_operators *op, sf_error *err) {
     op->pair = sf_alloc(err, (unsigned long)m->edge_nnz, sizeof *op->pair, "stabilisation pairs");
     for (int64_t i = 0; i < m->node_count && op->pair; i++)
@@ -48,7 +28,7 @@ sf_status sf_operators_build(const sf_model *m, sf_operators *op, sf_error *err)
     op->damp_length = sf_alloc(err, n, sizeof *op->damp_length, "DAMP lengths");
     op->stability = sf_alloc(err, n, sizeof *op->stability, "stability constants");
     if (err->status == SF_OK && sf_foam_build(&m->foam, &op->foam, err) == SF_OK &&
-        sf_stability_constants(m, op->stability, err) == SF_OK && transpose_gradient(m, op, err) == SF_OK &&
+        sf_stability_constants(m, op->stability, err) == SF_OK && sf_halo_build(m, &op->halo, err) == SF_OK &&
         build_pairs(m, op, err) == SF_OK && sf_constraint_build(m, &op->constraint, err) == SF_OK &&
         sf_contact_gram_build(m, &op->gram, err) == SF_OK &&
         sf_missile_surface_build(m, &op->surface, err) == SF_OK)
@@ -61,14 +41,12 @@ sf_status sf_operators_build(const sf_model *m, sf_operators *op, sf_error *err)
 
 void sf_operators_free(sf_operators *op) {
     sf_foam_free(&op->foam);
+    sf_halo_free(&op->halo);
     sf_constraint_free(&op->constraint);
     sf_contact_gram_free(&op->gram);
     sf_missile_surface_free(&op->surface);
     free(op->damp_length);
     free(op->stability);
-    free(op->force_ptr);
-    free(op->force_domain);
-    free(op->force_b);
     free(op->pair);
     memset(op, 0, sizeof *op);
 }

@@ -8,6 +8,7 @@
 #include "solver/constraint.h"
 #include "solver/contact_gram.h"
 #include "solver/foam.h"
+#include "solver/halo.h"
 #include "solver/missile_surface.h"
 
 typedef struct sf_operators {
@@ -15,11 +16,7 @@ typedef struct sf_operators {
     double *damp_length; /* [n] m, L of DAMP */
     double *stability;   /* [n] m kg-1, core/stability.h */
 
-    /* The smoothed gradient by node: B_I^L for the domains L that see node I, so that internal forces are
-     * gathered. */
-    int64_t *force_ptr;    /* [n + 1] */
-    int32_t *force_domain; /* [domain_nnz] L */
-    double *force_b;       /* [domain_nnz][3] m-1 */
+    sf_halo halo; /* what groups of domains see */
 
     /* Stabilisation pairs along the model's edges: coefficient x (V_I/n_I + V_J/n_J) / (2 |X_J - X_I|^2). */
     double *pair; /* [edge_nnz] m */

@@ -36,7 +36,7 @@ static const struct {
     DOUBLES(pair_stiffness, 'n', 1),
     DOUBLES(mode, 'n', 1),
     DOUBLES(scratch, 'n', 9),
-    DOUBLES(mode_work, 'n', 4),
+    DOUBLES(mode_work, 'n', 3),
     DOUBLES(power_couple, 'n', 3),
     DOUBLES(power_out, 'n', 1),
     DOUBLES(contact_position, 'c', 3),

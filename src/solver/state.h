@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/model.h"
 #include "solver/foam.h"
+#include "solver/stopwatch.h"
 
 enum { SF_POWER_BASIS = 8 }; /* Lanczos vectors kept, at most 9 */
 
@@ -84,7 +85,7 @@ typedef struct sf_state {
     double *mode;           /* [n] vector of the power iteration */
     double
         *scratch; /* [n][9]: the Lanczos vectors [SF_POWER_BASIS][n] of it, or a field on its way to a file */
-    double *mode_work;    /* [n][4] its gradient */
+    double *mode_work;    /* [n][3] its gradient */
     double *power_couple; /* [n][3] couples of the product */
     double *power_out;    /* [n] the product */
 
@@ -118,6 +119,8 @@ typedef struct sf_state {
 
     int64_t chunk_count;
     sf_partial *partial; /* [chunks] */
+
+    sf_stopwatch *watch; /* borrowed; NULL = nobody measures */
 } sf_state;
 
 sf_status sf_state_create(const sf_model *model, sf_state *state, sf_error *err);

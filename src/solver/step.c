@@ -97,21 +97,28 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_domain_stress(m, op, s); /* F, P, history */
     if (check_domains(m, s, err) != SF_OK)
         return err->status;
-    sf_stabilisation(m, op, s);  /* pair forces, couples */
+    sf_lap(s->watch, SF_PHASE_STRESS);
+    sf_stabilisation(m, op, s); /* pair forces, couples */
+    sf_lap(s->watch, SF_PHASE_STABILISATION);
     sf_internal_force(m, op, s); /* f = pair forces - sum V P B */
+    sf_lap(s->watch, SF_PHASE_FORCE);
     sf_time_step_choose(m, op, s);
+    sf_lap(s->watch, SF_PHASE_TIME_STEP);
     double dt_v = 0.5 * (s->dt_old + s->dt);
 
     sf_contact_solve(m, op, s); /* f += phi^T q; missile's acceleration */
+    sf_lap(s->watch, SF_PHASE_CONTACT);
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
     if (sf_constraint_project(m, &op->constraint, &held, err) != SF_OK)
         return err->status;
     memcpy(s->base_reaction, held.base, sizeof held.base);
     s->constraint_residual = held.residual;
+    sf_lap(s->watch, SF_PHASE_CONSTRAINT);
 
     accelerate(m, s, dt_v); /* v at the next half step */
     move_missile(m, s, dt_v);
     sf_ledger_close(m, s, held.all, dt_v);
+    sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_step(m, s, err) != SF_OK)
         return err->status;
     return check_energy(m, s, err);
@@ -130,4 +137,5 @@ void sf_step_advance(const sf_model *m, sf_state *s) {
         s->missile.displacement += dt * s->missile.velocity;
     s->dt_old = dt;
     s->step++;
+    sf_lap(s->watch, SF_PHASE_MOTION);
 }

@@ -2,6 +2,7 @@
 #include "solver/time_step.h"
 
 #include <math.h>
+#include <string.h>
 
 enum {
     POWER_INTERVAL = 25,         /* steps between measurements at most */
@@ -19,15 +20,19 @@ static const double POWER_ROUNDING = 16384;
 static const double GROWTH = 1.02;
 
 /* mode_work: gradient of the mode in every domain. */
-static void mode_gradients(const sf_model *m, sf_state *s) {
-#pragma omp parallel for default(none) shared(m, s) schedule(static)
-    for (int64_t l = 0; l < m->node_count; l++) {
-        double g[3] = {0};
-        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++)
-            for (int c = 0; c < 3; c++)
-                g[c] += s->mode[m->domain_node[k]] * m->domain_b[3 * k + c];
-        for (int c = 0; c < 3; c++)
-            s->mode_work[4 * l + c] = g[c];
+static void mode_gradients(const sf_model *m, const sf_halo *h, sf_state *s) {
+#pragma omp parallel for default(none) shared(m, h, s) schedule(static)
+    for (int64_t group = 0; group < h->group_count; group++) {
+        double *mode = (double *)h->work + h->ptr[group];
+        for (int64_t q = h->ptr[group]; q < h->ptr[group + 1]; q++)
+            mode[q - h->ptr[group]] = s->mode[h->node[q]];
+        for (int64_t l = group * SF_GROUP; l < sf_halo_end(m, group); l++) {
+            double g[3] = {0};
+            for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++)
+                for (int c = 0; c < 3; c++)
+                    g[c] += mode[h->local[k]] * m->domain_b[3 * k + c];
+            memcpy(&s->mode_work[3 * l], g, sizeof g);
+        }
     }
 }
 
@@ -41,7 +46,7 @@ static double mode_pairs(const sf_model *m, const sf_operators *op, const sf_sta
         double arm[3], explained = 0, weight = op->pair[k] * (s->stiffness[i] + s->stiffness[j]);
         for (int c = 0; c < 3; c++) {
             arm[c] = m->position[3 * j + c] - m->position[3 * i + c];
-            explained += (s->mode_work[4 * i + c] + s->mode_work[4 * j + c]) * arm[c];
+            explained += (s->mode_work[3 * i + c] + s->mode_work[3 * j + c]) * arm[c];
         }
         double e = s->mode[j] - s->mode[i] - 0.5 * explained;
         force -= weight * e;
@@ -51,30 +56,42 @@ static double mode_pairs(const sf_model *m, const sf_operators *op, const sf_sta
     return force;
 }
 
-/* The product K mode, into power_out: the same gathers as in the step itself. */
-static void apply_operator(const sf_model *m, const sf_operators *op, sf_state *s) {
-    double *couples = s->power_couple, *out = s->power_out;
-    mode_gradients(m, s);
-#pragma omp parallel for default(none) shared(m, op, s, couples, out) schedule(static)
+/* Pair forces into power_out, and in power_couple what every domain exerts. */
+static void mode_fluxes(const sf_model *m, const sf_operators *op, sf_state *s) {
+#pragma omp parallel for default(none) shared(m, op, s) schedule(static)
     for (int64_t i = 0; i < m->node_count; i++) {
         double couple[3], flux[3];
-        const double *a = &s->directional[6 * i], *g = &s->mode_work[4 * i];
-        out[i] = mode_pairs(m, op, s, i, couple);
+        const double *a = &s->directional[6 * i], *g = &s->mode_work[3 * i];
+        s->power_out[i] = mode_pairs(m, op, s, i, couple);
         flux[0] = a[0] * g[0] + a[3] * g[1] + a[5] * g[2];
         flux[1] = a[3] * g[0] + a[1] * g[1] + a[4] * g[2];
         flux[2] = a[5] * g[0] + a[4] * g[1] + a[2] * g[2];
         for (int c = 0; c < 3; c++)
-            couples[3 * i + c] = couple[c] + m->volume[i] * flux[c];
+            s->power_couple[3 * i + c] = couple[c] + m->volume[i] * flux[c];
     }
-#pragma omp parallel for default(none) shared(m, op, couples, out) schedule(static)
-    for (int64_t i = 0; i < m->node_count; i++) {
-        double sum = out[i];
-        for (int64_t k = op->force_ptr[i]; k < op->force_ptr[i + 1]; k++) {
-            const double *q = &couples[3 * (int64_t)op->force_domain[k]], *b = &op->force_b[3 * k];
-            sum += q[0] * b[0] + q[1] * b[1] + q[2] * b[2];
+}
+
+/* The product K mode, into power_out: the same sums as in the step itself. */
+static void apply_operator(const sf_model *m, const sf_operators *op, sf_state *s) {
+    const sf_halo *h = &op->halo;
+    mode_gradients(m, h, s);
+    mode_fluxes(m, op, s);
+#pragma omp parallel for default(none) shared(m, h, s) schedule(static)
+    for (int64_t g = 0; g < h->group_count; g++) {
+        double *sum = (double *)h->work + h->ptr[g];
+        memset(sum, 0, (size_t)(h->ptr[g + 1] - h->ptr[g]) * sizeof *sum);
+        for (int64_t l = g * SF_GROUP; l < sf_halo_end(m, g); l++) {
+            const double *q = &s->power_couple[3 * l];
+            for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
+                const double *b = &m->domain_b[3 * k];
+                sum[h->local[k]] += q[0] * b[0] + q[1] * b[1] + q[2] * b[2];
+            }
         }
-        out[i] = sum;
     }
+#pragma omp parallel for default(none) shared(m, h, s) schedule(static)
+    for (int64_t i = 0; i < m->node_count; i++)
+        for (int64_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
+            s->power_out[i] += ((const double *)h->work)[h->slot[q]];
 }
 
 /* Largest eigenvalue of the tridiagonal matrix (diagonal alpha, off-diagonal beta) and its eigenvector z, by

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "traffic.h"
+
+enum { WORD = 8 }; /* bytes of a double */
+
+/* Operations of the foam law at one point, counted in foam.c with four sweeps of the eigenvalues. */
+static const double LAW = 1250;
+/* Of one directed pair in stabilisation.c, and of its scalar form. */
+static const double PAIR = 78, SCALAR_PAIR = 30;
+
+/* Reading B and the places of its nodes, and the groups' arrays written and read once. */
+static double gradient_bytes(const sf_model *m, const sf_operators *op, double per_node) {
+    double held = (double)op->halo.ptr[op->halo.group_count];
+    return (3 * WORD + 2) * (double)m->domain_nnz + WORD * (double)m->node_count + held * (4 + 2 * per_node);
+}
+
+static double pair_bytes(const sf_model *m) {
+    return (WORD + 4) * (double)m->edge_nnz + WORD * (double)m->node_count;
+}
+
+bench_traffic bench_count(const sf_model *m, const sf_operators *op) {
+    bench_traffic t = {0};
+    double n = (double)m->node_count, nnz = (double)m->domain_nnz, edges = (double)m->edge_nnz;
+    double held = (double)op->halo.ptr[op->halo.group_count], vec = sizeof(sf_vec);
+    double contact = 0, fixed = 0;
+    for (int64_t c = 0; c < m->contact_count; c++)
+        contact += (double)(m->phi_ptr[m->contact_node[c] + 1] - m->phi_ptr[m->contact_node[c]]);
+    for (int64_t c = 0; c < m->fixed_count; c++)
+        fixed += (double)(m->phi_ptr[m->fixed_node[c] + 1] - m->phi_ptr[m->fixed_node[c]]);
+
+    /* d; F old, new; V P; Maxwell in, out; peak, rate in, out; W, stiffness, tangent; L, c, V */
+    t.bytes[SF_PHASE_STRESS] = gradient_bytes(m, op, vec) + n * WORD * (3 + 18 + 9 + 12 + 4 + 3 + 3);
+    t.flops[SF_PHASE_STRESS] = 18 * nnz + LAW * n;
+    /* X, d, F, g; force; V P in, out; pair sum, pair stiffness in, out */
+    t.bytes[SF_PHASE_STABILISATION] = pair_bytes(m) + n * WORD * (3 + 3 + 9 + 1 + 3 + 18 + 4);
+    t.flops[SF_PHASE_STABILISATION] = PAIR * edges;
+    /* V P; force in, out; the list of slots */
+    t.bytes[SF_PHASE_FORCE] = gradient_bytes(m, op, vec) + n * WORD * (9 + 6 + 1);
+    t.flops[SF_PHASE_FORCE] = 18 * nnz + 3 * held;
+    t.bytes[SF_PHASE_CONTACT] = contact * (WORD + 4) + (double)m->contact_count * WORD * (9 + 24);
+    t.flops[SF_PHASE_CONTACT] = 12 * contact;
+    /* right side, reaction, residual, three components at the base */
+    t.bytes[SF_PHASE_CONSTRAINT] = 3 * fixed * (WORD + 4) + (double)m->fixed_count * WORD * 3 * 14;
+    t.flops[SF_PHASE_CONSTRAINT] = 30 * fixed;
+    /* m, v in, out, force, reaction; then d in, out, v */
+    t.bytes[SF_PHASE_MOTION] = n * WORD * (1 + 6 + 3 + 3 + 9);
+    t.flops[SF_PHASE_MOTION] = n * (30 + 6);
+
+    /* gradients, pairs with A and couples, sums; two vectors of the basis */
+    t.product_bytes =
+        2 * gradient_bytes(m, op, WORD) + pair_bytes(m) + n * WORD * (3 + 3 + 3 + 6 + 1 + 3 + 3 + 8);
+    t.product_flops = 12 * nnz + SCALAR_PAIR * edges + 30 * n;
+    return t;
+}
