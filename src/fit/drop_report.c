@@ -412,7 +412,7 @@ static void put_strain_panels(FILE *f) {
 /* Simulated curves; a circle at each measured peak. */
 static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
     fputs("set autoscale\nset xrange [0:*]\nset yrange [0:*]\nset xlabel 'time after contact (ms)'\n"
-          "set ylabel 'deceleration (g)'\nset key right top Right noreverse\n",
+          "set ylabel 'deceleration (g)'\nset key below maxcols 2\n",
           f);
     for (int d = 0; d < fit->measured_drops; d++)
         if (!isnan(fit->input->drop[d].a_max_g))
