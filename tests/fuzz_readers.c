@@ -13,6 +13,7 @@
 #include "pre/case_curve.h"
 #include "pre/gmsh_session.h"
 #include <ftw.h>
+#include <hdf5.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -200,6 +201,10 @@ sf_status fuzz_read(const fuzz_reader *reader, const uint8_t *data, size_t size)
     sf_status status = reader->read(path, &err);
     if (status != err.status || (status != SF_OK && err.text[0] == '\0') || strchr(err.text, '\n')) {
         fprintf(stderr, "fuzz: status %d with the sentence \"%s\"\n", (int)status, err.text);
+        abort();
+    }
+    if (H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL) > 0) {
+        fprintf(stderr, "fuzz: HDF5 objects were left open\n");
         abort();
     }
     return status;

@@ -25,7 +25,7 @@ void fuzz_begin(void);
 void fuzz_end(void);
 
 /* Writes the bytes as the reader's file in the scratch folder and reads it. Ends the process by abort() if
- * the reader breaks its promise: a failure has a sentence on one line. */
+ * the reader breaks its promise: a failure has a sentence on one line, and nothing stays open. */
 sf_status fuzz_read(const fuzz_reader *reader, const uint8_t *data, size_t size);
 
 #endif

@@ -149,6 +149,7 @@ int main(int argc, char **argv) {
     sf_error err = SF_ERROR_INIT;
     char *command = sf_command_line(argc, argv);
     struct sigaction action = {.sa_handler = request_stop};
+    sf_error_ignore_closed_pipe();
     sigaction(SIGINT, &action, NULL); /* the programs that run get the signal too and end their drop */
     sigaction(SIGTERM, &action, NULL);
     if (sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)

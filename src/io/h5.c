@@ -51,9 +51,16 @@ static sf_status wrap(hid_t id, const char *path, sf_h5 **file, sf_error *err) {
     return SF_OK;
 }
 
+/* Before the first call. HDF5's own cleaning up at exit crashes after a file that could not be closed (a full
+ * disk); everything is closed without it. */
+static void begin_library(void) {
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
 sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
     *file = NULL;
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    begin_library();
     errno = 0;
     hid_t id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     if (id < 0)
@@ -64,7 +71,7 @@ sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
 
 sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
     *file = NULL;
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    begin_library();
     struct stat info;
     if (access(path, R_OK) != 0 || stat(path, &info) != 0)
         return SF_FAIL(err, SF_ERR_IO, "cannot read %s: %s", path, strerror(errno));

@@ -134,6 +134,11 @@ static bool is_cut(const sf_model *m, const edge *list, int axis, double place, 
     return false;
 }
 
+/* Zero for what is zero but for the rounding of the mesh. */
+static double round_off(double place, double extent) {
+    return fabs(place) > 1e-9 * extent ? place : 0;
+}
+
 /* Without a symmetry plane of this axis the missile must be whole. */
 static sf_status check_whole(const sf_model *m, const edge *list, int axis, sf_error *err) {
     double low, high;
@@ -145,7 +150,7 @@ static sf_status check_whole(const sf_model *m, const edge *list, int axis, sf_e
         err, SF_ERR_INPUT,
         "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: half a "
         "missile over a whole pad",
-        'x' + axis, 1e3 * (below ? low : high));
+        'x' + axis, 1e3 * round_off(below ? low : high, high - low));
 }
 
 static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {

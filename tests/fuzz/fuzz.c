@@ -16,6 +16,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
     (void)argv;
     reader = fuzz_reader_find(FUZZ_READER);
     gsl_set_error_handler_off();
+    setenv("UDUNITS2_XML_PATH", FUZZ_UNITS, 1);
     fuzz_begin();
     atexit(fuzz_end);
     return reader == NULL;
