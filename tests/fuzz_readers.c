@@ -3,6 +3,7 @@
 
 #include "cfh/rig.h"
 #include "core/curve.h"
+#include "fit/compression_config.h"
 #include "fit/drop_input.h"
 #include "io/model_io.h"
 #include "post/compare.h"
@@ -11,6 +12,8 @@
 #include "post/results.h"
 #include "pre/case.h"
 #include "pre/case_curve.h"
+#include "pre/geo_parameters.h"
+#include "pre/geometry_check.h"
 #include "pre/gmsh_session.h"
 #include <ftw.h>
 #include <hdf5.h>
@@ -83,6 +86,28 @@ static sf_status read_fit(const char *path, sf_error *err) {
     return err->status;
 }
 
+static sf_status read_compression(const char *path, sf_error *err) {
+    sf_compression_config config;
+    if (sf_compression_config_read(path, &config, err) == SF_OK)
+        sf_compression_config_free(&config);
+    return err->status;
+}
+
+static sf_status read_pressing(const char *path, sf_error *err) {
+    sf_compression_test test;
+    if (sf_compression_test_read(path, 0.1, &test, err) == SF_OK)
+        sf_compression_test_free(&test);
+    return err->status;
+}
+
+/* What is asked of a script before gmsh sees it. */
+static sf_status read_geo(const char *path, sf_error *err) {
+    char copy[512];
+    sf_geo_source source = {.path = copy, .parameter_count = 1, .parameter = {{"side", 1}}};
+    snprintf(copy, sizeof copy, "%s", path);
+    return sf_geometry_check(path, err) == SF_OK ? sf_geo_parameters_check(&source, err) : err->status;
+}
+
 static sf_status read_model(const char *path, sf_error *err) {
     sf_model model;
     if (sf_model_read(path, &model, NULL, err) == SF_OK)
@@ -126,11 +151,18 @@ static sf_status read_msh(const char *path, sf_error *err) {
 }
 
 static const fuzz_reader readers[] = {
-    {"case", "case.cfg", read_case},     {"curve", "curve.csv", read_curve},
-    {"motion", "fuzz.csv", read_motion}, {"reference", "reference.csv", read_reference},
-    {"rig", "rig.csv", read_rig},        {"fit", "fit.cfg", read_fit},
-    {"model", "model.h5", read_model},   {"results", "results.h5", read_results},
+    {"case", "case.cfg", read_case},
+    {"curve", "curve.csv", read_curve},
+    {"motion", "fuzz.csv", read_motion},
+    {"reference", "reference.csv", read_reference},
+    {"rig", "rig.csv", read_rig},
+    {"fit", "fit.cfg", read_fit},
+    {"model", "model.h5", read_model},
+    {"results", "results.h5", read_results},
     {"msh", "mesh.msh", read_msh},
+    {"geo", "script.geo", read_geo},
+    {"compression", "fit.cfg", read_compression},
+    {"pressing", "pressing.csv", read_pressing},
 };
 
 const fuzz_reader *fuzz_reader_at(int index) {
@@ -160,6 +192,11 @@ static void write_file(const char *name, const void *data, size_t size) {
 
 #define MATERIAL                                                                                             \
     "density = \"35 kg/m3\"; E = \"0.4 MPa\"; curve = \"foam.csv\"; ED = \"1 MPa\"; BETA1 = \"5000 1/s\";\n"
+#define PRESSING                                                                                             \
+    "strain,stress_kPa\n"                                                                                    \
+    "0.04,20\n0.07,40\n0.11,60\n0.14,80\n0.18,100\n0.21,120\n0.25,140\n0.28,160\n0.32,180\n0.35,200\n0.39,"  \
+    "220\n0.42,240\n0.46,260\n0.49,280\n0.53,300\n0.56,320\n0.60,340\n0.63,360\n0.67,380\n0.70,400\n0.74,"   \
+    "420\n0.77,440\n"
 #define GEOMETRY                                                                                             \
     "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\nsolver: { end_time = \"1 ms\"; };\n"
 
@@ -169,6 +206,7 @@ void fuzz_begin(void) {
         {"foam.csv", "strain,stress_kPa\n0,0\n0.1,20\n0.5,100\n0.8,900\n"},
         {"motion.csv", "time_ms,displacement_mm\n0,0\n50,10\n"},
         {"measured.csv", "time_ms,acceleration_g\n0,0\n1,20\n2,80\n3,20\n4,0\n"},
+        {"pressing.csv", PRESSING},
         {"material.cfg", MATERIAL},
         {"good.cfg",
          GEOMETRY "material: { " MATERIAL "};\nmissile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"},

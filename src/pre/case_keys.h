@@ -9,6 +9,7 @@
 
 #include "core/units.h"
 #include "pre/case.h"
+#include "pre/case_source.h"
 #include <libconfig.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -60,18 +61,6 @@ void sf_case_list_names(const char *group, char *out, size_t size);
 /* The existing name nearest to `name` within two edits; NULL if none is near. */
 const char *sf_case_near_name(const char *group, const char *name, char *out, size_t size);
 
-/* Where the lines of a case's text come from, as its includes are put in place before libconfig reads it:
- * from line `first` of the text on, they are those of the file `path` from `line` on. */
-typedef struct sf_case_piece {
-    int first, line;
-    char *path; /* owned */
-} sf_case_piece;
-
-typedef struct sf_case_source {
-    int count, capacity;
-    sf_case_piece *piece; /* [count] ascending in `first` */
-} sf_case_source;
-
 /* What the readers need beside the table. */
 typedef struct sf_case_reader {
     const char *path; /* of the case file, as given */
@@ -116,18 +105,8 @@ bool sf_case_is_given(const sf_case_reader *reader, const char *group, const cha
 sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
 /* Location of a key "group.name", or of its group, or of the file: whatever is there. */
 const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
-/* The folder part of a path, "." if there is none; from malloc. */
-char *sf_case_folder_of(const char *path, sf_error *err);
 /* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
 const char *sf_case_override_file(const char *text);
 /* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
-/* The text of the case with its includes put in place and the overrides as comments; from malloc. Includes
- * that are missing or no plain files are refused. `source` (may be NULL) is filled. */
-char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
-                        sf_error *err);
-/* File and line of a line of the text. */
-const char *sf_case_source_find(const sf_case_source *source, int line, int *file_line);
-void sf_case_source_free(sf_case_source *source);
-
 #endif
