@@ -35,7 +35,7 @@ static size_t type_size(sf_h5_type type) {
     return type == SF_H5_U8 ? 1 : type == SF_H5_I32 ? 4 : 8;
 }
 
-static sf_status wrap(hid_t id, const char *path, sf_h5 **file, sf_error *err) {
+static sf_status wrap(hid_t id, const char *path, uint64_t size, sf_h5 **file, sf_error *err) {
     sf_h5 *made = malloc(sizeof *made);
     char *copy = strdup(path);
     if (!made || !copy) {
@@ -46,7 +46,7 @@ static sf_status wrap(hid_t id, const char *path, sf_h5 **file, sf_error *err) {
     }
     made->id = id;
     made->path = copy;
-    made->size = 0;
+    made->size = size;
     *file = made;
     return SF_OK;
 }
@@ -66,7 +66,7 @@ sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "cannot create %s: %s", path,
                        errno ? strerror(errno) : "HDF5 refuses it");
-    return wrap(id, path, file, err);
+    return wrap(id, path, 0, file, err);
 }
 
 sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
@@ -83,9 +83,7 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: it is damaged or another program is writing it",
                        path);
-    if (wrap(id, path, file, err) == SF_OK)
-        (*file)->size = (uint64_t)info.st_size;
-    return err->status;
+    return wrap(id, path, (uint64_t)info.st_size, file, err);
 }
 
 sf_status sf_h5_flush(sf_h5 *file, sf_error *err) {
