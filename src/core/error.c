@@ -20,6 +20,10 @@ sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int l
     va_start(args, format);
     vsnprintf(err->text, sizeof err->text, format, args);
     va_end(args);
+    /* Texts of files stand in the sentence: their line ends and escapes must not reach the terminal. */
+    for (char *c = err->text; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 127)
+            *c = ' ';
     return status;
 }
 
