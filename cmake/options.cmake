@@ -5,6 +5,9 @@ option(SOFTFALL_NATIVE "Compile for the processor of this machine" ON)
 option(SOFTFALL_WERROR "Treat warnings as errors" OFF)
 set(SOFTFALL_SANITIZE "" CACHE STRING "Comma list for -fsanitize=, e.g. address,undefined")
 
+option(SOFTFALL_FUZZ "Build the fuzzers of the readers (clang)" OFF)
+set(SOFTFALL_FUZZ_SECONDS 20 CACHE STRING "Time of each fuzzer as a test, s")
+
 if(NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
@@ -33,4 +36,7 @@ if(SOFTFALL_SANITIZE)
     target_compile_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE} -fno-omit-frame-pointer
                                                       -fno-sanitize-recover=all)
     target_link_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE})
+endif()
+if(SOFTFALL_FUZZ)
+    target_compile_options(softfall_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()

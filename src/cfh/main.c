@@ -141,6 +141,7 @@ int main(int argc, char **argv) {
     sf_output output = {0};
     sf_error err = SF_ERROR_INIT;
     char *command = sf_command_line(argc, argv);
+    sf_error_ignore_closed_pipe();
     sf_runner_handle_signals();
     if (sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)
         run(&options, command ? command : "softfall-cfh", &output, &err);

@@ -269,6 +269,8 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
             }
         sf_foam_card_free(&low);
         sf_foam_card_free(&high);
+        if (err->status != SF_OK)
+            return err->status;
     }
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
         double prior = 0;

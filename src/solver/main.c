@@ -186,6 +186,7 @@ int main(int argc, char **argv) {
     limit_spinning(argv);
     options o = {.threads = omp_get_max_threads()};
     sf_error err = SF_ERROR_INIT;
+    sf_error_ignore_closed_pipe();
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     omp_set_num_threads(o.threads);
     struct sigaction action = {.sa_handler = request_stop};
