@@ -78,7 +78,7 @@ build() {
 }
 
 build_programs() {
-    build --target softfall-pre softfall-solve softfall-post
+    build --target softfall-pre softfall-solve softfall-post softfall-fit softfall-cfh
 }
 
 demo() {

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-order="exactness wave mms material time_step contact calculix mesh sensitivity reproducibility"
+order="exactness wave mms material time_step contact calculix mesh sensitivity reproducibility identification identification_drop"
 build=${BUILD_DIR:-build}
 sections=docs/images/verification
 [ $# -gt 0 ] || set -- $order

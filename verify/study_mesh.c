@@ -101,7 +101,7 @@ int main(int argc, char **argv) {
     sf_drop drop[CASES][SPACINGS];
     sf_study_begin(&study, "mesh", "Mesh study of the paper's drops", argc, argv);
     sf_study_text(&study,
-                  "Quarter models, outer spacing twice the core's, starter material, two threads. The last "
+                  "Quarter models, outer spacing twice the core's, the examples' material, two threads. The last "
                   "row of each case: "
                   "value extrapolated by a + c h^p over all five spacings; the bar is 1.25 times its "
                   "distance from the 5 mm "

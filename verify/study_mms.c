@@ -313,7 +313,7 @@ int main(int argc, char **argv) {
     FILE *file = sf_study_file(&study, "orders.dat");
     sf_study_text(
         &study,
-        "A cube of 50 mm of the starter foam (its nonlinear curve, without losses), compressed to 65 %% of "
+        "A cube of 50 mm of an EVA-like foam (its nonlinear curve, without losses), compressed to 65 %% of "
         "its "
         "height and stretched by 15 %% sideways, with an irregular field w on top of it that vanishes on the "
         "surface and has gradients up to 0.2. A body force b = − Div P of the exact field holds it, P by the "

@@ -50,30 +50,37 @@ void sf_config_close(sf_config *config) {
     *config = (sf_config){0};
 }
 
-static bool is_listed(const char *name, const char *names) {
+/* Index of the name in "one|two|three"; -1 if it is not there. */
+static int find_word(const char *name, const char *words) {
     size_t length = strlen(name);
-    for (const char *at = names; at; at = strchr(at, '|')) {
+    int index = 0;
+    for (const char *at = words; at; at = strchr(at, '|'), index++) {
         at += *at == '|';
         if (strncmp(at, name, length) == 0 && (at[length] == '|' || at[length] == '\0'))
-            return true;
+            return index;
     }
-    return false;
+    return -1;
+}
+
+/* "one, two, three" */
+static void list_words(const char *words, char *out, size_t size) {
+    size_t used = 0;
+    for (const char *c = words; *c && used + 3 < size; c++) {
+        out[used++] = *c == '|' ? ',' : *c;
+        if (*c == '|')
+            out[used++] = ' ';
+    }
+    out[used] = '\0';
 }
 
 sf_status sf_config_names(const sf_config *config, const config_setting_t *group, const char *names,
                           sf_error *err) {
     for (int k = 0; k < config_setting_length(group); k++) {
         const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
-        if (is_listed(config_setting_name(item), names))
-            continue;
         char list[256];
-        size_t used = 0;
-        for (const char *c = names; *c && used + 3 < sizeof list; c++) {
-            if (*c == '|')
-                list[used++] = ',';
-            list[used++] = *c == '|' ? ' ' : *c;
-        }
-        list[used] = '\0';
+        if (find_word(config_setting_name(item), names) >= 0)
+            continue;
+        list_words(names, list, sizeof list);
         return sf_config_refuse(config, item, err, "unknown key \"%.80s\"; the keys here are %s",
                                 config_setting_name(item), list);
     }
@@ -130,9 +137,24 @@ sf_status sf_config_quantity(const sf_config *config, const config_setting_t *gr
                                 sf_quantity_example(kind));
     if (sf_units_parse(config->units, text, kind, out, &inner) != SF_OK)
         return sf_config_refuse(config, s, err, "%s: %s", name, inner.text);
-    if (!(*out >= low))
-        return sf_config_refuse(config, s, err, "%s is %s, below %g %s", name, text, low,
-                                sf_quantity_unit(kind));
+    if (low > 0 ? !(*out >= low) : !(*out > 0))
+        return sf_config_refuse(config, s, err, "%s is %s; it must be %s %g %s", name, text,
+                                low > 0 ? "at least" : "above", low, sf_quantity_unit(kind));
+    return SF_OK;
+}
+
+sf_status sf_config_choice(const sf_config *config, const config_setting_t *group, const char *name,
+                           const char *words, int *out, sf_error *err) {
+    const char *text = NULL;
+    char list[256];
+    if (sf_config_text(config, group, name, false, &text, err) != SF_OK || !text)
+        return err->status;
+    int index = find_word(text, words);
+    list_words(words, list, sizeof list);
+    if (index < 0)
+        return sf_config_refuse(config, config_setting_get_member(group, name), err,
+                                "%s is \"%.80s\"; it must be one of %s", name, text, list);
+    *out = index;
     return SF_OK;
 }
 

@@ -28,12 +28,15 @@ sf_status sf_config_names(const sf_config *config, const config_setting_t *group
  * it is `required`. Bounds are inclusive. */
 sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
                            bool required, double low, double high, double *out, sf_error *err);
-/* SI value, from `low` on. */
+/* SI value, from `low` on; `low` 0: above zero. */
 sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
                              sf_quantity kind, bool required, double low, double *out, sf_error *err);
 /* Borrowed from the configuration. */
 sf_status sf_config_text(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, const char **out, sf_error *err);
+/* The index of the text among `words` ("auto|H1|H2"). */
+sf_status sf_config_choice(const sf_config *config, const config_setting_t *group, const char *name,
+                           const char *words, int *out, sf_error *err);
 /* The name of a file that can be read, resolved against the file's folder; from malloc, owned by the caller.
  */
 sf_status sf_config_file(const sf_config *config, const config_setting_t *group, const char *name,

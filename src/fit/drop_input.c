@@ -115,12 +115,13 @@ static sf_status read_drops(const sf_config *config, const config_setting_t *roo
 /* The start material, read as the first drop's case would. */
 static sf_status read_material(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                                sf_error *err) {
-    const char *form = "gas", *name = "material";
+    const char *form = "gas", *name = "material", *title = "Identified foam";
     char override[4096];
     const char *const overrides[] = {override};
     sf_case c;
     if (sf_config_text(config, root, "curve_form", false, &form, err) != SF_OK ||
         sf_config_text(config, root, "name", false, &name, err) != SF_OK ||
+        sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
         sf_config_file(config, root, "material", true, &in->material_path, err) != SF_OK)
         return err->status;
     if (strcmp(form, "gas") != 0 && strcmp(form, "table") != 0)
@@ -130,6 +131,7 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
         return sf_config_refuse(config, config_setting_get_member(root, "name"), err,
                                 "the name \"%s\" is the name of a file: no slashes or quotes", name);
     snprintf(in->material_name, sizeof in->material_name, "%s", name);
+    snprintf(in->title, sizeof in->title, "%s", title);
     snprintf(override, sizeof override, "material=@%s", in->material_path);
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
         if (sf_case_read(in->drop[k].case_path, 1, overrides, &c, err) != SF_OK)
@@ -238,8 +240,8 @@ sf_status sf_fit_input_read(const char *path, sf_fit_input *in, sf_error *err) {
     *in = (sf_fit_input){0};
     if (sf_config_open(path, &config, err) == SF_OK && read_text(path, in, err) == SF_OK) {
         const config_setting_t *root = config_root_setting(&config.config);
-        if (sf_config_names(&config, root, "name|material|curve_form|start|unknown|drops|predict", err) ==
-                SF_OK &&
+        if (sf_config_names(&config, root, "name|title|material|curve_form|start|unknown|drops|predict",
+                            err) == SF_OK &&
             read_drops(&config, root, "drops", false, in, err) == SF_OK &&
             read_drops(&config, root, "predict", true, in, err) == SF_OK &&
             read_material(&config, root, in, err) == SF_OK && read_start(&config, root, in, err) == SF_OK)

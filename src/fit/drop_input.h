@@ -25,9 +25,10 @@ typedef struct sf_fit_drop {
 } sf_fit_drop;
 
 typedef struct sf_fit_input {
-    char *text; /* the file as it is; owned */
-    char material_name[SF_FIT_NAME_SIZE];
-    char *material_path; /* start material; owned */
+    char *text;                           /* the file as it is; owned */
+    char material_name[SF_FIT_NAME_SIZE]; /* of its files */
+    char title[160];                      /* first line of its files */
+    char *material_path;                  /* start material; owned */
     sf_foam_form form;
     int drop_count; /* measured ones first */
     sf_fit_drop drop[SF_FIT_MAX_DROPS];

@@ -149,9 +149,9 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
 }
 
 static void put_parameters(FILE *f, const sf_drop_fit *fit) {
-    fputs("## Parameters\n\n95 % intervals (of the logarithm, linearised). \"data\": how much the drops "
-          "narrowed what was "
-          "assumed before; a parameter left at 90 % or more of its prior width was hardly seen by them.\n\n"
+    fputs("## Parameters\n\n95 % intervals (of the logarithm, linearised). A parameter that keeps 90 % or "
+          "more of its "
+          "prior's width was hardly seen by the drops.\n\n"
           "| parameter | value | 95 % | prior | prior factor (1 sd) | width left of the prior | meaning |\n"
           "|---|---|---|---|---|---|---|\n",
           f);
@@ -341,7 +341,7 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
         fputs("Curve: s0 (1 - exp(-(E - p0) e / s0)) + p0 x + B x^m with x = e / (1 - e).\n", f);
     if (fclose(f) != 0)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
-    const sf_material_text text = {fit->input->material_name, provenance};
+    const sf_material_text text = {fit->input->title, provenance};
     if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
         sf_material_write(output->staging, fit->input->material_name, &card, &text, err);
         sf_foam_card_free(&card);
@@ -412,7 +412,7 @@ static void put_strain_panels(FILE *f) {
 /* Simulated curves; a circle at each measured peak. */
 static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
     fputs("set autoscale\nset xrange [0:*]\nset yrange [0:*]\nset xlabel 'time after contact (ms)'\n"
-          "set ylabel 'deceleration (g)'\nset key right top Right noreverse\n",
+          "set ylabel 'deceleration (g)'\nset key below maxcols 2\n",
           f);
     for (int d = 0; d < fit->measured_drops; d++)
         if (!isnan(fit->input->drop[d].a_max_g))

@@ -1,23 +1,48 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* softfall-fit drop|compression: the foam from tests. */
+/* softfall-fit WORD ...: material parameters from measurements. The first word chooses what is measured. */
 #include "build_info.h"
+#include "fit/compression_command.h"
 #include "fit/drop_command.h"
 
 #include <argp.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char usage[] = "usage: softfall-fit drop FIT.cfg -o DIR\n"
-                            "       softfall-fit drop --help\n";
+static const struct {
+    const char *word;
+    int (*run)(int argc, char **argv);
+    const char *meaning;
+} commands[] = {
+    {"compression", sf_fit_compression_main, "from compression tests of a foam cube to a material file"},
+    {"drop", sf_fit_drop_main, "from measured drops to a material file"},
+};
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+static void print_usage(FILE *file) {
+    fputs("Usage: softfall-fit WORD [OPTION...] FIT.cfg -o DIR\n"
+          "Material parameters from measurements (docs/identification.md).\n\n",
+          file);
+    for (int k = 0; k < COMMANDS; k++)
+        fprintf(file, "  %-14s %s\n", commands[k].word, commands[k].meaning);
+    fputs("\nsoftfall-fit WORD --help lists the options.\n", file);
+}
 
 int main(int argc, char **argv) {
+    const char *word = argc > 1 ? argv[1] : "";
     argp_program_version = "softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")";
-    if (argc > 1 && strcmp(argv[1], "drop") == 0)
-        return sf_fit_drop_main(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "--version") == 0)
-        return puts(argp_program_version) < 0;
-    if (argc > 1 && strcmp(argv[1], "--help") == 0)
-        return fputs(usage, stdout) < 0;
-    fputs(usage, stderr);
+    for (int k = 0; k < COMMANDS; k++)
+        if (strcmp(word, commands[k].word) == 0)
+            return commands[k].run(argc - 1, argv + 1);
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-?") == 0) {
+        print_usage(stdout);
+        return 0;
+    }
+    if (strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0) {
+        puts(argp_program_version);
+        return 0;
+    }
+    if (argc > 1)
+        fprintf(stderr, "softfall-fit: \"%s\" is none of its words\n", word);
+    print_usage(stderr);
     return 2;
 }

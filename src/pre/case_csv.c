@@ -26,6 +26,7 @@ typedef struct csv {
 void sf_case_csv_free(sf_case_csv *table) {
     free(table->value[0]);
     free(table->value[1]);
+    free(table->line);
     memset(table, 0, sizeof *table);
 }
 
@@ -66,7 +67,7 @@ static sf_status read_header(csv *file, char *line, sf_error *err) {
                 return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: two %s columns (\"%s\" and \"%s\")", file->path,
                                file->line, layout->column[name->column], cell[*place], cell[i]);
             *place = i;
-            file->scale[name->column] = name->scale;
+            file->scale[name->column] = file->table->scale[name->column] = name->scale;
         }
     }
     for (int c = 0; c < 2; c++)
@@ -100,10 +101,15 @@ static sf_status append(csv *file, const double value[2], sf_error *err) {
                                file->path);
             table->value[c] = grown;
         }
+        int *lines = realloc(table->line, (size_t)capacity * sizeof *lines);
+        if (!lines)
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
+        table->line = lines;
         table->capacity = capacity;
     }
     for (int c = 0; c < 2; c++)
         table->value[c][table->count] = value[c];
+    table->line[table->count] = file->line;
     table->count++;
     return SF_OK;
 }

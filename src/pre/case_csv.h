@@ -39,6 +39,8 @@ typedef struct sf_case_csv {
     int64_t count;
     int64_t capacity;
     double *value[2]; /* [count] SI; owned */
+    int *line;        /* [count] in the file; owned */
+    double scale[2];  /* from the file's units to SI */
 } sf_case_csv;
 
 /* Reads a table; SF_ERR_INPUT names file, line and value. On failure `*table` is zeroed. */

@@ -72,6 +72,7 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     c->motion_count = table.count;
     c->motion_time = table.value[0];
     c->motion_displacement = table.value[1];
+    free(table.line);
     if (inner.status != SF_OK)
         return SF_FAIL(err, inner.status, "%s (named at %s)", inner.text,
                        sf_case_where(reader, setting, where));

@@ -1,0 +1,565 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-fit compression: what it refuses, its spline, its model against the solver's law and against its
+ * own derivatives, and a fit from the files of tests to a material that softfall-pre reads. */
+#include "fit/compression_fit.h"
+#include "fit/compression_output.h"
+#include "fit/material_point.h"
+#include "pre/case.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+#include "program_fixture.h"
+
+static program_place place;
+
+static int set_up(void **state) {
+    (void)state;
+    program_set_up(&place);
+    return 0;
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    program_tear_down(&place);
+    return 0;
+}
+
+static const char *write_text(const char *name, const char *text) {
+    const char *path = program_path(&place, name);
+    program_write_file(path, text, strlen(text));
+    return path;
+}
+
+/* ---- a test that is good, and what can be wrong with it ---- */
+
+enum { POINTS = 60 };
+
+typedef struct sheet {
+    const char *header;
+    int unloading;
+    double strain[2 * POINTS], stress[2 * POINTS]; /* in the file's units */
+} sheet;
+
+static double foam_stress(double e) {
+    return 9 * (1 - exp(-410 * e / 9)) + 24 * (pow(1 - e, -2.6) - 1);
+}
+
+static double foam_energy(double e) {
+    return 9 * e - 81.0 / 410 * (1 - exp(-410 * e / 9)) + 24 * ((pow(1 - e, -1.6) - 1) / 1.6 - e);
+}
+
+static sheet good_sheet(double factor) {
+    sheet s = {.header = "strain,stress_kPa", .unloading = POINTS};
+    for (int i = 0; i < POINTS; i++) {
+        double e = 0.8 * pow((i + 1.0) / POINTS, 1.5);
+        s.strain[i] = e;
+        s.stress[i] = factor * foam_stress(e);
+        int back = 2 * POINTS - 1 - i;
+        s.strain[back] = e - 1e-4;
+        s.stress[back] =
+            foam_stress(e - 1e-4) * (0.05 + 0.95 * pow(foam_energy(e - 1e-4) / foam_energy(0.8), 2.5));
+    }
+    return s;
+}
+
+static const char *write_sheet(const char *name, const sheet *s) {
+    const char *path = program_path(&place, name);
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fprintf(out, "# a test\n%s\n", s->header);
+    for (int i = 0; i < POINTS + s->unloading; i++)
+        fprintf(out, "%.9g,%.9g\n", s->strain[i], s->stress[i]);
+    assert_int_equal(fclose(out), 0);
+    return path;
+}
+
+static void assert_refused(const sheet *s, const char *part, int line) {
+    char where[600];
+    sf_compression_test test;
+    sf_error err = SF_ERROR_INIT;
+    const char *path = write_sheet("bad.csv", s);
+    assert_int_equal(sf_compression_test_read(path, 1, &test, &err), SF_ERR_INPUT);
+    snprintf(where, sizeof where, line ? "%s:%d: " : "%s: ", path, line);
+    if (!strstr(err.text, part) || !strstr(err.text, where))
+        fail_msg("\"%s\" and \"%s\" are expected in: %s", where, part, err.text);
+    assert_null(test.strain);
+}
+
+/* Row i stands in line i + 3. */
+static void wrong_tests_are_refused_with_their_line(void **state) {
+    (void)state;
+    const sheet good = good_sheet(1);
+    sheet s = good;
+    s.strain[100] = s.strain[99] + 0.01;
+    assert_refused(&s, "rises again", 103);
+    s = good;
+    s.strain[20] = s.strain[19] - 0.001;
+    assert_refused(&s, "rises again", 24);
+    s = good;
+    s.header = "strain,stress_N";
+    assert_refused(&s, "no column \"stress_Pa\"", 2);
+    s = good;
+    s.header = "elongation,stress_kPa";
+    assert_refused(&s, "no column \"strain\"", 2);
+    s = good;
+    s.unloading = 3 - POINTS;
+    assert_refused(&s, "points of loading", 0);
+    s = good;
+    s.unloading = 3;
+    assert_refused(&s, "unloading has 3 points", 63);
+    s = good;
+    for (int i = 0; i < 2 * POINTS; i++)
+        s.stress[i] = -s.stress[i];
+    assert_refused(&s, "compression must be positive", 17);
+    s = good;
+    s.strain[0] = -0.1;
+    assert_refused(&s, "compression must be positive", 3);
+    s = good;
+    s.stress[50] = 0.8 * s.stress[49];
+    assert_refused(&s, "fallen by more than a tenth", 53);
+    s = good;
+    s.stress[61] = 1.2 * s.stress[58];
+    assert_refused(&s, "above the loading stress", 64);
+    s = good;
+    for (int i = 0; i < 2 * POINTS; i++)
+        s.strain[i] *= 100;
+    assert_refused(&s, "strain_percent", 6);
+    s = good;
+    s.header = "strain_percent,stress_kPa";
+    assert_refused(&s, "must reach 10 %", 0);
+    s = good;
+    memset(s.stress, 0, sizeof s.stress);
+    assert_refused(&s, "zero everywhere", 0);
+}
+
+static void scatter_about_zero_and_percent_are_read(void **state) {
+    (void)state;
+    sheet s = good_sheet(1);
+    sf_compression_test test;
+    sf_error err = SF_ERROR_INIT;
+    s.header = "strain_percent,stress_MPa";
+    for (int i = 0; i < 2 * POINTS; i++) {
+        s.strain[i] *= 100;
+        s.stress[i] *= 1e-3;
+    }
+    s.stress[2 * POINTS - 1] = -1e-4;
+    assert_int_equal(sf_compression_test_read(write_sheet("good.csv", &s), 2, &test, &err), SF_OK);
+    assert_int_equal(test.loading, POINTS);
+    assert_int_equal(test.count, 2 * POINTS);
+    assert_close(test.largest_strain, 0.8, 1e-12);
+    assert_relative(test.largest_stress, 1e3 * foam_stress(0.8), 1e-6);
+    sf_compression_test_free(&test);
+}
+
+/* 1201 points up and 1200 down: means of three, the turn as it is. */
+static void long_branches_are_condensed_to_means(void **state) {
+    (void)state;
+    sf_compression_test test;
+    sf_error err = SF_ERROR_INIT;
+    const char *path = program_path(&place, "long.csv");
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs("strain,stress_kPa\n", out);
+    for (int i = 1; i <= 2401; i++) {
+        double e = 0.6 * (i <= 1201 ? i : 2402 - i) / 1201;
+        fprintf(out, "%.12g,%.12g\n", e, 100 * e);
+    }
+    assert_int_equal(fclose(out), 0);
+    assert_int_equal(sf_compression_test_read(path, 2, &test, &err), SF_OK);
+    assert_int_equal(test.loading, 401);
+    assert_int_equal(test.count, 801);
+    assert_close(test.strain[400], 0.6, 1e-12);
+    assert_close(test.strain[0], 0.6 * 2 / 1201, 1e-12);
+    for (int i = 0; i < test.count; i++)
+        assert_close(test.stress[i], 1e5 * test.strain[i], 1e-6);
+    sf_compression_test_free(&test);
+}
+
+/* ---- FIT.cfg ---- */
+
+#define TEST_LIST "tests = ( { file = \"slow.csv\"; rate = \"0.1 1/min\"; } );\n"
+
+static void wrong_files_are_refused_with_their_line(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *part;
+        int line;
+    } cases[] = {
+        {TEST_LIST, "density is missing", 0},
+        {"density = 35;\n" TEST_LIST, "a text with its unit", 1},
+        {"density = \"35 g\";\n" TEST_LIST, "a density", 1},
+        {"density = \"35 kg/m3\";\n", "tests is missing", 0},
+        {"density = \"35 kg/m3\";\ntests = ( { file = \"slow.csv\"; } );\n", "rate is missing", 2},
+        {"density = \"35 kg/m3\";\ntests = ( { file = \"slow.csv\"; rate = \"0.1 1/min\"; },\n"
+         "{ file = \"slow.csv\"; rate = \"6 1/h\"; } );\n",
+         "give each rate once", 3},
+        {"density = \"35 kg/m3\";\ntests = ( { file = \"slow.csv\"; rate = \"0.1 mm\"; } );\n", "a rate", 2},
+        {"density = \"35 kg/m3\";\ntests = ( { file = \"slow.csv\"; rate = \"-1 1/min\"; } );\n",
+         "must be above 0", 2},
+        {"density = \"35 kg/m3\";\ntests = ( { file = \"none.csv\"; rate = \"1 1/min\"; } );\n", "none.csv",
+         2},
+        {"density = \"35 kg/m3\";\nspeed = 1;\n" TEST_LIST, "unknown key \"speed\"", 2},
+        {"density = \"35 kg/m3\";\nrate_model = \"linear\";\n" TEST_LIST, "one of none, log", 2},
+        {"density = \"35 kg/m3\";\nrate_model = \"log\";\n" TEST_LIST, "needs tests at two rates", 0},
+        {"density = \"35 kg/m3\";\nE_range = 2.0;\n" TEST_LIST, "outside 0.001 to 0.2", 2},
+        {"density = \"35 kg/m3\";\nE_range = 0.002;\n" TEST_LIST, "E needs at least 4", 0},
+        {"density = \"35 kg/m3\";\ndensification_start = 0.79;\n" TEST_LIST, "leaves no data", 0},
+        {"density = = 3;\n", "syntax error", 1},
+    };
+    const sheet s = good_sheet(1);
+    write_sheet("slow.csv", &s);
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        sf_compression_config config;
+        sf_error err = SF_ERROR_INIT;
+        char where[64];
+        assert_int_equal(sf_compression_config_read(write_text("fit.cfg", cases[k].text), &config, &err),
+                         SF_ERR_INPUT);
+        snprintf(where, sizeof where, "fit.cfg:%d", cases[k].line);
+        if (!strstr(err.text, cases[k].part) || (cases[k].line && !strstr(err.text, where)))
+            fail_msg("\"%s\" and \"%s\" are expected in: %s", where, cases[k].part, err.text);
+        assert_int_equal(config.test_count, 0);
+    }
+}
+
+/* ---- spline ---- */
+
+static void spline_rows_are_value_slope_and_integral(void **state) {
+    (void)state;
+    static const double breaks[] = {0, 0.05, 0.1, 0.3, 0.7};
+    sf_spline spline;
+    sf_error err = SF_ERROR_INIT;
+    double row[SF_SPLINE_COEFFICIENTS], up[SF_SPLINE_COEFFICIENTS], down[SF_SPLINE_COEFFICIENTS];
+    assert_int_equal(sf_spline_init(&spline, 5, breaks, &err), SF_OK);
+    for (double x = 0.011; x < 0.69; x += 0.03) {
+        const double h = 1e-5;
+        sf_spline_value(&spline, x + h, up);
+        sf_spline_value(&spline, x - h, down);
+        sf_spline_slope(&spline, x, row);
+        for (int j = 0; j < spline.count; j++)
+            assert_close(row[j], (up[j] - down[j]) / (2 * h), 1e-4);
+        sf_spline_integral(&spline, x + h, up);
+        sf_spline_integral(&spline, x - h, down);
+        sf_spline_value(&spline, x, row);
+        for (int j = 0; j < spline.count; j++)
+            assert_close(row[j], (up[j] - down[j]) / (2 * h), 1e-6);
+    }
+    sf_spline_integral(&spline, 0, row);
+    for (int j = 0; j < spline.count; j++)
+        assert_close(row[j], 0, 1e-15);
+    sf_spline_free(&spline);
+}
+
+static void knots_ascend_and_leave_two_points_between(void **state) {
+    (void)state;
+    double x[30], breaks[SF_SPLINE_BREAKS];
+    for (int i = 0; i < 30; i++)
+        x[i] = 0.8 * (i + 1) / 30;
+    const sf_spline_data data = {x, 30};
+    for (int grading = SF_GRADING_ENDS; grading <= SF_GRADING_FOAM; grading++) {
+        int count = sf_spline_place((sf_spline_grading)grading, 40, 0, 0.8, 1, &data, breaks);
+        assert_in_range(count, 5, 16);
+        assert_close(breaks[count - 1], 0.8, 0);
+        for (int k = 1; k < count; k++) {
+            int inside = 0;
+            for (int i = 0; i < 30; i++)
+                inside += x[i] >= breaks[k - 1] && x[i] < breaks[k];
+            assert_in_range(inside, 2, 30);
+        }
+    }
+}
+
+/* ---- model ---- */
+
+static void read_tests(sf_compression_config *config) {
+    static const char text[] = "density = \"35 kg/m3\";\nname = \"test foam\";\ntests = (\n"
+                               "{ file = \"fast.csv\"; rate = \"10 1/min\"; },\n"
+                               "{ file = \"slow.csv\"; rate = \"0.1 1/min\"; } );\n";
+    const sheet slow = good_sheet(1), fast = good_sheet(1 + 0.04 * log(100));
+    sf_error err = SF_ERROR_INIT;
+    write_sheet("slow.csv", &slow);
+    write_sheet("fast.csv", &fast);
+    if (sf_compression_config_read(write_text("fit.cfg", text), config, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_relative(config->test[0].rate, 0.1 / 60, 1e-12); /* in ascending order */
+    assert_relative(config->test[1].rate, 10.0 / 60, 1e-12);
+}
+
+static void derivatives_are_those_of_the_prediction(void **state) {
+    (void)state;
+    sf_compression_config config;
+    sf_compression_data data;
+    sf_error err = SF_ERROR_INIT;
+    read_tests(&config);
+    assert_int_equal(sf_compression_data_init(&config, &data, &err), SF_OK);
+    for (int rate = 0; rate < SF_RATE_MODELS; rate++)
+        for (int rule = 0; rule < SF_RULES; rule++) {
+            sf_compression_model model;
+            const sf_compression_form form = {(sf_rate_model)rate, (sf_rule)rule};
+            assert_int_equal(sf_compression_model_init(&data, form, &model, &err), SF_OK);
+            size_t n = (size_t)data.count, p = (size_t)model.parameter_count;
+            gsl_vector *x = gsl_vector_alloc(p);
+            gsl_matrix *jacobian = gsl_matrix_alloc(n, p);
+            double *up = calloc(n, sizeof *up), *down = calloc(n, sizeof *down);
+            sf_compression_guess(&model, 0.5, x);
+            sf_compression_predict(&model, x, up, jacobian);
+            for (size_t j = 0; j < p; j++) {
+                const double h = 1e-5, at = gsl_vector_get(x, j);
+                gsl_vector_set(x, j, at + h);
+                sf_compression_predict(&model, x, up, NULL);
+                gsl_vector_set(x, j, at - h);
+                sf_compression_predict(&model, x, down, NULL);
+                gsl_vector_set(x, j, at);
+                for (size_t i = 0; i < n; i++)
+                    assert_close(gsl_matrix_get(jacobian, i, j), (up[i] - down[i]) / (2 * h),
+                                 1e-5 * fabs(up[i]) + 1e-2);
+            }
+            free(up);
+            free(down);
+            gsl_vector_free(x);
+            gsl_matrix_free(jacobian);
+            sf_compression_model_free(&model);
+        }
+    sf_compression_data_free(&data);
+    sf_compression_config_free(&config);
+}
+
+/* Every form of the law: the prediction at the guess against the solver's law with the card of those numbers.
+ */
+static void maxwell_stress_is_that_of_the_solver(void **state) {
+    (void)state;
+    enum { N = 9 };
+    static const double strain[N] = {0.01, 0.1, 0.3, 0.55, 0.8, 0.7, 0.5, 0.2, 0.01};
+    double rates[2] = {0}, line_strain[3] = {0, 0.45, 0.9}, line_stress[3] = {0, 450, 900}, with[N],
+           without[N];
+    int64_t ptr[2] = {0, 3};
+    sf_foam_card card = {.density = 35,
+                         .modulus = 1e3,
+                         .hysteresis_hu = 1,
+                         .hysteresis_shape = 1,
+                         .maxwell_rate = 0.7,
+                         .tension_cutoff = 1e30,
+                         .densification_limit = 1,
+                         .densification_exponent = 1,
+                         .rate_filter_time = 1e-4,
+                         .curve_count = 1,
+                         .curve_points = 3,
+                         .curve_rate = rates,
+                         .curve_ptr = ptr,
+                         .curve_strain = line_strain,
+                         .curve_stress = line_stress};
+    for (double rate = 0.01; rate < 20; rate *= 10) {
+        sf_foam foam;
+        sf_error err = SF_ERROR_INIT;
+        card.maxwell_modulus = 0;
+        assert_int_equal(sf_foam_build(&card, &foam, &err), SF_OK);
+        sf_material_point_drive(&foam, rate, 1e-4, N, strain, without);
+        sf_foam_free(&foam);
+        card.maxwell_modulus = 5e4;
+        assert_int_equal(sf_foam_build(&card, &foam, &err), SF_OK);
+        sf_material_point_drive(&foam, rate, 1e-4, N, strain, with);
+        sf_foam_free(&foam);
+        for (int i = 0; i < N; i++)
+            assert_close(5e4 * sf_compression_maxwell(0.7, rate, 0.8, strain[i], i > 4), with[i] - without[i],
+                         0.5);
+    }
+}
+
+/* ---- fits ---- */
+
+static void check_card(const sf_compression_fit *fit) {
+    sf_foam_card card;
+    sf_foam foam;
+    sf_error err = SF_ERROR_INIT;
+    const sf_compression_data *d = &fit->data;
+    double *stress = calloc((size_t)d->count, sizeof *stress);
+    assert_int_equal(sf_compression_card(fit, &card, &err), SF_OK);
+    assert_int_equal(sf_foam_build(&card, &foam, &err), SF_OK);
+    for (int k = 0, first = 0; k < d->config->test_count; first += d->config->test[k++].count) {
+        const sf_compression_test *t = &d->config->test[k];
+        sf_material_point_drive(&foam, t->rate, 5e-4, t->count, &d->strain[first], &stress[first]);
+        for (int i = first; i < first + t->count; i++)
+            assert_close(stress[i], fit->stress[i], 0.005 * fit->stress[i] + 20);
+    }
+    free(stress);
+    sf_foam_free(&foam);
+    sf_compression_card_free(&card);
+}
+
+/* Curves rise, and the densification goes on with value and slope. */
+static void check_curve(sf_compression_fit *fit) {
+    double last = -1, start = fit->data.start;
+    for (int r = 0; r < fit->rate_count; r++, last = -1)
+        for (int k = 0; k < fit->table_count; k++) {
+            assert_true(fit->table_stress[r][k] > last);
+            assert_true(k == 0 || fit->table_strain[k] > fit->table_strain[k - 1]);
+            last = fit->table_stress[r][k];
+        }
+    const double h = 1e-6;
+    double at = sf_compression_curve(&fit->model, fit->parameters, 0, start, NULL);
+    double before = sf_compression_curve(&fit->model, fit->parameters, 0, start - h, NULL);
+    double after = sf_compression_curve(&fit->model, fit->parameters, 0, start + h, NULL);
+    assert_relative((after - at) / h, (at - before) / h, 1e-3);
+}
+
+static void every_form_gives_a_card_that_the_solver_follows(void **state) {
+    (void)state;
+    sf_compression_config config;
+    read_tests(&config);
+    for (int rate = 0; rate < SF_RATE_MODELS; rate++)
+        for (int rule = SF_RULE_H1; rule <= SF_RULE_H2; rule++) {
+            sf_compression_fit fit;
+            sf_error err = SF_ERROR_INIT;
+            config.rate_model = (sf_rate_model)rate;
+            config.rule = (sf_rule_choice)rule;
+            if (sf_compression_fit_run(&config, &fit, &err) != SF_OK)
+                fail_msg("%s", err.text);
+            check_curve(&fit);
+            check_card(&fit);
+            sf_compression_fit_free(&fit);
+        }
+    sf_compression_config_free(&config);
+}
+
+static void exact_data_give_their_parameters_back(void **state) {
+    (void)state;
+    sf_compression_config config;
+    sf_compression_fit fit;
+    sf_error err = SF_ERROR_INIT;
+    read_tests(&config);
+    if (sf_compression_fit_run(&config, &fit, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_int_equal(fit.model.form.rate, SF_RATE_LOG);
+    assert_close(fit.estimate[SF_ESTIMATE_LOG_RATE].value, 0.04, 4e-4);
+    assert_close(fit.estimate[SF_ESTIMATE_HU].value, 0.05, 2e-3);
+    assert_close(fit.estimate[SF_ESTIMATE_SHAPE].value, 2.5, 0.03);
+    assert_close(fit.estimate[SF_ESTIMATE_EXPONENT].value, 2.6, 0.1);
+    sf_compression_fit_free(&fit);
+    sf_compression_config_free(&config);
+}
+
+static void without_unloading_there_is_no_hysteresis_and_it_is_said(void **state) {
+    (void)state;
+    sheet s = good_sheet(1);
+    sf_compression_config config;
+    sf_compression_fit fit;
+    sf_error err = SF_ERROR_INIT;
+    s.unloading = 0;
+    write_sheet("slow.csv", &s);
+    assert_int_equal(sf_compression_config_read(write_text("fit.cfg", "density = \"35 kg/m3\";\n" TEST_LIST),
+                                                &config, &err),
+                     SF_OK);
+    if (sf_compression_fit_run(&config, &fit, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_close(fit.estimate[SF_ESTIMATE_HU].value, 1, 0);
+    assert_true(isnan(fit.estimate[SF_ESTIMATE_HU].error));
+    assert_non_null(strstr(fit.estimate[SF_ESTIMATE_HU].note, "no test unloads"));
+    assert_int_equal(fit.model.form.rate, SF_RATE_NONE);
+    sf_compression_fit_free(&fit);
+    sf_compression_config_free(&config);
+}
+
+/* ---- the program ---- */
+
+static void written_material_is_the_card_of_the_fit(void **state) {
+    (void)state;
+    sf_compression_config config;
+    sf_compression_fit fit;
+    sf_foam_card card;
+    sf_case c;
+    sf_error err = SF_ERROR_INIT;
+    char material[700];
+    read_tests(&config);
+    assert_int_equal(sf_compression_fit_run(&config, &fit, &err), SF_OK);
+    assert_int_equal(sf_compression_card(&fit, &card, &err), SF_OK);
+    program_result r = program_succeed(&place, "fit", "compression fit.cfg -o out");
+    assert_non_null(strstr(r.out, "SHAPE"));
+    write_text("pad.geo", "// not meshed\n");
+    snprintf(material, sizeof material, "material=@%s", program_path(&place, "out/material.cfg"));
+    const char *const overrides[] = {material};
+    const char *path = write_text("case.cfg", "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\n"
+                                              "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
+                                              "solver: { end_time = \"40 ms\"; };\n");
+    if (sf_case_read(path, 1, overrides, &c, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_int_equal(c.foam.curve_count, card.curve_count);
+    assert_int_equal(c.foam.curve_points, card.curve_points);
+    assert_relative(c.foam.modulus, card.modulus, 1e-10);
+    assert_relative(c.foam.hysteresis_hu, card.hysteresis_hu, 1e-10);
+    assert_relative(c.foam.hysteresis_shape, card.hysteresis_shape, 1e-10);
+    assert_relative(c.foam.densification_start, card.densification_start, 1e-10);
+    assert_relative(c.foam.densification_exponent, card.densification_exponent, 1e-10);
+    for (int64_t k = 0; k < card.curve_points; k++)
+        assert_close(c.foam.curve_stress[k], card.curve_stress[k], 1e-9 * card.curve_stress[k]);
+    sf_case_free(&c);
+    sf_compression_card_free(&card);
+    sf_compression_fit_free(&fit);
+    sf_compression_config_free(&config);
+}
+
+static void results_are_replaced_only_by_force(void **state) {
+    (void)state;
+    sf_compression_config config;
+    read_tests(&config);
+    sf_compression_config_free(&config);
+    program_succeed(&place, "fit", "compression fit.cfg -o twice");
+    assert_int_equal(program_run(&place, "fit", "compression fit.cfg -o twice").code, SF_ERR_INPUT);
+    program_succeed(&place, "fit", "compression fit.cfg -o twice --force");
+    assert_int_equal(program_run(&place, "fit", "guess fit.cfg -o other").code, 2);
+    assert_int_equal(program_run(&place, "fit", "compression none.cfg -o other").code, SF_ERR_INPUT);
+    assert_int_not_equal(access(program_path(&place, "other"), F_OK), 0);
+}
+
+/* The solver presses a cube of the fitted foam, 1200 times faster than the test. */
+static void simulated_cube_agrees_with_the_material_point(void **state) {
+    (void)state;
+    double loading, unloading;
+    const sheet s = good_sheet(1);
+    char case_path[512];
+    snprintf(case_path, sizeof case_path, "%s/examples/compression/case.cfg", getenv("SF_SOURCE_DIR"));
+    write_sheet("slow.csv", &s);
+    write_text("fit.cfg", "density = \"35 kg/m3\";\n" TEST_LIST);
+    program_result r = program_run(&place, "fit", "compression fit.cfg -o cube --simulate '%s'", case_path);
+    assert_int_equal(r.code, SF_ERR_INPUT); /* no specimen */
+    write_text(
+        "fit.cfg",
+        "density = \"35 kg/m3\";\nspecimen = { side = \"20 mm\"; thickness = \"20 mm\"; };\n" TEST_LIST);
+    r = program_succeed(&place, "fit", "compression fit.cfg -o cube --force --simulate '%s' --friction 0.2",
+                        case_path);
+    const char *line = strstr(r.out, "largest difference");
+    assert_non_null(line);
+    assert_int_equal(
+        sscanf(line, "largest difference %lf %% loading, %lf %% unloading", &loading, &unloading), 2);
+    assert_in_range((int)(1000 * loading), 1, 500);
+    assert_in_range((int)(1000 * unloading), 1, 3000);
+    assert_int_equal(access(program_path(&place, "cube/simulation.csv"), R_OK), 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wrong_tests_are_refused_with_their_line),
+        cmocka_unit_test(scatter_about_zero_and_percent_are_read),
+        cmocka_unit_test(long_branches_are_condensed_to_means),
+        cmocka_unit_test(wrong_files_are_refused_with_their_line),
+        cmocka_unit_test(spline_rows_are_value_slope_and_integral),
+        cmocka_unit_test(knots_ascend_and_leave_two_points_between),
+        cmocka_unit_test(derivatives_are_those_of_the_prediction),
+        cmocka_unit_test(maxwell_stress_is_that_of_the_solver),
+        cmocka_unit_test(every_form_gives_a_card_that_the_solver_follows),
+        cmocka_unit_test(exact_data_give_their_parameters_back),
+        cmocka_unit_test(without_unloading_there_is_no_hysteresis_and_it_is_said),
+        cmocka_unit_test(written_material_is_the_card_of_the_fit),
+        cmocka_unit_test(results_are_replaced_only_by_force),
+        cmocka_unit_test(simulated_cube_agrees_with_the_material_point),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
