@@ -177,7 +177,8 @@ static sf_status run_program(char *const *arguments, const char *log, sf_error *
 /* ---- a drop ---- */
 
 typedef struct place {
-    char folder[TEXT_SIZE], model[TEXT_SIZE + 16], results[TEXT_SIZE + 16], log[TEXT_SIZE + 16];
+    char folder[TEXT_SIZE], model[TEXT_SIZE + 16], results[TEXT_SIZE + 16], checkpoint[TEXT_SIZE + 32],
+        log[TEXT_SIZE + 16];
 } place;
 
 static sf_status make_folder(const char *path, sf_error *err) {
@@ -212,8 +213,23 @@ static sf_status locate(const sf_runner *runner, const sf_runner_drop *drop, int
              (unsigned long long)hash);
     snprintf(at->model, sizeof at->model, "%s/model.h5", at->folder);
     snprintf(at->results, sizeof at->results, "%s/results.h5", at->folder);
+    snprintf(at->checkpoint, sizeof at->checkpoint, "%s.restart", at->results);
     snprintf(at->log, sizeof at->log, "%s/log.txt", at->folder);
     return err->status;
+}
+
+/* Takes up a drop that was interrupted. False if there is none, or it cannot go on: then it starts anew. */
+static bool resume(const char *solve, const char *threads, const place *at, sf_error *err) {
+    const char *run[] = {solve, "--restart", at->results, at->model, "-t", threads, NULL};
+    sf_error trial = SF_ERROR_INIT;
+    if (access(at->model, R_OK) != 0 || access(at->checkpoint, R_OK) != 0)
+        return false;
+    run_program((char *const *)run, at->log, &trial);
+    if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC)
+        return false;
+    if (trial.status != SF_OK)
+        SF_FAIL(err, trial.status, "%s", trial.text);
+    return true;
 }
 
 static sf_status simulate(const sf_runner *runner, const sf_runner_drop *drop, int count,
@@ -231,10 +247,15 @@ static sf_status simulate(const sf_runner *runner, const sf_runner_drop *drop, i
         find_program("softfall-solve", solve, err) != SF_OK || make_folder(runner->folder, err) != SF_OK ||
         make_folder(at->folder, err) != SF_OK)
         return err->status;
-    remove(at->log);
-    if (run_program((char *const *)build, at->log, err) == SF_OK)
-        run_program((char *const *)run, at->log, err);
-    remove(at->model);
+    if (!resume(solve, threads, at, err)) {
+        remove(at->log);
+        if (run_program((char *const *)build, at->log, err) == SF_OK)
+            run_program((char *const *)run, at->log, err);
+    }
+    if (err->status != SF_INTERRUPTED) {
+        remove(at->model);
+        remove(at->checkpoint);
+    }
     return err->status;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Drops simulated by softfall-pre and softfall-solve, each in a folder of its own that stays: a campaign (a
- * fit, a series of drop heights) that was interrupted finds the drops it has finished and goes on from there.
+ * fit, a series of drop heights) that was interrupted finds the drops it has finished and goes on from there,
+ * with an interrupted drop from its checkpoint.
  *
  * The programs are those in the folder of the running program, or in SF_BIN_DIR if that is set. */
 #ifndef SF_CAMPAIGN_RUNNER_H

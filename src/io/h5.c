@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SF_H5_MAX_RANK = 4, SF_H5_CHUNK_ROWS = 4096, SF_H5_ATTRIBUTE_SIZE = 65536 };
+enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536 };
 
 struct sf_h5 {
     hid_t id;
@@ -84,12 +84,6 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: it is damaged or another program is writing it",
                        path);
     return wrap(id, path, (uint64_t)info.st_size, file, err);
-}
-
-sf_status sf_h5_flush(sf_h5 *file, sf_error *err) {
-    if (H5Fflush(file->id, H5F_SCOPE_GLOBAL) < 0)
-        return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", file->path);
-    return SF_OK;
 }
 
 sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
@@ -174,12 +168,18 @@ static sf_status string_attribute(const sf_h5 *file, hid_t object, const char *n
     return SF_OK;
 }
 
-/* Creates a dataset with its two attributes and closes it again unless `keep` is given. */
-static sf_status create_dataset(sf_h5 *file, const sf_h5_info *info, hid_t type, hid_t space, hid_t creation,
-                                hid_t *keep, sf_error *err) {
+/* Links that are made with the groups above them. */
+static hid_t make_groups(void) {
     hid_t links = H5Pcreate(H5P_LINK_CREATE);
     H5Pset_create_intermediate_group(links, 1);
-    hid_t set = H5Dcreate2(file->id, info->path, type, space, links, creation, H5P_DEFAULT);
+    return links;
+}
+
+/* Creates a dataset with its two attributes and closes it again unless `keep` is given. */
+static sf_status create_dataset(sf_h5 *file, const sf_h5_info *info, hid_t type, hid_t space, hid_t *keep,
+                                sf_error *err) {
+    hid_t links = make_groups();
+    hid_t set = H5Dcreate2(file->id, info->path, type, space, links, H5P_DEFAULT, H5P_DEFAULT);
     H5Pclose(links);
     if (set < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: dataset %s cannot be created", file->path, info->path);
@@ -202,7 +202,7 @@ sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int 
     }
     hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
     hid_t set = -1;
-    sf_status status = create_dataset(file, info, native_type(type), space, H5P_DEFAULT, &set, err);
+    sf_status status = create_dataset(file, info, native_type(type), space, &set, err);
     if (status == SF_OK && !empty &&
         H5Dwrite(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
         status = SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
@@ -222,7 +222,7 @@ sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text
     H5Tset_cset(type, H5T_CSET_UTF8);
     hid_t space = H5Screate(H5S_SCALAR);
     hid_t set = -1;
-    sf_status status = create_dataset(file, info, type, space, H5P_DEFAULT, &set, err);
+    sf_status status = create_dataset(file, info, type, space, &set, err);
     if (status == SF_OK && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0)
         status = SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
     if (set >= 0)
@@ -434,50 +434,21 @@ sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const c
     return err->status;
 }
 
-sf_status sf_h5_series_create(sf_h5 *file, const sf_h5_info *info, int64_t columns, sf_error *err) {
-    int rank = columns == 1 ? 1 : 2;
-    hsize_t extent[2] = {0, (hsize_t)columns};
-    hsize_t limit[2] = {H5S_UNLIMITED, (hsize_t)columns};
-    hsize_t chunk[2] = {SF_H5_CHUNK_ROWS, (hsize_t)columns};
-    hid_t space = H5Screate_simple(rank, extent, limit);
-    hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_chunk(creation, rank, chunk);
-    hid_t set = -1;
-    sf_status status = create_dataset(file, info, H5T_NATIVE_DOUBLE, space, creation, &set, err);
-    if (set >= 0)
-        H5Dclose(set);
-    H5Pclose(creation);
-    H5Sclose(space);
-    return status;
+sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *err) {
+    hid_t links = make_groups();
+    herr_t result = H5Ocopy(from->id, path, to->id, path, H5P_DEFAULT, links);
+    H5Pclose(links);
+    if (result < 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s of %s cannot be copied to %s", path, from->path, to->path);
+    return SF_OK;
 }
 
-sf_status sf_h5_append(sf_h5 *file, const char *path, int64_t rows, int64_t columns, const double *data,
-                       sf_error *err) {
-    if (rows == 0)
-        return SF_OK;
-    hid_t set = -1;
-    if (open_dataset(file, path, &set, err) != SF_OK)
-        return err->status;
-    int rank = columns == 1 ? 1 : 2;
-    hid_t old = H5Dget_space(set);
-    hsize_t extent[2] = {0, 1};
-    H5Sget_simple_extent_dims(old, extent, NULL);
-    H5Sclose(old);
-    hsize_t start[2] = {extent[0], 0};
-    hsize_t count[2] = {(hsize_t)rows, (hsize_t)columns};
-    hsize_t grown[2] = {extent[0] + (hsize_t)rows, (hsize_t)columns};
-    herr_t result = H5Dset_extent(set, grown);
-    hid_t target = H5Dget_space(set);
-    hid_t source = H5Screate_simple(rank, count, NULL);
-    if (result >= 0)
-        result = H5Sselect_hyperslab(target, H5S_SELECT_SET, start, NULL, count, NULL);
-    if (result >= 0)
-        result = H5Dwrite(set, H5T_NATIVE_DOUBLE, source, target, H5P_DEFAULT, data);
-    H5Sclose(source);
-    H5Sclose(target);
-    H5Dclose(set);
+sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error *err) {
+    hid_t links = make_groups();
+    herr_t result = H5Lcreate_external(target, path, file->id, path, links, H5P_DEFAULT);
+    H5Pclose(links);
     if (result < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s: appending to %s failed (disk full?)", file->path, path);
+        return SF_FAIL(err, SF_ERR_IO, "%s: no link %s to %s can be made", file->path, path, target);
     return SF_OK;
 }
 

@@ -25,8 +25,6 @@ typedef struct sf_h5_info {
  * a file that is missing, unreadable or not HDF5 is SF_ERR_IO with a sentence that says which. */
 sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err);
 sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
-/* Brings everything written so far to the file system, so that a reader finds a consistent file. */
-sf_status sf_h5_flush(sf_h5 *file, sf_error *err);
 /* Closes; `*file` may be NULL and is NULL afterwards. Reports a failed final write. */
 sf_status sf_h5_close(sf_h5 **file, sf_error *err);
 
@@ -66,10 +64,12 @@ sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *n
 sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const char *name, int64_t *value,
                                   sf_error *err);
 
-/* An extendable dataset of doubles, shape (0, columns) or (0) when columns is 1; sf_h5_append adds rows. */
-sf_status sf_h5_series_create(sf_h5 *file, const sf_h5_info *info, int64_t columns, sf_error *err);
-sf_status sf_h5_append(sf_h5 *file, const char *path, int64_t rows, int64_t columns, const double *data,
-                       sf_error *err);
+/* Copies an object (a dataset, or a group with all it holds) to the same path of another file. */
+sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *err);
+/* Makes `path` stand for the object of the same path in another file, named relative to the folder of this
+ * one.
+ */
+sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error *err);
 
 /* "1.10.8", static storage. */
 const char *sf_h5_version(void);

@@ -7,6 +7,12 @@
 #include <string.h>
 #include <time.h>
 
+sf_status sf_provenance_mark(sf_h5 *file, const char *format, sf_error *err) {
+    if (sf_h5_set_attribute(file, "/", "format", format, err) != SF_OK)
+        return err->status;
+    return sf_h5_set_attribute_i64(file, "/", "format_version", SF_FORMAT_VERSION, err);
+}
+
 sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenance *p, sf_error *err) {
     char created[32];
     time_t now = time(NULL);
@@ -27,15 +33,15 @@ sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenan
         {"/provenance/case_text", p->case_text, "case file as used"},
         {"/provenance/parameters", p->parameters, "every parameter as used"},
         {"/provenance/mesh_hash", p->mesh_hash, "FNV-1a of positions and cells"},
+        {"/provenance/model_path", p->model_path, "model file that was solved"},
+        {"/provenance/model_hash", p->model_hash, "hash of all its fields"},
     };
     for (size_t k = 0; k < sizeof item / sizeof item[0]; k++) {
         sf_h5_info info = {item[k].path, "1", item[k].description};
         if (item[k].text && sf_h5_write_text(file, &info, item[k].text, err) != SF_OK)
             return err->status;
     }
-    if (sf_h5_set_attribute(file, "/", "format", format, err) != SF_OK)
-        return err->status;
-    return sf_h5_set_attribute_i64(file, "/", "format_version", SF_FORMAT_VERSION, err);
+    return sf_provenance_mark(file, format, err);
 }
 
 sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *format, sf_error *err) {

@@ -16,11 +16,16 @@ typedef struct sf_provenance {
     const char *case_text;
     const char *parameters;
     const char *mesh_hash;
+    const char *model_path; /* of the solver */
+    const char *model_hash; /* sf_model_hash, 16 hex digits */
 } sf_provenance;
 
 /* Writes /provenance and the root attributes format and format_version. */
 sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenance *provenance,
                               sf_error *err);
+
+/* Those two attributes alone. */
+sf_status sf_provenance_mark(sf_h5 *file, const char *format, sf_error *err);
 
 /* Refuses a file that is not of `format` or is of a newer version; `path` is for the sentence. */
 sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *format, sf_error *err);

@@ -85,7 +85,12 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
         goto done;
     }
     sf_report_print(stdout, &model, &report);
-    sf_provenance provenance = {"softfall-pre", command, libraries, c.text, c.parameters, report.mesh_hash};
+    sf_provenance provenance = {.program = "softfall-pre",
+                                .command_line = command,
+                                .libraries = libraries,
+                                .case_text = c.text,
+                                .parameters = c.parameters,
+                                .mesh_hash = report.mesh_hash};
     if (sf_model_write(o->output, &model, &provenance, err) == SF_OK)
         printf("%-26s%s\n", "written", o->output);
 done:

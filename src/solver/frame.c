@@ -197,6 +197,36 @@ sf_status sf_snapshot_write(const sf_model *m, const sf_snapshot *snapshot, cons
     return err->status;
 }
 
+/* The numbers of group/name into `out`. */
+static sf_status read_item(const sf_h5 *file, const char *group, const char *name, int rank, int64_t *dims,
+                           double *out, sf_error *err) {
+    char path[128];
+    void *data = NULL;
+    size_t count = 1;
+    for (int k = 0; k < rank; k++)
+        count *= (size_t)dims[k];
+    snprintf(path, sizeof path, "%s/%s", group, name);
+    if (sf_h5_read(file, path, SF_H5_F64, rank, dims, &data, err) == SF_OK)
+        memcpy(out, data, count * sizeof *out);
+    free(data);
+    return err->status;
+}
+
+sf_status sf_snapshot_read(const sf_model *m, sf_snapshot *snapshot, const char *path, const sf_h5 *file,
+                           sf_error *err) {
+    int64_t three = 3;
+    sf_frame *frame = &snapshot->frame;
+    read_item(file, path, "time", 0, NULL, &frame->time, err);
+    read_item(file, path, "acceleration", 0, NULL, &frame->acceleration, err);
+    read_item(file, path, "missile_displacement", 1, &three, frame->displacement, err);
+    read_item(file, path, "base_reaction", 1, &three, frame->base_reaction, err);
+    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++) {
+        int64_t dims[2] = {m->node_count, fields[k].columns};
+        read_item(file, path, fields[k].name, fields[k].columns > 1 ? 2 : 1, dims, snapshot->field[k], err);
+    }
+    return err->status;
+}
+
 sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, const char *path,
                          sf_h5 *file, sf_error *err) {
     sf_frame frame = take_frame(m, s);

@@ -36,6 +36,10 @@ void sf_snapshot_take(const sf_model *model, const sf_operators *operators, cons
 sf_status sf_snapshot_write(const sf_model *model, const sf_snapshot *snapshot, const char *path, sf_h5 *file,
                             sf_error *err);
 
+/* Reads back what sf_snapshot_write wrote into a created snapshot. */
+sf_status sf_snapshot_read(const sf_model *model, sf_snapshot *snapshot, const char *path, const sf_h5 *file,
+                           sf_error *err);
+
 /* Writes the present state's run.output_fields to the group `path`, one field at a time through
  * state->scratch. */
 sf_status sf_frame_write(const sf_model *model, const sf_operators *operators, const sf_state *state,

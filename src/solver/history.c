@@ -2,6 +2,10 @@
 #include "solver/history.h"
 
 #include "core/mat3.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIRST_ROWS = 4096 };
 
 static const sf_h5_info columns[SF_HISTORY_COLUMNS] = {
     {"/history/time", "s", "end of the step"},
@@ -33,14 +37,22 @@ static const sf_h5_info columns[SF_HISTORY_COLUMNS] = {
     {"/history/constraint_residual", "m s-1", "largest |G v|"},
 };
 
-sf_status sf_history_create(sf_h5 *file, sf_error *err) {
-    for (int k = 0; k < SF_HISTORY_COLUMNS; k++)
-        if (sf_h5_series_create(file, &columns[k], 1, err) != SF_OK)
-            return err->status;
+/* Room for one row more. */
+static sf_status grow(sf_history *h, sf_error *err) {
+    if (h->rows < h->room)
+        return SF_OK;
+    int64_t room = h->room > 0 ? 2 * h->room : FIRST_ROWS;
+    for (int k = 0; k < SF_HISTORY_COLUMNS; k++) {
+        double *grown = realloc(h->column[k], (size_t)room * sizeof *grown);
+        if (!grown)
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a history of %lld rows", (long long)room);
+        h->column[k] = grown;
+    }
+    h->room = room;
     return SF_OK;
 }
 
-sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf_h5 *file, sf_error *err) {
+sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf_error *err) {
     const sf_ledger *l = &s->ledger;
     double whole = (double)m->symmetry_factor, travel = s->missile.displacement - m->missile.gap;
     const double row[SF_HISTORY_COLUMNS] = {
@@ -70,17 +82,37 @@ sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf
         s->penetration,
         s->constraint_residual,
     };
+    if (grow(h, err) != SF_OK)
+        return err->status;
     for (int k = 0; k < SF_HISTORY_COLUMNS; k++)
-        h->buffer[k][h->rows] = row[k];
-    if (++h->rows == SF_HISTORY_BUFFER)
-        return sf_history_write(h, file, err);
+        h->column[k][h->rows] = row[k];
+    h->rows++;
     return SF_OK;
 }
 
-sf_status sf_history_write(sf_history *h, sf_h5 *file, sf_error *err) {
+sf_status sf_history_write(const sf_history *h, sf_h5 *file, sf_error *err) {
     for (int k = 0; k < SF_HISTORY_COLUMNS; k++)
-        if (sf_h5_append(file, columns[k].path, h->rows, 1, h->buffer[k], err) != SF_OK)
+        if (sf_h5_write(file, &columns[k], SF_H5_F64, 1, &h->rows, h->column[k], err) != SF_OK)
             return err->status;
-    h->rows = 0;
     return SF_OK;
+}
+
+sf_status sf_history_read(sf_history *h, const sf_h5 *file, sf_error *err) {
+    int64_t rows = -1;
+    for (int k = 0; k < SF_HISTORY_COLUMNS; k++) {
+        void *data = NULL;
+        if (sf_h5_read(file, columns[k].path, SF_H5_F64, 1, &rows, &data, err) != SF_OK) {
+            sf_history_free(h);
+            return err->status;
+        }
+        h->column[k] = data;
+    }
+    h->rows = h->room = rows;
+    return SF_OK;
+}
+
+void sf_history_free(sf_history *h) {
+    for (int k = 0; k < SF_HISTORY_COLUMNS; k++)
+        free(h->column[k]);
+    memset(h, 0, sizeof *h);
 }

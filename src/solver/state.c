@@ -4,54 +4,56 @@
 #include "core/curve.h"
 #include "core/motion.h"
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy, see start_driven */
 
-/* One list of the arrays: allocation, release and size. Rows: n nodes, b blocks of lanes, c contact points, k
- * chunks. */
-static const struct {
-    size_t offset;
-    char rows;
-    int bytes;
-} arrays[] = {
-#define DOUBLES(member, rows, columns)                                                                       \
-    { offsetof(sf_state, member), rows, (columns) * (int)sizeof(double) }
-    DOUBLES(d, 'n', 3),
-    DOUBLES(v, 'n', 3),
-    DOUBLES(force, 'n', 3),
-    DOUBLES(reaction, 'n', 3),
-    DOUBLES(f, 'n', 9),
-    DOUBLES(stress, 'n', 9),
-    DOUBLES(maxwell, 'b', 6 * SF_LANES),
-    DOUBLES(peak, 'b', SF_LANES),
-    DOUBLES(rate, 'b', SF_LANES),
-    DOUBLES(energy, 'n', 1),
-    DOUBLES(stiffness, 'n', 1),
-    DOUBLES(tangent, 'n', 1),
-    DOUBLES(directional, 'n', 6),
-    DOUBLES(pair_sum, 'n', 1),
-    DOUBLES(pair_stiffness, 'n', 1),
-    DOUBLES(mode, 'n', 1),
-    DOUBLES(scratch, 'n', 9),
-    DOUBLES(mode_work, 'n', 3),
-    DOUBLES(power_couple, 'n', 3),
-    DOUBLES(power_out, 'n', 1),
-    DOUBLES(contact_position, 'c', 3),
-    DOUBLES(contact_motion, 'c', 3),
-    DOUBLES(contact_step, 'c', 3),
-    DOUBLES(contact_force, 'c', 3),
-    DOUBLES(contact_old, 'c', 3),
-    DOUBLES(contact_gap, 'c', 1),
-    DOUBLES(contact_normal, 'c', 3),
-#undef DOUBLES
-    {offsetof(sf_state, contact_active), 'c', sizeof(int32_t)},
-    {offsetof(sf_state, partial), 'k', sizeof(sf_partial)},
+/* One list of the arrays: allocation, release and checkpoints. */
+static const sf_state_array arrays[] = {
+#define KEPT(member, rows, columns)                                                                          \
+    { #member, offsetof(sf_state, member), rows, (columns) * (int)sizeof(double) }
+#define SCRATCH(member, rows, bytes)                                                                         \
+    { NULL, offsetof(sf_state, member), rows, (int)(bytes) }
+    KEPT(d, 'n', 3),
+    KEPT(v, 'n', 3),
+    KEPT(force, 'n', 3),
+    KEPT(reaction, 'n', 3),
+    KEPT(f, 'n', 9),
+    KEPT(stress, 'n', 9),
+    KEPT(maxwell, 'b', 6 * SF_LANES),
+    KEPT(peak, 'b', SF_LANES),
+    KEPT(rate, 'b', SF_LANES),
+    KEPT(energy, 'n', 1),
+    KEPT(stiffness, 'n', 1),
+    KEPT(tangent, 'n', 1),
+    KEPT(directional, 'n', 6),
+    KEPT(pair_sum, 'n', 1),
+    KEPT(pair_stiffness, 'n', 1),
+    KEPT(mode, 'n', 1),
+    SCRATCH(scratch, 'n', 9 * sizeof(double)),
+    SCRATCH(mode_work, 'n', 3 * sizeof(double)),
+    SCRATCH(power_couple, 'n', 3 * sizeof(double)),
+    SCRATCH(power_out, 'n', sizeof(double)),
+    KEPT(contact_position, 'c', 3),
+    KEPT(contact_motion, 'c', 3),
+    KEPT(contact_step, 'c', 3),
+    KEPT(contact_force, 'c', 3),
+    KEPT(contact_old, 'c', 3),
+    KEPT(contact_gap, 'c', 1),
+    KEPT(contact_normal, 'c', 3),
+    SCRATCH(contact_active, 'c', sizeof(int32_t)),
+    SCRATCH(partial, 'k', sizeof(sf_partial)),
+#undef KEPT
+#undef SCRATCH
 };
 
-static int64_t rows_of(const sf_model *model, char rows) {
+const sf_state_array *sf_state_arrays(size_t *count) {
+    *count = sizeof arrays / sizeof arrays[0];
+    return arrays;
+}
+
+int64_t sf_state_rows(const sf_model *model, char rows) {
     switch (rows) {
     case 'n':
         return model->node_count;
@@ -93,13 +95,14 @@ static sf_status start_driven(const sf_model *m, sf_state *s, sf_error *err) {
 sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
     memset(s, 0, sizeof *s);
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
-        *(void **)((char *)s + arrays[k].offset) = sf_alloc(
-            err, (unsigned long)rows_of(model, arrays[k].rows), (unsigned long)arrays[k].bytes, "state");
+        *(void **)((char *)s + arrays[k].offset) =
+            sf_alloc(err, (unsigned long)sf_state_rows(model, arrays[k].rows), (unsigned long)arrays[k].bytes,
+                     "state");
     if (err->status != SF_OK) {
         sf_state_free(s);
         return err->status;
     }
-    s->chunk_count = rows_of(model, 'k');
+    s->chunk_count = sf_state_rows(model, 'k');
     for (int64_t i = 0; i < model->node_count; i++) {
         s->f[9 * i] = s->f[9 * i + 4] = s->f[9 * i + 8] = 1;
         s->pair_stiffness[i] = model->foam.modulus;

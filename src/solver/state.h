@@ -9,6 +9,7 @@
 #include "core/model.h"
 #include "solver/foam.h"
 #include "solver/stopwatch.h"
+#include <stddef.h>
 
 enum { SF_POWER_BASIS = 8 }; /* Lanczos vectors kept, at most 9 */
 
@@ -122,6 +123,18 @@ typedef struct sf_state {
 
     sf_stopwatch *watch; /* borrowed; NULL = nobody measures */
 } sf_state;
+
+/* One array of the state. */
+typedef struct sf_state_array {
+    const char *name; /* in a checkpoint; NULL: used within one step only */
+    size_t offset;
+    char rows; /* n nodes, b blocks of lanes, c contact points, k chunks */
+    int bytes; /* of a row; doubles if it has a name */
+} sf_state_array;
+
+/* The table of all arrays, and the number of rows of a kind. */
+const sf_state_array *sf_state_arrays(size_t *count);
+int64_t sf_state_rows(const sf_model *model, char rows);
 
 sf_status sf_state_create(const sf_model *model, sf_state *state, sf_error *err);
 void sf_state_free(sf_state *state);

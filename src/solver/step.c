@@ -20,11 +20,14 @@ static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *e
         if (p->jacobian > 0 && isfinite(p->step) && p->step > 0)
             continue;
         const double *x = &m->position[3 * p->jacobian_node];
-        return SF_FAIL(
-            err, SF_ERR_NUMERIC,
-            "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, has collapsed: "
-            "det F = %.3g. The curve is too soft for this impact there; check its densification",
-            s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2], p->jacobian);
+        bool finite = isfinite(p->jacobian);
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, %s: det F "
+                       "= %.3g. %s",
+                       s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2],
+                       finite ? "has collapsed" : "has lost its numbers", p->jacobian,
+                       finite ? "The curve is too soft for this impact there; check its densification"
+                              : "The step before was unstable; try a smaller solver.step_safety");
     }
     return SF_OK;
 }
@@ -41,24 +44,74 @@ static sf_status check_step(const sf_model *m, const sf_state *s, sf_error *err)
         s->time, s->dt, floor, (long long)s->jacobian_node, x[0], x[1], x[2], s->smallest_jacobian);
 }
 
+/* The first node with a force or a velocity that is no number; -1: none. */
+static int64_t find_lost(const sf_model *m, const sf_state *s) {
+    const double *const fields[] = {s->force, s->v}; /* reactions carry a loss to every held node's v */
+    for (int k = 0; k < 2; k++)
+        for (int64_t i = 0; i < m->node_count; i++)
+            if (!isfinite(fields[k][3 * i] + fields[k][3 * i + 1] + fields[k][3 * i + 2]))
+                return i;
+    return -1;
+}
+
+static sf_status check_finite(const sf_model *m, const sf_state *s, sf_error *err) {
+    if (isfinite(s->ledger.error))
+        return SF_OK;
+    int64_t node = find_lost(m, s);
+    if (node < 0)
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "at t = %.6g s (step %lld) the missile has lost its numbers: acceleration %g m/s2, "
+                       "displacement %g m. The contact was unstable; try a smaller solver.step_safety",
+                       s->time, (long long)s->step, s->missile.acceleration, s->missile.displacement);
+    const double *x = &m->position[3 * node], *f = &s->force[3 * node];
+    return SF_FAIL(
+        err, SF_ERR_NUMERIC,
+        "at t = %.6g s (step %lld) node %lld, X = (%.5g, %.5g, %.5g) m, has lost its numbers: its force "
+        "is (%g, %g, %g) N. The step before was unstable; try a smaller solver.step_safety",
+        s->time, (long long)s->step, (long long)node, x[0], x[1], x[2], f[0], f[1], f[2]);
+}
+
+static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed) {
+    int64_t fastest = 0;
+    double largest = -1;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        const double *v = &s->v[3 * i];
+        double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        if (square > largest) {
+            largest = square;
+            fastest = i;
+        }
+    }
+    *speed = sqrt(largest);
+    return fastest;
+}
+
 /* The energy limit is a stop, not a tolerance: beyond it the run has become unstable. */
 static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *err) {
-    double least = fmin(s->ledger.contact, s->ledger.stabilisation);
-    if (least < -m->run.energy_limit * s->ledger.reference)
+    double least = fmin(s->ledger.contact, s->ledger.stabilisation), speed;
+    bool fed = least < -m->run.energy_limit * s->ledger.reference;
+    if (!fed && fabs(s->ledger.error) <= m->run.energy_limit)
+        return SF_OK;
+    int64_t node = find_fastest(m, s, &speed);
+    const double *x = &m->position[3 * node];
+    if (fed)
         return SF_FAIL(
             err, SF_ERR_NUMERIC,
             "at t = %.6g s (step %lld) contact or stabilisation has put %.3g J into the pad (contact %.3g J, "
-            "stabilisation %.3g J; limit %.2f %% of the %s): is the missile pressed in beyond its "
-            "touching surface?",
+            "stabilisation %.3g J; limit %.2f %% of the %s); fastest is node %lld at (%.5g, %.5g, %.5g) m, "
+            "%.3g "
+            "m/s: is the missile pressed in beyond its touching surface?",
             s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
-            100 * m->run.energy_limit, m->motion_count > 0 ? "largest work of the motion" : "impact energy");
-    if (fabs(s->ledger.error) <= m->run.energy_limit)
-        return SF_OK;
+            100 * m->run.energy_limit, m->motion_count > 0 ? "largest work of the motion" : "impact energy",
+            (long long)node, x[0], x[1], x[2], speed);
     return SF_FAIL(
         err, SF_ERR_NUMERIC,
-        "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step %.3g s): "
-        "the run is unstable or the limit too strict; try a smaller solver.step_safety",
-        s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt);
+        "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step %.3g s); "
+        "fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: the run is unstable or the limit too "
+        "strict; try a "
+        "smaller solver.step_safety",
+        s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt, (long long)node,
+        x[0], x[1], x[2], speed);
 }
 
 /* v += dt_v (force - reaction) / m, with the kinetic energy at the present time and the momentum after it. */
@@ -119,7 +172,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     move_missile(m, s, dt_v);
     sf_ledger_close(m, s, held.all, dt_v);
     sf_lap(s->watch, SF_PHASE_MOTION);
-    if (check_step(m, s, err) != SF_OK)
+    if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)
         return err->status;
     return check_energy(m, s, err);
 }

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/seal.h"
+
+#include "core/hash.h"
+#include <stdbool.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct seal {
+    char name[8];
+    uint64_t length, hash;
+} seal;
+
+static const char NAME[8] = {'S', 'F', 'S', 'E', 'A', 'L', '0', '1'};
+
+enum { BLOCK = 1 << 16 };
+
+/* Length and hash of the first `length` bytes of an open file. */
+static seal compute(FILE *file, uint64_t length) {
+    static char block[BLOCK];
+    seal s = {.length = 0, .hash = SF_HASH_START};
+    memcpy(s.name, NAME, sizeof NAME);
+    while (s.length < length) {
+        uint64_t left = length - s.length;
+        size_t read = fread(block, 1, left < BLOCK ? (size_t)left : BLOCK, file);
+        if (read == 0)
+            break;
+        s.hash = sf_hash(s.hash, block, read);
+        s.length += read;
+    }
+    return s;
+}
+
+sf_status sf_seal_add(const char *path, sf_error *err) {
+    FILE *file = fopen(path, "r+b");
+    if (!file)
+        return SF_FAIL(err, SF_ERR_IO, "cannot open %s: %s", path, strerror(errno));
+    seal s = compute(file, UINT64_MAX);
+    bool done = !ferror(file) && fseeko(file, 0, SEEK_END) == 0 && fwrite(&s, sizeof s, 1, file) == 1;
+    if (fclose(file) != 0 || !done)
+        return SF_FAIL(err, SF_ERR_IO, "writing %s failed: %s", path, strerror(errno));
+    return SF_OK;
+}
+
+sf_status sf_seal_check(const char *path, sf_error *err) {
+    seal stored, found;
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return SF_FAIL(err, SF_ERR_IO, "cannot read %s: %s", path, strerror(errno));
+    bool there = fseeko(file, -(off_t)sizeof stored, SEEK_END) == 0 &&
+                 fread(&stored, sizeof stored, 1, file) == 1 && memcmp(stored.name, NAME, sizeof NAME) == 0;
+    off_t length = there ? ftello(file) - (off_t)sizeof stored : 0;
+    if (there) {
+        rewind(file);
+        found = compute(file, (uint64_t)length);
+    }
+    fclose(file);
+    if (!there)
+        return SF_FAIL(err, SF_ERR_IO, "%s is incomplete: it does not end with its checksum", path);
+    if (found.length != stored.length || found.hash != stored.hash)
+        return SF_FAIL(err, SF_ERR_IO, "%s is damaged: its checksum is %016llx, not %016llx", path,
+                       (unsigned long long)found.hash, (unsigned long long)stored.hash);
+    return SF_OK;
+}

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A checksum at the end of a file, behind what its own format (HDF5) reads: 8 bytes "SFSEAL01", the length of
+ * the file before it (u64) and its hash (u64, core/hash.h), in the machine's byte order. */
+#ifndef SF_IO_SEAL_H
+#define SF_IO_SEAL_H
+
+#include "core/error.h"
+
+sf_status sf_seal_add(const char *path, sf_error *err);
+
+/* SF_ERR_IO if the file cannot be read, was cut or has changed. */
+sf_status sf_seal_check(const char *path, sf_error *err);
+
+#endif

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Checkpoints (docs/formats.md): a sealed HDF5 file with everything that a run needs to go on with the same
+ * bits, beside the model. It holds the state after sf_step_evaluate. */
+#ifndef SF_SOLVER_CHECKPOINT_H
+#define SF_SOLVER_CHECKPOINT_H
+
+#include "io/provenance.h"
+#include "solver/recorder.h"
+
+/* What the run was about. */
+typedef struct sf_checkpoint {
+    sf_h5 *file; /* open for sf_checkpoint_read */
+    char *path;
+    char *model_path, *model_hash, *git_revision, *compiler_flags;
+    double end_time;    /* s */
+    double time_before; /* s, of the step before the one that it holds */
+} sf_checkpoint;
+
+/* Replaces the file at `path`, whole or not at all. The provenance names the model. */
+sf_status sf_checkpoint_write(const char *path, const sf_provenance *provenance, const sf_model *model,
+                              const sf_state *state, const sf_recorder *recorder, sf_error *err);
+
+/* Opens and checks a checkpoint. On success release with sf_checkpoint_close. */
+sf_status sf_checkpoint_open(const char *path, sf_checkpoint *checkpoint, sf_error *err);
+void sf_checkpoint_close(sf_checkpoint *checkpoint);
+
+/* State and recorder, both freshly created for the same model. */
+sf_status sf_checkpoint_read(const sf_checkpoint *checkpoint, const sf_model *model, sf_state *state,
+                             sf_recorder *recorder, sf_error *err);
+
+#endif

@@ -1,0 +1,486 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Interrupted, killed, failed and prolonged runs of softfall-solve: the file always opens, nothing is lost,
+ * and the bits are those of one run. SF_KILLS sets the number of kills (default 10). */
+#include "model_fixture.h"
+#include "program_fixture.h"
+
+#include "campaign/runner.h"
+#include "io/h5.h"
+#include "io/provenance.h"
+#include "io/seal.h"
+#include "post/results.h"
+#include <hdf5.h>
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
+
+static int kill_count(void) {
+    const char *kills = getenv("SF_KILLS");
+    return kills ? atoi(kills) : 10;
+}
+
+/* model.h5 and what one run makes of it, full.h5; steps are small, so that there is time to kill. */
+static int set_up(void **state) {
+    program_place *p = calloc(1, sizeof *p);
+    *state = p;
+    program_set_up(p);
+    program_succeed(
+        p, "pre",
+        "'%s' -o model.h5 %s --set output.frame_interval='\"1 ms\"' --set solver.step_safety=%.3f "
+        "--set solver.end_time='\"20 ms\"'",
+        fixture_source(EXAMPLE), program_coarse(20), 2.0 / kill_count());
+    program_succeed(p, "solve", "model.h5 -o full.h5 --threads 1");
+    return 0;
+}
+
+static int tear_down(void **state) {
+    program_tear_down(*state);
+    free(*state);
+    return 0;
+}
+
+static sf_h5 *open_file(const program_place *p, const char *name) {
+    sf_error err = SF_ERROR_INIT;
+    sf_h5 *file = NULL;
+    if (sf_h5_open(program_path(p, name), &file, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    return file;
+}
+
+/* A dataset of numbers, whatever its type and rank; its size in bytes, or 0: a text. */
+static size_t read_any(const sf_h5 *file, const char *path, void **data) {
+    static const struct {
+        sf_h5_type type;
+        size_t size;
+    } types[] = {{SF_H5_F64, 8}, {SF_H5_I64, 8}};
+    for (int t = 0; t < 2; t++)
+        for (int rank = 0; rank < 3; rank++) {
+            sf_error err = SF_ERROR_INIT;
+            int64_t dims[2] = {-1, -1};
+            size_t size = types[t].size;
+            if (sf_h5_read(file, path, types[t].type, rank, dims, data, &err) != SF_OK)
+                continue;
+            for (int k = 0; k < rank; k++)
+                size *= (size_t)dims[k];
+            return size;
+        }
+    return 0;
+}
+
+static void assert_same_dataset(const sf_h5 *a, const sf_h5 *b, const char *path) {
+    void *x = NULL, *y = NULL;
+    size_t size = read_any(a, path, &x), other = read_any(b, path, &y);
+    if (size == 0) {
+        sf_error err = SF_ERROR_INIT;
+        char *text[2] = {NULL, NULL};
+        sf_h5_read_text(a, path, &text[0], &err);
+        sf_h5_read_text(b, path, &text[1], &err);
+        if (err.status != SF_OK || strcmp(text[0], text[1]) != 0)
+            fail_msg("%s: %s and %s", path, text[0], text[1]);
+        free(text[0]);
+        free(text[1]);
+    } else if (size != other || memcmp(x, y, size) != 0) {
+        fail_msg("%s differs (%zu and %zu bytes)", path, size, other);
+    }
+    free(x);
+    free(y);
+}
+
+/* Bit by bit, with all that the group holds. What a run takes is its own. */
+static void assert_same_group(const sf_h5 *a, const sf_h5 *b, const char *path) {
+    static const char *const own[] = {"/summary/wall_time", "/summary/threads", "/summary/restarts"};
+    int64_t count = sf_h5_group_size(a, path);
+    for (size_t k = 0; k < sizeof own / sizeof own[0]; k++)
+        if (strcmp(path, own[k]) == 0)
+            return;
+    if (count < 0) {
+        assert_same_dataset(a, b, path);
+        return;
+    }
+    if (count != sf_h5_group_size(b, path))
+        fail_msg("%s has %lld and %lld members", path, (long long)count,
+                 (long long)sf_h5_group_size(b, path));
+    for (int64_t k = 0; k < count; k++) {
+        sf_error err = SF_ERROR_INIT;
+        char name[128], member[300];
+        assert_int_equal(sf_h5_group_member(a, path, k, name, sizeof name, &err), SF_OK);
+        snprintf(member, sizeof member, "%s/%s", path, name);
+        assert_same_group(a, b, member);
+    }
+}
+
+static void assert_same_results(const program_place *p, const char *first, const char *second) {
+    static const char *const groups[] = {"/history", "/frames", "/peak", "/summary"};
+    sf_error err = SF_ERROR_INIT;
+    sf_h5 *a = open_file(p, first), *b = open_file(p, second);
+    assert_true(sf_h5_group_size(a, "/frames") > 10);
+    for (size_t k = 0; k < sizeof groups / sizeof groups[0]; k++)
+        assert_same_group(a, b, groups[k]);
+    sf_h5_close(&a, &err);
+    sf_h5_close(&b, &err);
+}
+
+static int64_t restarts_of(const program_place *p, const char *name) {
+    sf_error err = SF_ERROR_INIT;
+    void *data = NULL;
+    sf_h5 *file = open_file(p, name);
+    assert_int_equal(sf_h5_read(file, "/summary/restarts", SF_H5_I64, 0, NULL, &data, &err), SF_OK);
+    int64_t restarts = *(int64_t *)data;
+    free(data);
+    sf_h5_close(&file, &err);
+    return restarts;
+}
+
+static bool is_there(const program_place *p, const char *name) {
+    return access(program_path(p, name), F_OK) == 0;
+}
+
+/* ---- one run in parts ---- */
+
+static void finished_run_goes_on_to_a_later_end(void **state) {
+    const program_place *p = *state;
+    uint64_t seed = 1;
+    double end = 0;
+    int parts = 0;
+    program_succeed(p, "solve", "model.h5 -o parts.h5 --end-time '0.01 ms' --threads 1");
+    for (end = 1 + fixture_random(&seed); end < 20; end += 2 * (1.2 + fixture_random(&seed))) {
+        program_succeed(p, "solve", "--restart parts.h5 --end-time '%.17g ms' --threads %d", end,
+                        1 + parts % 2);
+        assert_false(is_there(p, "parts.h5.run"));
+        parts++;
+    }
+    program_succeed(p, "solve", "--restart parts.h5 --end-time '20 ms' --threads 2");
+    assert_true(parts >= 5);
+    assert_int_equal(restarts_of(p, "parts.h5"), parts + 1);
+    assert_same_results(p, "full.h5", "parts.h5");
+    program_succeed(p, "solve",
+                    "--restart parts.h5 --threads 1"); /* nothing is left to do, nothing changes */
+    assert_same_results(p, "full.h5", "parts.h5");
+}
+
+static void sleep_for(double seconds) {
+    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds))}, NULL);
+}
+
+/* Starts softfall-solve with up to 15 words, the last NULL. */
+static pid_t start_solver(const program_place *p, const char *const *words) {
+    char program[1024];
+    const char *list[16] = {program};
+    snprintf(program, sizeof program, "%s/softfall-solve", getenv("SF_BIN_DIR"));
+    for (int k = 0; k < 15 && words[k]; k++)
+        list[k + 1] = words[k];
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        if (chdir(p->folder) != 0 || !freopen("log", "w", stdout) || !freopen("errors", "w", stderr))
+            _exit(99);
+        execv(program, (char *const *)list);
+        _exit(99);
+    }
+    return child;
+}
+
+/* Runs to the end with a signal after a random time below `longest`, again and again, at least `least` times.
+ * The file opens after each; post-processing reads it. */
+static void run_with_signals(const program_place *p, const char *results, const int *numbers, int count,
+                             int least, double longest) {
+    char checkpoint[64];
+    uint64_t seed = 7;
+    int killed = 0, opened = 0;
+    snprintf(checkpoint, sizeof checkpoint, "%s.restart", results);
+    for (int turn = 0; turn < 100 * least; turn++) {
+        const char *anew[] = {"model.h5", "-o", results, "--force", "--checkpoint-every", "0.02 s", NULL};
+        const char *again[] = {"--restart", results, "--checkpoint-every", "0.02 s", NULL};
+        pid_t child = start_solver(p, is_there(p, checkpoint) ? again : anew);
+        int status = 0, number = numbers[turn % count];
+        double wait = killed < least ? 0.5 * longest * (1 + fixture_random(&seed)) : 60;
+        for (double slept = 0; slept < wait && waitpid(child, &status, WNOHANG) == 0; slept += 0.002)
+            sleep_for(0.002);
+        if (kill(child, number) == 0 && waitpid(child, &status, 0) == child)
+            killed++;
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+            break;
+        if (WIFSIGNALED(status) ? WTERMSIG(status) != number : WEXITSTATUS(status) != SF_INTERRUPTED)
+            fail_msg("wait status %d after %d signals: %s", status, killed,
+                     program_shell(p, "cat errors").out);
+        if (is_there(p, results)) {
+            sf_error err = SF_ERROR_INIT;
+            sf_results r;
+            int code = sf_results_open(program_path(p, results), &r, &err);
+            if (code != SF_OK && !strstr(err.text, "usable rows"))
+                fail_msg("after %d signals: %s", killed, err.text);
+            opened += code == SF_OK;
+            sf_results_close(&r);
+        }
+    }
+    print_message("%d signals, %d times the results were read\n", killed, opened);
+    assert_true(killed >= least);
+    assert_true(opened >= least / 2);
+    assert_same_results(p, "full.h5", results);
+}
+
+static void interrupted_run_goes_on(void **state) {
+    static const int numbers[] = {SIGINT, SIGTERM};
+    run_with_signals(*state, "interrupted.h5", numbers, 2, 6, 0.4);
+    assert_true(restarts_of(*state, "interrupted.h5") >= 5);
+}
+
+static void killed_run_loses_nothing(void **state) {
+    static const int numbers[] = {SIGKILL};
+    run_with_signals(*state, "killed.h5", numbers, 1, kill_count(), 0.25);
+    assert_false(is_there(*state, "killed.h5.run"));
+}
+
+/* The signal comes before the first step. */
+static void interruption_at_once_leaves_a_checkpoint(void **state) {
+    const program_place *p = *state;
+    program_result first =
+        program_shell(p,
+                      "timeout -s TERM 0.001 true; '%s/softfall-solve' model.h5 -o early.h5 -t 1 & s=$!; "
+                      "while [ ! -e early.h5 ]; do sleep 0.005; done; kill $s; wait $s; exit $?",
+                      getenv("SF_BIN_DIR"));
+    assert_int_equal(first.code, SF_INTERRUPTED);
+    assert_non_null(strstr(first.err, "--restart goes on"));
+    assert_true(is_there(p, "early.h5.restart") && !is_there(p, "early.h5.run"));
+    program_succeed(p, "solve", "--restart early.h5 --threads 2");
+    assert_same_results(p, "full.h5", "early.h5");
+}
+
+static void checkpoints_by_simulated_time_can_be_left_out(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "solve", "model.h5 -o none.h5 --end-time '2 ms' --no-checkpoint");
+    assert_false(is_there(p, "none.h5.restart"));
+    program_result result = program_run(p, "solve", "--restart none.h5");
+    assert_int_equal(result.code, SF_ERR_IO);
+    assert_non_null(strstr(result.err, "no checkpoint none.h5.restart"));
+
+    const char *const words[] = {"model.h5", "-o", "timed.h5", "--checkpoint-time", "0.5 ms", NULL};
+    pid_t child = start_solver(p, words);
+    while (!is_there(p, "timed.h5.restart")) /* well before the 60 s of wall time */
+        sleep_for(0.002);
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    program_succeed(p, "solve", "--restart timed.h5 --checkpoint-time '3 ms'");
+    assert_same_results(p, "full.h5", "timed.h5");
+}
+
+/* ---- what cannot go on ---- */
+
+/* One sentence that has `part`, the exit code, and files as they were. */
+static void assert_refused(const program_place *p, int code, const char *part, const char *words) {
+    program_bytes results = program_read_file(program_path(p, "part.h5")),
+                  checkpoint = program_read_file(program_path(p, "part.h5.restart"));
+    program_result result = program_run(p, "solve", "--restart part.h5 %s", words);
+    if (result.code != code || !strstr(result.err, part) ||
+        strchr(result.err, '\n') != result.err + strlen(result.err) - 1)
+        fail_msg("exit code %d, expected %d with \"%s\": %s", result.code, code, part, result.err);
+    program_assert_unchanged(program_path(p, "part.h5"), &results);
+    program_assert_unchanged(program_path(p, "part.h5.restart"), &checkpoint);
+    assert_false(is_there(p, "part.h5.run"));
+}
+
+static void set_version(const program_place *p, int64_t version) {
+    hid_t file = H5Fopen(program_path(p, "part.h5.restart"), H5F_ACC_RDWR, H5P_DEFAULT);
+    hid_t attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
+    assert_true(H5Awrite(attribute, H5T_NATIVE_INT64, &version) >= 0);
+    H5Aclose(attribute);
+    H5Fclose(file);
+}
+
+static void damaged_or_foreign_checkpoint_is_refused(void **state) {
+    const program_place *p = *state;
+    char text[64];
+    sf_error err = SF_ERROR_INIT;
+    uint64_t seed = 3;
+    program_succeed(p, "solve", "model.h5 -o part.h5 --end-time '4 ms' --threads 1");
+    const char *path = program_path(p, "part.h5.restart");
+    program_bytes good = program_read_file(path);
+    for (int k = 0; k < 24; k++) { /* a bit anywhere */
+        size_t at = (size_t)((double)(good.size - 1) * 0.5 * (1 + fixture_random(&seed)));
+        good.data[at] ^= (char)(1 << k % 8);
+        program_write_file(program_path(p, "part.h5.restart"), good.data, good.size);
+        good.data[at] ^= (char)(1 << k % 8);
+        assert_refused(p, SF_ERR_IO, "part.h5.restart is ", "");
+    }
+    static const double lengths[] = {0, 0.001, 0.3, 0.9};
+    for (int k = 0; k < 4; k++) {
+        program_write_file(program_path(p, "part.h5.restart"), good.data,
+                           (size_t)(lengths[k] * (double)good.size));
+        assert_refused(p, SF_ERR_IO, "is incomplete: it does not end with its checksum", "");
+    }
+    program_write_file(program_path(p, "part.h5.restart"), good.data, good.size - 24); /* without its seal */
+    set_version(p, 99);
+    assert_int_equal(sf_seal_add(program_path(p, "part.h5.restart"), &err), SF_OK);
+    assert_refused(p, SF_ERR_IO, "has format version 99; this program reads version 1", "");
+    program_shell(p, "cp model.h5 part.h5.restart");
+    assert_int_equal(sf_seal_add(program_path(p, "part.h5.restart"), &err), SF_OK);
+    assert_refused(p, SF_ERR_IO, "is a softfall-model file, expected a softfall-checkpoint file", "");
+    program_write_file(program_path(p, "part.h5.restart"), good.data, good.size);
+
+    program_succeed(p, "pre", "'%s' -o other.h5 %s --set missile.mass='\"4.7 kg\"' --force",
+                    fixture_source(EXAMPLE), program_coarse(20));
+    assert_refused(p, SF_ERR_INPUT, "other.h5 is not the model of part.h5.restart: its hash is ", "other.h5");
+    assert_refused(p, SF_ERR_INPUT, "beyond the end time 0.002 s", "--end-time '2 ms'");
+    assert_refused(p, SF_ERR_INPUT, "--end-time: ", "--end-time '2 kg' 2>&1 | head -1 >&2; exit 2");
+    program_shell(p, "mv model.h5 moved.h5");
+    assert_refused(p, SF_ERR_IO, "(--restart RESULTS MODEL says where the model is now)", "");
+    snprintf(text, sizeof text, "%s", "--restart part.h5 moved.h5 --end-time '20 ms'");
+    program_succeed(p, "solve", "%s", text);
+    program_shell(p, "mv moved.h5 model.h5");
+    assert_same_results(p, "full.h5", "part.h5");
+    free(good.data);
+}
+
+/* A checkpoint is no less worth than results; and two runs do not write the same file. */
+static void nothing_is_replaced_without_force(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "solve", "model.h5 -o kept.h5 --end-time '1 ms'");
+    program_result results = program_run(p, "solve", "model.h5 -o kept.h5");
+    assert_int_equal(results.code, SF_ERR_INPUT);
+    assert_non_null(strstr(results.err, "--restart goes on with it"));
+    program_shell(p, "rm kept.h5");
+    program_result checkpoint = program_run(p, "solve", "model.h5 -o kept.h5");
+    assert_int_equal(checkpoint.code, SF_ERR_INPUT);
+    assert_non_null(strstr(checkpoint.err, "kept.h5.restart exists"));
+    program_result lost = program_run(p, "solve", "--restart kept.h5");
+    assert_int_equal(lost.code, SF_ERR_IO);
+    assert_non_null(strstr(lost.err, "cannot read kept.h5"));
+    assert_true(is_there(p, "kept.h5.restart"));
+
+    assert_int_equal(mkdir(program_path(p, "busy.h5.run"), 0777), 0);
+    FILE *folder = fopen(program_path(p, "busy.h5.run"), "r");
+    assert_non_null(folder);
+    assert_int_equal(flock(fileno(folder), LOCK_EX), 0);
+    program_result busy = program_run(p, "solve", "model.h5 -o busy.h5");
+    fclose(folder);
+    assert_int_equal(busy.code, SF_ERR_INPUT);
+    assert_non_null(strstr(busy.err, "another softfall-solve is writing busy.h5"));
+}
+
+/* ---- numerical failure ---- */
+
+/* The frames' last time. */
+static double last_frame(const program_place *p, const char *name, sf_results *r) {
+    sf_error err = SF_ERROR_INIT;
+    if (sf_results_open(program_path(p, name), r, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    return r->frames[r->frame_count - 1].time;
+}
+
+/* Too fast for the pad: exit code, sentence, a frame of the failure, and the step before as a checkpoint. */
+static void failed_run_leaves_its_state(void **state) {
+    const program_place *p = *state;
+    sf_results r;
+    long long node, step, held;
+    double time, held_time;
+    program_succeed(p, "pre", "'%s' -o fast.h5 %s --set missile.velocity='\"25 m/s\"'",
+                    fixture_source(EXAMPLE), program_coarse(20));
+    program_result first = program_run(p, "solve", "fast.h5 -o fast_results.h5 -t 1");
+    assert_int_equal(first.code, SF_ERR_NUMERIC);
+    const char *sentence = strstr(first.err, "softfall-solve: at t = "), *at = strstr(first.err, "node "),
+               *kept = strstr(first.err, "fast_results.h5.restart is step ");
+    assert_true(sentence && at && kept);
+    assert_int_equal(sscanf(sentence, "softfall-solve: at t = %lg s (step %lld)", &time, &step), 2);
+    assert_int_equal(sscanf(at, "node %lld", &node), 1);
+    assert_int_equal(sscanf(kept, "fast_results.h5.restart is step %lld, t = %lg", &held, &held_time), 2);
+    assert_int_equal(held, step - 1);
+    assert_true(held_time < time);
+    assert_true(fabs(last_frame(p, "fast_results.h5", &r) / time - 1) < 1e-5);
+    assert_int_equal(r.history_rows, step); /* all that held */
+    assert_true(strncmp(r.status, sentence + 16, 100) == 0);
+    sf_results_close(&r);
+
+    program_result again = program_run(p, "solve", "--restart fast_results.h5 -t 2");
+    assert_int_equal(again.code, SF_ERR_NUMERIC);
+    assert_string_equal(strstr(again.err, "softfall-solve: at t = "), sentence);
+    program_result held_run =
+        program_succeed(p, "solve", "--restart fast_results.h5 --end-time '%.17g s'", held_time * (1 - 1e-5));
+    assert_non_null(strstr(held_run.out, "finished"));
+    assert_true(fabs(last_frame(p, "fast_results.h5", &r) / held_time - 1) < 1e-5);
+    sf_results_close(&r);
+
+    program_result removed = program_run(p, "solve", "fast.h5 -o gone.h5 --on-failure remove");
+    assert_int_equal(removed.code, SF_ERR_NUMERIC);
+    assert_false(is_there(p, "gone.h5") || is_there(p, "gone.h5.restart") || is_there(p, "gone.h5.run"));
+    assert_int_equal(program_run(p, "solve", "fast.h5 -o gone.h5 --on-failure ask").code, 64);
+}
+
+/* ---- campaigns ---- */
+
+static void run_drop(const program_place *p, const char *folder, sf_runner_result *result, sf_error *err) {
+    char path[1024], source[1024];
+    snprintf(path, sizeof path, "%s", program_path(p, folder));
+    snprintf(source, sizeof source, "%s", fixture_source(EXAMPLE));
+    sf_runner runner = {.folder = path, .threads = 1};
+    sf_runner_drop drop = {
+        .case_path = source,
+        .label = "drop",
+        .override_count = 4,
+        .overrides = {"geometry.parameters.fine_spacing=20.0", "geometry.parameters.outer_spacing=20.0",
+                      "geometry.missile_parameters.element_size=20.0", "solver.step_safety=0.1"}};
+    sf_runner_run(&runner, &drop, result, err);
+}
+
+static void campaign_goes_on_with_an_interrupted_drop(void **state) {
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    sf_runner_result one, two;
+    run_drop(p, "campaign_one", &one, &err);
+    assert_int_equal(err.status, SF_OK);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        setpgid(0, 0);
+        signal(SIGTERM, SIG_IGN); /* the solver sets its own handler */
+        run_drop(p, "campaign_two", &two, &err);
+        _exit(err.status == SF_INTERRUPTED ? 0 : 1);
+    }
+    while (program_shell(p, "ls campaign_two/*/results.h5").code != 0)
+        sleep_for(0.01);
+    int status = 0;
+    kill(-child, SIGTERM);
+    waitpid(child, &status, 0);
+    assert_int_equal(status, 0);
+    assert_int_equal(program_shell(p, "ls campaign_two/*/results.h5.restart").code, 0);
+
+    run_drop(p, "campaign_two", &two, &err);
+    assert_int_equal(err.status, SF_OK);
+    assert_false(two.reused);
+    assert_memory_equal(&one.a_max_g, &two.a_max_g, sizeof one.a_max_g);
+    assert_int_equal(one.steps, two.steps);
+    const char *name = two.path + strlen(p->folder) + 1;
+    assert_int_equal(restarts_of(p, name), 1);
+    assert_int_equal(program_shell(p, "ls campaign_two/*").code, 0);
+    assert_null(strstr(program_shell(p, "ls campaign_two/*").out, "restart"));
+    assert_null(strstr(program_shell(p, "ls campaign_two/*").out, "model"));
+    sf_runner_result_free(&one);
+    sf_runner_result_free(&two);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(finished_run_goes_on_to_a_later_end),
+        cmocka_unit_test(interrupted_run_goes_on),
+        cmocka_unit_test(killed_run_loses_nothing),
+        cmocka_unit_test(interruption_at_once_leaves_a_checkpoint),
+        cmocka_unit_test(checkpoints_by_simulated_time_can_be_left_out),
+        cmocka_unit_test(damaged_or_foreign_checkpoint_is_refused),
+        cmocka_unit_test(nothing_is_replaced_without_force),
+        cmocka_unit_test(failed_run_leaves_its_state),
+        cmocka_unit_test(campaign_goes_on_with_an_interrupted_drop),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
