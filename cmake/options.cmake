@@ -5,6 +5,9 @@ option(SOFTFALL_NATIVE "Compile for the processor of this machine" ON)
 option(SOFTFALL_WERROR "Treat warnings as errors" OFF)
 set(SOFTFALL_SANITIZE "" CACHE STRING "Comma list for -fsanitize=, e.g. address,undefined")
 
+option(SOFTFALL_FUZZ "Build the fuzzers of the readers (clang)" OFF)
+set(SOFTFALL_FUZZ_SECONDS 20 CACHE STRING "Time of each fuzzer as a test, s")
+
 if(NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
@@ -19,6 +22,8 @@ add_library(softfall_options INTERFACE)
 target_compile_definitions(softfall_options INTERFACE _GNU_SOURCE)
 target_compile_options(softfall_options INTERFACE
     -Wall -Wextra -Wshadow -Wconversion -Wmissing-prototypes -Wvla
+    # Vectors pass between static inline functions only: how a call would pass them without AVX does not matter.
+    -Wno-psabi
     # No errno and no traps from sqrt and friends: lets loops over lanes vectorise without changing any result.
     -fno-math-errno -fno-trapping-math -fopenmp-simd)
 if(SOFTFALL_WERROR)
@@ -31,4 +36,7 @@ if(SOFTFALL_SANITIZE)
     target_compile_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE} -fno-omit-frame-pointer
                                                       -fno-sanitize-recover=all)
     target_link_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE})
+endif()
+if(SOFTFALL_FUZZ)
+    target_compile_options(softfall_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()

@@ -362,8 +362,8 @@ static void flipped_bytes_never_crash_a_program(void **state) {
             whole.data[at] = kept;
             program_result result =
                 program_shell(p,
-                              k ? "timeout 20 '%s/softfall-post' flip.h5 -o flip --force"
-                                : "timeout 20 '%s/softfall-solve' flip.h5 -o flip.h5.out --force",
+                              k ? "timeout 300 '%s/softfall-post' flip.h5 -o flip --force"
+                                : "timeout 300 '%s/softfall-solve' flip.h5 -o flip.h5.out --force",
                               getenv("SF_BIN_DIR"));
             if (result.code >= 124)
                 fail_msg("byte %zu of %s: exit code %d, %s", at, k ? "results.h5" : "model.h5", result.code,

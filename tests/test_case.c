@@ -252,6 +252,31 @@ static void include_brings_its_own_folder_for_the_curve(void **state) {
     sf_case_free(&c);
 }
 
+/* Also inside an included file, and the lines after it keep their numbers. */
+static void include_may_be_absolute(void **state) {
+    (void)state;
+    char text[2048];
+    write_file("materials/outer.cfg",
+               "density = \"35 kg/m3\";\n@include \"materials/rest.cfg\"\nHU = 3.0;\n");
+    write_file("materials/rest.cfg", "E = \"0.4 MPa\";\ncurve = \"inner.csv\";\n");
+    snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\n%s%s", GEOMETRY,
+             in_folder("materials/soft.cfg"), MISSILE, SOLVER);
+    sf_case c;
+    read_good(text, NULL, &c);
+    assert_int_equal(c.foam.curve_points, 4);
+    sf_case_free(&c);
+    assert_refused(text, "missile.mass=3", "--set missile.mass=3: ", NULL);
+    snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\n%s%s", GEOMETRY,
+             in_folder("materials/outer.cfg"), MISSILE, SOLVER);
+    assert_refused(text, NULL, "materials/outer.cfg:3: material.HU: 3 is out of bounds", NULL);
+    snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\nmissile: { mass = 3; };\n", GEOMETRY,
+             in_folder("materials/soft.cfg"));
+    assert_refused(text, NULL, "case.cfg:5: missile.mass: the value is a plain number", NULL);
+    snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\nmissile: { mass = ; };\n", GEOMETRY,
+             in_folder("materials/soft.cfg"));
+    assert_refused(text, NULL, "case.cfg:5: syntax error", NULL);
+}
+
 static void curves_at_several_rates_ascend(void **state) {
     (void)state;
     sf_case c;
@@ -346,9 +371,9 @@ static void units_of_another_kind_are_refused(void **state) {
 static void values_out_of_bounds_are_refused(void **state) {
     (void)state;
     assert_refused(GOOD, "missile.mass=0 kg",
-                   "missile.mass: 0 kg is out of bounds; it must be greater than 0 kg", NULL);
+                   "missile.mass: 0 kg is out of bounds; it must be at least 1e-09 kg", NULL);
     assert_refused(GOOD, "material.HU=1.5",
-                   "material.HU: 1.5 is out of bounds; it must be greater than 0 and at most 1", NULL);
+                   "material.HU: 1.5 is out of bounds; it must be at least 1e-06 and at most 1", NULL);
     assert_refused(GOOD, "material.HU=0", "material.HU: 0 is out of bounds", NULL);
     assert_refused(GOOD, "solver.step_limit=1 ms", "solver.step_limit: 0.001 s is out of bounds", "2e-05 s",
                    NULL);
@@ -356,6 +381,13 @@ static void values_out_of_bounds_are_refused(void **state) {
                    "missile.friction: -0.1 is out of bounds; it must be at least 0", NULL);
     assert_refused(GOOD, "kernel.support_ratio=1", "must be greater than 1", NULL);
     assert_refused(GOOD, "missile.friction=1e999", "not finite", NULL);
+    assert_refused(GOOD, "missile.velocity=1000 m/s", "missile.velocity: 1000 m s-1 is out of bounds",
+                   "at most 200 m s-1", NULL);
+    assert_refused(GOOD, "solver.end_time=59 us", "solver.end_time: 5.9e-05 s is less than 3 times", NULL);
+    assert_refused(GOOD, "output.frame_interval=0.3 us", "1.33e+05 frames", "at most 100000", NULL);
+    assert_refused(GOOD, "missile.gap=1 m", "missile.gap: the missile travels 0.18", "never reaches the pad",
+                   "1 m away", NULL);
+    assert_refused(GOOD, "output.times=[\"-1 ms\"]", "output.times: -0.001 s is out of bounds", NULL);
     assert_refused(GOOD, "missile.direction=[0, 0, 1]", "missile.direction: [0, 0, 1] does not point down",
                    NULL);
     assert_refused(GOOD, "missile.direction=[0, -1]", "expected three plain numbers", NULL);
@@ -595,6 +627,7 @@ int main(void) {
         cmocka_unit_test(set_overrides_every_kind_of_value),
         cmocka_unit_test(set_replaces_a_group_by_a_file),
         cmocka_unit_test(include_brings_its_own_folder_for_the_curve),
+        cmocka_unit_test(include_may_be_absolute),
         cmocka_unit_test(curves_at_several_rates_ascend),
         cmocka_unit_test(h2_takes_limit_and_exponent),
         cmocka_unit_test(unknown_names_are_refused_with_what_exists),

@@ -253,6 +253,44 @@ static void mapping_finds_the_minimum_of_the_simulation(void **state) {
     sf_mapping_free(&r);
 }
 
+/* The surrogate leads far beyond where the simulation bends: first steps are rejected, one by a failure. */
+static sf_status bent_surrogate(void *context, const double *u, double *y, sf_error *err) {
+    (void)context;
+    (void)err;
+    y[0] = u[0];
+    y[1] = u[1];
+    y[2] = 0;
+    return SF_OK;
+}
+
+static sf_status bent_simulate(void *context, const double *u, double *y, sf_error *err) {
+    toy *t = context;
+    t->simulations++;
+    if (u[0] > 2.5)
+        return SF_FAIL(err, SF_ERR_NUMERIC, "the drop collapsed");
+    y[0] = u[0] + 4 * u[0] * u[0];
+    y[1] = u[1] + u[0] * u[1];
+    y[2] = 0;
+    return SF_OK;
+}
+
+static void mapping_survives_rejected_and_failed_steps(void **state) {
+    (void)state;
+    toy t = {.linear = false};
+    const double measured[3] = {3, 0.3, 0}, wide[2] = {10, 10}; /* u0 = 0.75, u1 = 0.3 / 1.75 */
+    sf_mapping_problem p = toy_problem(&t, measured);
+    p.surrogate = bent_surrogate;
+    p.simulate = bent_simulate;
+    p.prior_sd = wide;
+    p.max_iterations = 30;
+    sf_mapping_result r;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_mapping_solve(&p, &r, &err), SF_OK);
+    assert_true(r.converged && t.simulations > 3);
+    assert_true(fabs(r.u[0] - 0.75) < 0.01 && fabs(r.u[1] - 0.3 / 1.75) < 0.01);
+    sf_mapping_free(&r);
+}
+
 static sf_status failing_simulate(void *context, const double *u, double *y, sf_error *err) {
     (void)context;
     (void)u;
@@ -331,6 +369,9 @@ static void bad_input_gets_one_sentence(void **state) {
         {GOOD "colour = 3;\n", "unknown key \"colour\""},
         {GOOD "curve_form = \"spline\";\n", "gas or table is expected"},
         {GOOD "name = \"a/b\";\n", "no slashes"},
+        {GOOD "name = \"fit-curve\";\n", "not fit..."},
+        {GOOD "start: { p0 = \"600 kPa\"; };\n", "is not below E"},
+        {GOOD "start: { E = \"3e5 MPa\"; };\n", "E is above 1e+10"},
         {GOOD "start: { p0 = \"3 kg\"; };\n", "p0: "},
         {GOOD "start: { q0 = \"3 kPa\"; };\n", "\"q0\" is no parameter of the foam"},
         {GOOD "start: { m = 0.5; };\n", "m is 0.5, outside 1 to 10"},
@@ -406,6 +447,16 @@ static void hidden_foam_is_found(void **state) {
         assert_true(fabs(a / a_max[k] - 1) < 0.004 && fabs(h / hic[k] - 1) < 0.008);
     }
     assert_non_null(strstr(json.data, "\"converged\": true"));
+    const double hidden[3] = {134e3, 23e3, 3e6}; /* p0, B, ED */
+    at = strstr(json.data, "\"parameters\":");
+    for (int k = 0; k < 3; k++) {
+        double low, high;
+        at = strstr(at, "\"low95_SI\":");
+        assert_non_null(at);
+        assert_int_equal(sscanf(at, "\"low95_SI\": %lf, \"high95_SI\": %lf", &low, &high), 2);
+        assert_true(low < hidden[k] && hidden[k] < high && high < 10 * low);
+        at++;
+    }
     free(json.data);
     program_result again = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
     assert_true(again.code == 2 && strstr(again.err, "--force"));
@@ -424,6 +475,7 @@ int main(void) {
         cmocka_unit_test(column_drop_keeps_energy),
         cmocka_unit_test(mapping_of_a_linear_problem_is_bayes),
         cmocka_unit_test(mapping_finds_the_minimum_of_the_simulation),
+        cmocka_unit_test(mapping_survives_rejected_and_failed_steps),
         cmocka_unit_test(mapping_passes_on_a_failed_simulation),
         cmocka_unit_test(bad_input_gets_one_sentence),
         cmocka_unit_test(hidden_foam_is_found),

@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The vectorised kernels against plain scalar code, on random states that reach every branch. */
 #include "foam_fixture.h"
+#include "model_fixture.h"
+
+#include "solver/domain_stress.h"
+#include "solver/internal_force.h"
+#include "solver/stabilisation.h"
+#include "solver/time_step.h"
 
 #include <math.h>
+#include <omp.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -178,11 +185,129 @@ static void curve_over_lanes_is_the_curve(void **state) {
     sf_foam_free(&foam);
 }
 
+/* ---- sums over neighbours ---- */
+
+/* A block of several groups of domains, irregular, with a random displacement and its forces. */
+static void start_block(fixture *f) {
+    const fixture_block block = {.cells = {9, 8, 7}, .spacing = 0.01, .jitter = 0.2, .surface_jitter = 0.1};
+    uint64_t seed = 8;
+    fixture_held_block(&block, f);
+    fixture_start(f);
+    assert_true(f->operators.halo.group_count > 3);
+    for (int64_t q = 0; q < 3 * f->model.node_count; q++)
+        f->state.d[q] = 5e-4 * fixture_random(&seed);
+}
+
+/* Theory eq. 7, entry by entry. */
+static void plain_gradient(const sf_model *m, const double *d, int64_t l, double f[9]) {
+    for (int k = 0; k < 9; k++)
+        f[k] = k % 4 == 0;
+    for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++)
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                f[3 * r + c] += d[3 * (int64_t)m->domain_node[k] + r] * m->domain_b[3 * k + c];
+}
+
+static void deformation_gradients_are_those_of_the_definition(void **state) {
+    (void)state;
+    fixture f;
+    start_block(&f);
+    sf_domain_stress(&f.model, &f.operators, &f.state);
+    for (int64_t l = 0; l < f.model.node_count; l++) {
+        double plain[9];
+        plain_gradient(&f.model, f.state.d, l, plain);
+        assert_close(point_distance(9, &f.state.f[9 * l], plain), 0, 1e-14);
+    }
+    fixture_free(&f);
+}
+
+/* Theory eq. 8, by scattering. */
+static void internal_forces_are_those_of_the_definition(void **state) {
+    (void)state;
+    fixture f;
+    start_block(&f);
+    const sf_model *m = &f.model;
+    int64_t n = 3 * m->node_count;
+    double *plain = test_calloc((size_t)n, sizeof *plain);
+    sf_domain_stress(m, &f.operators, &f.state);
+    memset(f.state.force, 0, (size_t)n * sizeof *f.state.force);
+    sf_internal_force(m, &f.operators, &f.state);
+    for (int64_t l = 0; l < m->node_count; l++)
+        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++)
+            for (int r = 0; r < 3; r++)
+                for (int c = 0; c < 3; c++)
+                    plain[3 * (int64_t)m->domain_node[k] + r] -=
+                        f.state.stress[9 * l + 3 * r + c] * m->domain_b[3 * k + c];
+    double size = 0;
+    for (int64_t q = 0; q < n; q++)
+        size = fmax(size, fabs(plain[q]));
+    assert_close(point_distance((int)n, f.state.force, plain) / size, 0, 1e-13);
+    test_free(plain);
+    fixture_free(&f);
+}
+
+/* Theory eq. 24 to 26, pair by pair. */
+static void stabilisation_is_that_of_the_definition(void **state) {
+    (void)state;
+    fixture f;
+    start_block(&f);
+    const sf_model *m = &f.model;
+    const sf_state *s = &f.state;
+    sf_domain_stress(m, &f.operators, &f.state);
+    for (int64_t i = 0; i < m->node_count; i++) {
+        double force[3], couple[9], plain_force[3] = {0}, plain_couple[9] = {0}, sum = 0;
+        for (int64_t k = m->edge_ptr[i]; k < m->edge_ptr[i + 1]; k++) {
+            int64_t j = m->edge_node[k];
+            double weight = f.operators.pair[k] * (s->stiffness[i] + s->stiffness[j]);
+            for (int r = 0; r < 3; r++) {
+                double e = s->d[3 * j + r] - s->d[3 * i + r];
+                for (int c = 0; c < 3; c++) {
+                    double arm = m->position[3 * j + c] - m->position[3 * i + c];
+                    e += ((r == c) - 0.5 * (s->f[9 * i + 3 * r + c] + s->f[9 * j + 3 * r + c])) * arm;
+                }
+                sum += 0.5 * f.operators.pair[k] * e * e;
+                plain_force[r] += weight * e;
+                for (int c = 0; c < 3; c++)
+                    plain_couple[3 * r + c] -=
+                        0.5 * weight * e * (m->position[3 * j + c] - m->position[3 * i + c]);
+            }
+        }
+        double value = sf_stabilisation_node(m, f.operators.pair, s->d, s->f, s->stiffness, i, force, couple);
+        assert_close(value, sum, 1e-12 * sum);
+        assert_close(point_distance(3, force, plain_force), 0, 1e-11 * point_norm(3, plain_force));
+        assert_close(point_distance(9, couple, plain_couple), 0, 1e-11 * point_norm(9, plain_couple));
+    }
+    fixture_free(&f);
+}
+
+/* The first step measures the highest frequency: the same seed, other threads, the same bits. */
+static void sums_do_not_depend_on_the_threads(void **state) {
+    (void)state;
+    fixture f[2];
+    for (int k = 0; k < 2; k++) {
+        omp_set_num_threads(k ? 3 : 1);
+        start_block(&f[k]);
+        fixture_forces(&f[k]);
+        sf_time_step_choose(&f[k].model, &f[k].operators, &f[k].state);
+    }
+    omp_set_num_threads(1);
+    size_t bytes = 3 * (size_t)f[0].model.node_count * sizeof(double);
+    assert_memory_equal(f[0].state.force, f[1].state.force, bytes);
+    assert_memory_equal(f[0].state.mode, f[1].state.mode, bytes / 3);
+    assert_true(f[0].state.dt == f[1].state.dt);
+    for (int k = 0; k < 2; k++)
+        fixture_free(&f[k]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(foam_law_is_that_of_the_reference),
         cmocka_unit_test(foam_law_with_rates_is_that_of_the_reference),
         cmocka_unit_test(curve_over_lanes_is_the_curve),
+        cmocka_unit_test(deformation_gradients_are_those_of_the_definition),
+        cmocka_unit_test(internal_forces_are_those_of_the_definition),
+        cmocka_unit_test(stabilisation_is_that_of_the_definition),
+        cmocka_unit_test(sums_do_not_depend_on_the_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MESHES = 4, MIDDLE = 2, FINE = 3, SKIPPED = 77 };
-static const int layers[MESHES] = {5, 7, 10, 14}; /* MIDDLE: the spacing of the paper, 5 mm */
-static const double THICKNESS = 50;               /* mm */
+enum { MESHES = 3, FINE = 2, SKIPPED = 77 };
+static const int layers[MESHES] = {5, 7, 10}; /* FINE: the spacing of the paper, 5 mm */
+static const double THICKNESS = 50;           /* mm */
 
 static const sf_indentation_case usual = {
     .layers = 5, .depth = 42e-3, .interval = 2e-3, .speed = 1, .modulus = 1, .penalty = 100, .facet = 3};
@@ -155,18 +155,17 @@ static double largest_difference(const double *a, const double *b, int count, do
     return worst;
 }
 
-/* The value at h = 0 of the least-squares fit F = F0 + a h2 over the three finest meshes. */
+/* The value at h = 0 of the least-squares fit F = F0 + a h2 over the meshes. */
 static double extrapolate(const double force[MESHES]) {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
-    int count = MESHES - 1;
-    for (int m = 1; m < MESHES; m++) {
+    for (int m = 0; m < MESHES; m++) {
         double x = pow(THICKNESS / layers[m], 2);
         sx += x;
         sy += force[m];
         sxx += x * x;
         sxy += x * force[m];
     }
-    return (sxx * sy - sx * sxy) / (count * sxx - sx * sx);
+    return (sxx * sy - sx * sxy) / (MESHES * sxx - sx * sx);
 }
 
 static void extrapolate_pair(const pair *p, pair *limit) {
@@ -187,9 +186,9 @@ static void extrapolate_pair(const pair *p, pair *limit) {
 static void print_forces(sf_study *s, const pair *p, const pair *limit) {
     sf_study_text(
         s, "Force in N (softfall / CalculiX) and difference; h → 0: the fit F = F₀ + a h² over the three "
-           "finest meshes.\n\n"
-           "| depth | 10 mm | | 7.14 mm | | 5 mm | | 3.57 mm | | h → 0 | |\n"
-           "|---|---|---|---|---|---|---|---|---|---|---|\n");
+           "meshes.\n\n"
+           "| depth | 10 mm | | 7.14 mm | | 5 mm | | h → 0 | |\n"
+           "|---|---|---|---|---|---|---|---|---|\n");
     for (int k = 0; k < p[MESHES - 1].count; k++) {
         sf_study_text(s, "| %.0f mm", depth_of(k));
         for (int m = 0; m <= MESHES; m++) {
@@ -216,8 +215,7 @@ static void write_data(sf_study *s, const pair *p, const pair *limit) {
     FILE *file = sf_study_file(s, "force.dat");
     if (!file)
         return;
-    fprintf(file,
-            "# depth_mm, then softfall_N CalculiX_N for spacing 10, 7.14, 5, 3.57 mm and the limit h to 0\n");
+    fprintf(file, "# depth_mm, then softfall_N CalculiX_N for spacing 10, 7.14, 5 mm and the limit h to 0\n");
     for (int k = 0; k < limit->count; k++) {
         fprintf(file, "%g", depth_of(k));
         for (int m = 0; m <= MESHES; m++) {
@@ -232,38 +230,37 @@ static void write_data(sf_study *s, const pair *p, const pair *limit) {
         "set multiplot layout 2,1\nset key left top\nset ylabel 'force (N)'\nset logscale y\nset format x "
         "''\n"
         "f = 'calculix-force.dat'\n"
-        "plot f u 1:9 w l lw 2 lc 6 t 'CalculiX, 3.57 mm', f u 1:8 w p pt 6 lc 7 t 'softfall, 3.57 mm', "
+        "plot f u 1:7 w l lw 2 lc 6 t 'CalculiX, 5 mm', f u 1:6 w p pt 6 lc 7 t 'softfall, 5 mm', "
         "f u 1:3 w l dt 2 lc 6 t 'CalculiX, 10 mm', f u 1:2 w p pt 1 lc 7 t 'softfall, 10 mm'\n"
         "unset logscale\nset format x '%g'\nset xlabel 'depth (mm)'\nset ylabel 'softfall - CalculiX (%)'\n"
         "set key right bottom\nset yrange [-15:5]\n"
         "plot f u 1:(100*($2/$3-1)) w lp t '10 mm', f u 1:(100*($4/$5-1)) w lp t '7.14 mm', "
-        "f u 1:(100*($6/$7-1)) w lp t '5 mm', f u 1:(100*($8/$9-1)) w lp t '3.57 mm', "
-        "f u 1:(100*($10/$11-1)) w lp lw 2 t 'h to 0', "
+        "f u 1:(100*($6/$7-1)) w lp t '5 mm', f u 1:(100*($8/$9-1)) w lp lw 2 t 'h to 0', "
         "3 lc 0 dt 3 notitle, -3 lc 0 dt 3 notitle\nunset multiplot");
 }
 
+/* Beyond 38 mm the foam beside the sphere is stretched beyond what the two laws share (print_stretches). */
 static void check_forces(sf_study *s, const pair *p, const pair *limit) {
-    const pair *fine = &p[FINE], *middle = &p[MIDDLE];
+    const pair *fine = &p[FINE];
     double small = 0;
     int ten = 4; /* index of the depth 10 mm */
     for (int k = 0; k < ten && k < fine->count; k++)
         small =
             fmax(small, fabs(fine->softfall.force[k] - fine->calculix.force[k]) / fine->calculix.force[ten]);
     sf_study_check(s, 1e3 * fine->calculix.depth_reached, 40, INFINITY,
-                   "depth that CalculiX reached at 3.57 mm (mm)");
-    sf_study_check(
-        s, largest_difference(middle->softfall.force, middle->calculix.force, middle->count, 10, 36), 0, 0.03,
-        "difference at 5 mm spacing, every point from 10 to 36 mm (20 to 72 %% of the thickness)");
-    sf_study_check(
-        s, largest_difference(fine->softfall.force, fine->calculix.force, fine->count, 10, 40), 0, 0.03,
-        "difference at 3.57 mm spacing, every point from 10 to 40 mm (20 to 80 %% of the thickness)");
-    sf_study_check(s, small, 0, 0.03, "difference at 3.57 mm spacing below 10 mm, over the force at 10 mm");
-    sf_study_check(s, largest_difference(limit->softfall.force, limit->calculix.force, limit->count, 10, 40),
-                   0, 0.015, "difference of the limits h → 0, every point from 10 to 40 mm");
+                   "depth that CalculiX reached at 5 mm (mm)");
+    sf_study_check(s, largest_difference(fine->softfall.force, fine->calculix.force, fine->count, 10, 38), 0,
+                   0.03,
+                   "difference at 5 mm spacing, every point from 10 to 38 mm (20 to 76 %% of the thickness)");
+    sf_study_check(s, small, 0, 0.03, "difference at 5 mm spacing below 10 mm, over the force at 10 mm");
+    sf_study_check(s, largest_difference(limit->softfall.force, limit->calculix.force, limit->count, 10, 38),
+                   0, 0.01, "difference of the limits h → 0, every point from 10 to 38 mm");
+    sf_study_check(s, largest_difference(limit->softfall.force, limit->calculix.force, limit->count, 40, 42),
+                   0, 0.03, "difference of the limits h → 0, 40 and 42 mm");
     for (int k = 9; k < limit->count && k < 20; k += 5)
         sf_study_check(
             s, log(difference(&p[0], k) / difference(fine, k)) / log((double)layers[FINE] / layers[0]), 1.3,
-            INFINITY, "order at which the difference falls from 10 to 3.57 mm spacing, depth %.0f mm",
+            INFINITY, "order at which the difference falls from 10 to 5 mm spacing, depth %.0f mm",
             depth_of(k));
 }
 
@@ -282,7 +279,7 @@ static sf_status study_pad(sf_study *s, const sf_indentation *in, pair p[MESHES]
     sf_study_text(
         s, "### Indentation\n\nA quarter of a pad 200 × 200 × 50 mm, glued at its base, and the rigid sphere "
            "of 160 mm, without "
-           "friction. The same lattice of hexahedra, node for node: 10, 7.14, 5 and 3.57 mm. CalculiX: C3D8, "
+           "friction. The same lattice of hexahedra, node for node: 10, 7.14 and 5 mm. CalculiX: C3D8, "
            "static, contact face to "
            "face with a linear penalty of 100 N/mm³, triangles of 3 mm for the sphere. softfall: the exact "
            "sphere of "
@@ -323,7 +320,7 @@ static sf_status study_influences(sf_study *s, const sf_indentation *in, const p
 }
 
 static void print_stretches(sf_study *s, const sf_indentation_curve *fine) {
-    sf_study_text(s, "Tension in softfall at 3.57 mm spacing:");
+    sf_study_text(s, "Tension in softfall at 5 mm spacing:");
     for (int k = 0; k < fine->frames && k < 4; k++)
         sf_study_text(s, "%s largest principal stretch %.3f at %d mm (above 1.3 in %.2f %% of the volume)",
                       k ? ";" : "", fine->stretch[k], 10 * (k + 1), 100 * fine->beyond[k]);

@@ -49,7 +49,6 @@ static const variation variations[] = {
     {PAD, "friction 0.5", {"missile.friction=0.5"}, 0, 0},
     {MATERIAL, "DAMP 0", {"material.DAMP=0.0"}, 0, 0},
     {MATERIAL, "DAMP with L = 5 mm everywhere", {"material.damp_length=5 mm"}, 0, 0},
-    {MATERIAL, "Kelvin 686 Pa s instead of Maxwell", {"material.ED=0 Pa", "material.eta=686 Pa s"}, 0, 0},
     {MATERIAL, "no rate term", {"material.ED=0 Pa"}, 0, 0},
     {MATERIAL, "no hysteresis (HU = 1)", {"material.HU=1.0"}, 0, 0},
     {MATERIAL, "curve cut at 80 %, then H1", {"material.densification.start=0.8"}, 0, 0},
@@ -66,7 +65,7 @@ static void conclude(sf_study *study, const sf_drop *base, const sf_drop *drop) 
     sf_study_text(study, "\n| kind | largest change of a_max (%%) | by |\n|---|---|---|\n");
     for (int kind = 0; kind < KINDS; kind++) {
         int worst = -1;
-        double largest = -1;
+        double largest = 0;
         for (int k = 0; k < VARIATIONS; k++) {
             double change = 100 * fabs(drop[k].a_max_g / base->a_max_g - 1);
             if ((int)variations[k].kind == kind && change > largest) {
@@ -89,7 +88,7 @@ int main(int argc, char **argv) {
     sf_drop base, drop[VARIATIONS];
     sf_error err = SF_ERROR_INIT;
     sf_study_begin(&study, "sensitivity", "What matters: sensitivity of the 50 mm, 4.5 m/s drop", argc, argv);
-    if (sf_drop_run("eva50-v4.5", NULL, 2, NULL, &base, &err) != SF_OK) {
+    if (sf_drop_run("eva50-v4.5", NULL, 1, NULL, &base, &err) != SF_OK) {
         sf_study_fail(&study, &err);
         return sf_study_end(&study);
     }
@@ -103,7 +102,7 @@ int main(int argc, char **argv) {
     for (int k = 0; k < VARIATIONS; k++) {
         const sf_drop *d = &drop[k];
         sf_error failed = SF_ERROR_INIT;
-        if (sf_drop_run("eva50-v4.5", variations[k].overrides, 2, NULL, &drop[k], &failed) != SF_OK) {
+        if (sf_drop_run("eva50-v4.5", variations[k].overrides, 1, NULL, &drop[k], &failed) != SF_OK) {
             sf_study_fail(&study, &failed);
             drop[k].a_max_g = drop[k].hic = NAN;
             continue;

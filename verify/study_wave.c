@@ -23,7 +23,7 @@ static void start_column(const int cells[3], double dt, fixture *f) {
     sf_case c;
     sf_mesh mesh;
     sf_surface surface;
-    fixture_case(&c, (const char *const[]){"missile.gap=1 m", NULL});
+    fixture_case(&c, (const char *const[]){"missile.gap=1 m", "solver.end_time=1 s", NULL});
     fixture_make_linear(&c);
     fixture_hold(&c, (const char *const[]){"base", NULL});
     fixture_block_mesh(&block, &mesh);

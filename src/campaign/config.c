@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
@@ -17,35 +16,31 @@ sf_status sf_config_refuse(const sf_config *config, const config_setting_t *sett
     va_start(args, format);
     vsnprintf(sentence, sizeof sentence, format, args);
     va_end(args);
-    unsigned line = setting ? (unsigned)config_setting_source_line(setting) : 0;
+    int line = setting ? (int)config_setting_source_line(setting) : 0;
     if (line == 0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: %s", config->path, sentence);
-    return SF_FAIL(err, SF_ERR_INPUT, "%s:%u: %s", config->path, line, sentence);
+    const char *path = sf_case_source_find(&config->source, line, &line);
+    return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line, sentence);
 }
 
 sf_status sf_config_open(const char *path, sf_config *config, sf_error *err) {
     *config = (sf_config){.path = path};
-    struct stat info;
     config_init(&config->config);
-    const char *slash = strrchr(path, '/');
-    config->folder = !slash          ? strdup(".")
-                     : slash == path ? strdup("/")
-                                     : strndup(path, (size_t)(slash - path));
-    if (!config->folder)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
-    if (stat(path, &info) != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "the file %s cannot be read: %s", path, strerror(errno));
-    if (!S_ISREG(info.st_mode))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s is not a plain file", path);
-    if (!config_read_file(&config->config, path))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, config_error_line(&config->config),
-                       config_error_text(&config->config));
-    return sf_units_open(&config->units, err);
+    config->folder = sf_case_folder_of(path, err);
+    char *text = config->folder ? sf_case_load_text(path, 0, NULL, &config->source, err) : NULL;
+    if (text && !config_read_string(&config->config, text)) {
+        int line = 0;
+        const char *file = sf_case_source_find(&config->source, config_error_line(&config->config), &line);
+        SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", file, line, config_error_text(&config->config));
+    }
+    free(text);
+    return err->status == SF_OK ? sf_units_open(&config->units, err) : err->status;
 }
 
 void sf_config_close(sf_config *config) {
     sf_units_close(&config->units);
     config_destroy(&config->config);
+    sf_case_source_free(&config->source);
     free(config->folder);
     *config = (sf_config){0};
 }

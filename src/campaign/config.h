@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "pre/case_source.h"
 #include <libconfig.h>
 #include <stdbool.h>
 
@@ -14,6 +15,7 @@ typedef struct sf_config {
     char *folder;     /* that holds the file; owned */
     sf_units *units;
     config_t config;
+    sf_case_source source; /* of its lines */
 } sf_config;
 
 /* Reads the file. Release with sf_config_close, also on failure. */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "campaign/runner.h"
 
-#include "build_info.h"
 #include "post/figures.h"
 #include "pre/case.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <math.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +20,27 @@ enum { MAX_ARGUMENTS = 2 * SF_RUNNER_OVERRIDES + 16, TEXT_SIZE = PATH_MAX + 64 }
 /* A campaign needs the curve and the figures, not the fields. */
 static const char *const lean_output[] = {"output.fields=[\"displacement\"]", "output.frame_interval=1000 s"};
 enum { LEAN = sizeof lean_output / sizeof lean_output[0] };
+
+/* ---- the programs ---- */
+
+/* "folder/name" of a program of ours. */
+static sf_status find_program(const char *name, char *path, sf_error *err) {
+    const char *given = getenv("SF_BIN_DIR");
+    char self[PATH_MAX];
+    if (given && *given) {
+        snprintf(path, TEXT_SIZE, "%s/%s", given, name);
+    } else {
+        ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+        if (length < 0)
+            return SF_FAIL(err, SF_ERR_IO, "the folder of this program is unknown: %s", strerror(errno));
+        self[length] = '\0';
+        *strrchr(self, '/') = '\0';
+        snprintf(path, TEXT_SIZE, "%s/%s", self, name);
+    }
+    if (access(path, X_OK) != 0)
+        return SF_FAIL(err, SF_ERR_IO, "the program %s cannot be run: %s", path, strerror(errno));
+    return SF_OK;
+}
 
 /* ---- what makes two drops the same ---- */
 
@@ -64,38 +85,25 @@ static sf_status hash_case(const sf_case *c, uint64_t *hash, sf_error *err) {
     size_t points = (size_t)foam->curve_points * sizeof *foam->curve_strain,
            curves = (size_t)foam->curve_count * sizeof *foam->curve_rate,
            motion = (size_t)c->motion_count * sizeof *c->motion_time;
-    *hash = hash_bytes(FNV_OFFSET, SF_GIT_REVISION, strlen(SF_GIT_REVISION));
-    *hash = hash_values(*hash, c->parameters);
+    *hash = hash_values(FNV_OFFSET, c->parameters);
     *hash = hash_bytes(*hash, foam->curve_strain, points);
     *hash = hash_bytes(*hash, foam->curve_stress, points);
     *hash = hash_bytes(*hash, foam->curve_rate, curves);
     *hash = hash_bytes(*hash, c->motion_time, motion);
     *hash = hash_bytes(*hash, c->motion_displacement, motion);
-    if (hash_file(hash, c->pad.path, err) == SF_OK && c->missile.path)
-        hash_file(hash, c->missile.path, err);
+    if (hash_file(hash, c->pad.path, err) != SF_OK ||
+        (c->missile.path && hash_file(hash, c->missile.path, err) != SF_OK))
+        return err->status;
+    static const char *const programs[] = {"softfall-pre", "softfall-solve"};
+    for (int k = 0; k < 2; k++) {
+        char path[TEXT_SIZE];
+        if (find_program(programs[k], path, err) != SF_OK || hash_file(hash, path, err) != SF_OK)
+            break;
+    }
     return err->status;
 }
 
 /* ---- child processes ---- */
-
-/* "folder/name" of a program of ours. */
-static sf_status find_program(const char *name, char *path, sf_error *err) {
-    const char *given = getenv("SF_BIN_DIR");
-    char self[PATH_MAX];
-    if (given && *given) {
-        snprintf(path, TEXT_SIZE, "%s/%s", given, name);
-    } else {
-        ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
-        if (length < 0)
-            return SF_FAIL(err, SF_ERR_IO, "the folder of this program is unknown: %s", strerror(errno));
-        self[length] = '\0';
-        *strrchr(self, '/') = '\0';
-        snprintf(path, TEXT_SIZE, "%s/%s", self, name);
-    }
-    if (access(path, X_OK) != 0)
-        return SF_FAIL(err, SF_ERR_IO, "the program %s cannot be run: %s", path, strerror(errno));
-    return SF_OK;
-}
 
 /* The last line of a log that says something, for an error's sentence. */
 static void last_line(const char *path, char *out, size_t size) {
@@ -109,6 +117,29 @@ static void last_line(const char *path, char *out, size_t size) {
     }
     if (file)
         fclose(file);
+}
+
+static volatile sig_atomic_t stopped, running; /* running: process id of the child, 0 = none */
+
+static void pass_on(int signal_number) {
+    stopped = 1;
+    if (running > 0)
+        kill((pid_t)running, signal_number);
+}
+
+void sf_runner_handle_signals(void) {
+    struct sigaction action = {.sa_handler = pass_on};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+bool sf_runner_stopped(void) {
+    return stopped != 0;
+}
+
+static sf_status interrupted(sf_error *err) {
+    return SF_FAIL(err, SF_INTERRUPTED,
+                   "interrupted; finished drops are kept: the same command goes on from here");
 }
 
 /* Runs a program with its words appended to `log`; its exit code decides. */
@@ -125,15 +156,18 @@ static sf_status run_program(char *const *arguments, const char *log, sf_error *
     posix_spawn_file_actions_destroy(&actions);
     if (result != 0)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be run: %s", arguments[0], strerror(result));
+    running = child;
+    if (stopped) /* the signal came before the child was known */
+        kill(child, SIGTERM);
     while (waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
             return SF_FAIL(err, SF_ERR_IO, "%s was lost: %s", arguments[0], strerror(errno));
+    running = 0;
     int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     if (code == 0)
         return SF_OK;
-    if (code == SF_INTERRUPTED || code == 128 + SIGTERM)
-        return SF_FAIL(err, SF_INTERRUPTED,
-                       "interrupted; finished drops are kept: the same command goes on from here");
+    if (stopped || code == SF_INTERRUPTED || code == 128 + SIGTERM)
+        return interrupted(err);
     char said[512];
     last_line(log, said, sizeof said);
     return SF_FAIL(err, code <= SF_ERR_LIBRARY ? (sf_status)code : SF_ERR_LIBRARY,
@@ -281,6 +315,8 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
     if (locate(runner, drop, count, list, &at, err) != SF_OK)
         return err->status;
     bool reused = is_finished(at.results);
+    if (stopped)
+        return interrupted(err);
     if (!reused && simulate(runner, drop, count, list, &at, err) != SF_OK)
         return err->status;
     if (read_result(at.results, result, err) != SF_OK)

@@ -12,13 +12,6 @@
 
 enum { MAX_DROPS = 8 };
 
-static volatile sig_atomic_t stop_requested;
-
-static void request_stop(int signal_number) {
-    (void)signal_number;
-    stop_requested = 1;
-}
-
 /* What is known of the drop before the first is simulated. */
 typedef struct setting {
     double speed; /* m s-1, of the case */
@@ -101,7 +94,7 @@ static sf_status simulate(const sf_cfh_options *o, sf_output *output, sf_cfh_rep
     sf_runner_drop base = {
         .case_path = o->case_path, .material = o->material, .override_count = o->override_count};
     memcpy(base.overrides, o->overrides, sizeof base.overrides);
-    const sf_cfh_series series = {report->plan, report->rig, &base, report->table_end, &stop_requested};
+    const sf_cfh_series series = {report->plan, report->rig, &base, report->table_end};
     printf("%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
            o->list_count ? o->list_count : MAX_DROPS, folder,
            report->rig->pairs ? "on the rig" : "of free fall");
@@ -148,9 +141,8 @@ int main(int argc, char **argv) {
     sf_output output = {0};
     sf_error err = SF_ERROR_INIT;
     char *command = sf_command_line(argc, argv);
-    struct sigaction action = {.sa_handler = request_stop};
-    sigaction(SIGINT, &action, NULL); /* the programs that run get the signal too and end their drop */
-    sigaction(SIGTERM, &action, NULL);
+    sf_error_ignore_closed_pipe();
+    sf_runner_handle_signals();
     if (sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)
         run(&options, command ? command : "softfall-cfh", &output, &err);
     sf_output_end(&output);

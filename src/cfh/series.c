@@ -70,9 +70,6 @@ sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_poin
         if (run_drop(s, runner, height, &point, err) != SF_OK)
             return err->status;
         sf_cfh_points_add(points, &point);
-        if (*s->stop)
-            return SF_FAIL(err, SF_INTERRUPTED,
-                           "interrupted; finished drops are kept: the same command goes on from here");
     }
     return SF_OK;
 }

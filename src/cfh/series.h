@@ -12,9 +12,8 @@
 typedef struct sf_cfh_series {
     const sf_cfh_plan *plan;
     const sf_cfh_rig *rig;
-    const sf_runner_drop *base;        /* case, material, overrides; the speed is added here */
-    double table_end;                  /* -, strain up to which the compression curve is given */
-    const volatile sig_atomic_t *stop; /* not 0: end after the present drop */
+    const sf_runner_drop *base; /* case, material, overrides; the speed is added here */
+    double table_end;           /* -, strain up to which the compression curve is given */
 } sf_cfh_series;
 
 /* Runs the search. A drop whose simulation fails numerically becomes a point that failed, with a note; every

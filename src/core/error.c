@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/error.h"
 
+#include <errno.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -18,18 +20,30 @@ sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int l
     va_start(args, format);
     vsnprintf(err->text, sizeof err->text, format, args);
     va_end(args);
+    /* Texts of files stand in the sentence: their line ends and escapes must not reach the terminal. */
+    for (char *c = err->text; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 127)
+            *c = ' ';
     return status;
 }
 
+void sf_error_ignore_closed_pipe(void) {
+    signal(SIGPIPE, SIG_IGN);
+}
+
 int sf_error_report(const sf_error *err, const char *program) {
-    if (err->status == SF_OK)
+    sf_error last = *err;
+    errno = 0;
+    if (fflush(stdout) != 0 || ferror(stdout))
+        SF_FAIL(&last, SF_ERR_IO, "the standard output cannot be written%s%s", errno ? ": " : "",
+                errno ? strerror(errno) : "");
+    if (last.status == SF_OK)
         return 0;
-    fflush(stdout);
     if (getenv("SOFTFALL_DEBUG"))
-        fprintf(stderr, "%s: [%s:%d] %s\n", program, err->where, err->line, err->text);
+        fprintf(stderr, "%s: [%s:%d] %s\n", program, last.where, last.line, last.text);
     else
-        fprintf(stderr, "%s: %s\n", program, err->text);
-    return (int)err->status;
+        fprintf(stderr, "%s: %s\n", program, last.text);
+    return (int)last.status;
 }
 
 void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what) {

@@ -135,3 +135,8 @@ void sf_model_drop_mesh(sf_model *model) {
     model->cell_node = NULL;
     model->cell_count = model->cell_nnz = 0;
 }
+
+void sf_model_drop_domain_nodes(sf_model *model) {
+    free(model->domain_node);
+    model->domain_node = NULL;
+}

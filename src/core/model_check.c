@@ -65,7 +65,7 @@ static sf_status check_curves(const sf_foam_card *foam, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the foam has no usable compression curve");
     for (int64_t c = 0; c < foam->curve_count; c++) {
         int64_t first = foam->curve_ptr[c], last = foam->curve_ptr[c + 1];
-        if (first < 0 || last > foam->curve_points || last - first < 4)
+        if (first < 0 || last < first || last > foam->curve_points || last - first < 4)
             return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld has fewer than 4 points", (long long)c);
         if (c > 0 && foam->curve_rate[c] <= foam->curve_rate[c - 1])
             return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld: rates must ascend", (long long)c);
@@ -128,6 +128,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"missile gap (m)", m->missile.gap, 0, 1e3},
         {"missile shape", (double)m->missile.shape, 0, 1},
         {"missile sphere radius (m)", m->missile.sphere_radius, m->missile.shape ? 0 : 1e-9, 1e3},
+        {"missile sphere cap cosine", m->missile.sphere_cap_cosine, -1 - 1e-9, 1 + 1e-9},
         {"symmetry factor", (double)m->symmetry_factor, 1, 4},
         {"pad thickness (m)", m->thickness, 1e-6, 1e3},
         {"end time (s)", m->run.end_time, 1e-9, 1e3},
@@ -140,6 +141,8 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
     for (size_t k = 0; k < sizeof bound / sizeof bound[0]; k++)
         if (check_bound(bound[k].name, bound[k].value, bound[k].low, bound[k].high, err) != SF_OK)
             return err->status;
+    if (m->symmetry_factor == 3)
+        return SF_FAIL(err, SF_ERR_MODEL, "the symmetry factor is 3; 1, 2 and 4 are possible");
     double length = 0;
     for (int c = 0; c < 3; c++)
         length += m->missile.direction[c] * m->missile.direction[c];
@@ -170,6 +173,34 @@ static sf_status check_mesh(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
+static sf_status check_nodes(const sf_model *m, sf_error *err) {
+    for (int64_t i = 0; i < m->node_count; i++)
+        if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0 && m->support[i] > 0))
+            return SF_FAIL(
+                err, SF_ERR_MODEL,
+                "node %lld has volume %g m3, mass %g kg, spacing %g m, support %g m: all must be > 0",
+                (long long)i, m->volume[i], m->mass[i], m->spacing[i], m->support[i]);
+    return SF_OK;
+}
+
+static sf_status check_constraints(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->fixed_count; k++)
+        if (m->fixed_mask[k] < 1 || m->fixed_mask[k] > (SF_FIX_X | SF_FIX_Y | SF_FIX_Z) ||
+            m->fixed_base[k] > 1)
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "constrained node %d has mask %d (1 to 7 are possible) and base %d (0 or 1)",
+                           m->fixed_node[k], m->fixed_mask[k], m->fixed_base[k]);
+    return SF_OK;
+}
+
+static sf_status check_frame_times(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->frame_time_count; k++)
+        if (m->frame_time[k] < 0 || (k > 0 && m->frame_time[k] < m->frame_time[k - 1]))
+            return SF_FAIL(err, SF_ERR_MODEL, "frame time %g s is negative or not in ascending order",
+                           m->frame_time[k]);
+    return SF_OK;
+}
+
 sf_status sf_model_check(const sf_model *m, sf_error *err) {
     if (m->node_count < 1 || m->node_count > INT32_MAX)
         return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld nodes", (long long)m->node_count);
@@ -177,11 +208,8 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
     if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK)
         return err->status;
-    for (int64_t i = 0; i < m->node_count; i++)
-        if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0))
-            return SF_FAIL(err, SF_ERR_MODEL,
-                           "node %lld has volume %g m3, mass %g kg, spacing %g m: all must be > 0",
-                           (long long)i, m->volume[i], m->mass[i], m->spacing[i]);
+    if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
+        return err->status;
     if (check_csr("smoothing domains", m->node_count, m->domain_nnz, m->domain_ptr, m->domain_node,
                   m->node_count, true, err) != SF_OK ||
         check_csr("shape functions", m->node_count, m->phi_nnz, m->phi_ptr, m->phi_node, m->node_count, true,
@@ -189,7 +217,8 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         check_csr("edges", m->node_count, m->edge_nnz, m->edge_ptr, m->edge_node, m->node_count, true, err) !=
             SF_OK ||
         check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
-        check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK)
+        check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK ||
+        check_constraints(m, err) != SF_OK)
         return err->status;
     return check_mesh(m, err);
 }

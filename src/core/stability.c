@@ -32,9 +32,3 @@ sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err
     free(share);
     return SF_OK;
 }
-
-double sf_stability_step(double c, double a, double eta) {
-    /* The positive root of c a dt^2 + 2 c eta dt - 4 = 0, without cancellation. */
-    double damping = c * eta;
-    return 4 / (damping + sqrt(damping * damping + 4 * c * a));
-}

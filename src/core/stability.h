@@ -11,11 +11,16 @@
 
 #include "core/error.h"
 #include "core/model.h"
+#include <math.h>
 
 /* Fills c [node_count], m kg-1, with shares theta_IL proportional to V_L |B_I^L|. */
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err);
 
 /* Largest stable step of a domain with c (m/kg), a (Pa), eta (Pa s); s. */
-double sf_stability_step(double c, double a, double eta);
+static inline double sf_stability_step(double c, double a, double eta) {
+    /* The positive root of c a dt^2 + 2 c eta dt - 4 = 0, without cancellation. */
+    double damping = c * eta;
+    return 4 / (damping + sqrt(damping * damping + 4 * c * a));
+}
 
 #endif

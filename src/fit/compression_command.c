@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/compression_command.h"
 
+#include "campaign/runner.h"
 #include "fit/compression_output.h"
 
 #include <argp.h>
@@ -88,6 +89,7 @@ static sf_status run(const options *o, sf_error *err) {
 int sf_fit_compression_main(int argc, char **argv) {
     options o = {0};
     sf_error err = SF_ERROR_INIT;
+    sf_runner_handle_signals();
     if (parse_command(argc, argv, &o, &err) == SF_OK)
         run(&o, &err);
     return sf_error_report(&err, "softfall-fit");

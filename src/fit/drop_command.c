@@ -107,14 +107,17 @@ int sf_fit_drop_main(int argc, char **argv) {
     };
     static const struct argp parser = {.options = known,
                                        .parser = parse,
-                                       .args_doc = "FIT.cfg",
+                                       .args_doc = "FIT.cfg -o DIR",
                                        .doc = "Identifies a foam from measured drops, and predicts others."};
     options o = {.threads = (int)sysconf(_SC_NPROCESSORS_ONLN)};
     sf_error err = SF_ERROR_INIT;
     sf_fit_input input = {0};
     sf_drop_fit fit = {0};
     sf_output output = {0};
+    static char name[] = "softfall-fit drop";
+    argv[0] = name;
     gsl_set_error_handler_off(); /* statuses are looked at */
+    sf_runner_handle_signals();
     argp_parse(&parser, argc, argv, 0, NULL, &o);
     run(&o, &input, &fit, &output, &err);
     sf_output_end(&output);

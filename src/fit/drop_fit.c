@@ -52,9 +52,12 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
         fit->row[d + 1] = fit->row[d] + SF_FIT_SAMPLES + in->drop[d].samples;
         fit->measured_drops += !in->drop[d].predicted;
     }
+    fit->parameters = in->unknown_count;
+    for (int d = 0; d < in->drop_count; d++)
+        fit->speed[d] = in->drop[d].speed_sd > 0 ? fit->parameters++ : -1;
     unsigned long n = (unsigned long)fit->row[in->drop_count];
     fit->y = sf_alloc(err, n, sizeof(double), "responses");
-    fit->gradient = sf_alloc(err, n * (unsigned long)in->unknown_count, sizeof(double), "responses");
+    fit->gradient = sf_alloc(err, n * (unsigned long)fit->parameters, sizeof(double), "responses");
     fit->measured = sf_alloc(err, n, sizeof(double), "responses");
     fit->sd = sf_alloc(err, n, sizeof(double), "responses");
     fit->without = sf_alloc(err, n, sizeof(double), "responses");
@@ -78,16 +81,19 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
 
 /* ---- surrogate ---- */
 
-/* Drops `first` to `last` - 1 by columns of this foam. */
+/* Drops `first` to `last` - 1 by columns of this foam; `u` has the speeds, NULL: as given. */
 static sf_status columns_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
-                                 double *y, sf_error *err) {
+                                 const double *u, double *y, sf_error *err) {
     sf_foam foam = {0};
     if (sf_foam_build(card, &foam, err) != SF_OK)
         return err->status;
     for (int d = first; d < last && err->status == SF_OK; d++) {
         sf_series curve = {0};
         sf_hic hic;
-        if (sf_columns_drop(&fit->columns[d], &foam, &curve, err) == SF_OK &&
+        sf_columns columns = fit->columns[d];
+        if (u && fit->speed[d] >= 0)
+            columns.speed *= exp(u[fit->speed[d]]);
+        if (sf_columns_drop(&columns, &foam, &curve, err) == SF_OK &&
             sf_hic_evaluate(&curve, INFINITY, &hic, err) == SF_OK) {
             double peak = 0;
             for (int64_t k = 0; k < curve.count; k++)
@@ -105,7 +111,7 @@ static sf_status columns_at(const sf_drop_fit *fit, int first, int last, const d
     sf_foam_card card;
     if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
         return err->status;
-    columns_respond(fit, first, last, &card, y, err);
+    columns_respond(fit, first, last, &card, u, y, err);
     sf_foam_card_free(&card);
     return err->status;
 }
@@ -162,11 +168,29 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     return err->status;
 }
 
+/* Adds what the speeds of u change, by columns. */
+static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, sf_error *err) {
+    double given[SF_MAPPING_MAX_PARAMETERS] = {0};
+    unsigned long n = (unsigned long)fit->row[fit->measured_drops];
+    double *with = sf_alloc(err, n, sizeof *with, "responses"),
+           *without = sf_alloc(err, n, sizeof *with, "responses");
+    memcpy(given, u, (size_t)fit->input->unknown_count * sizeof *u);
+    if (err->status == SF_OK && surrogate((void *)fit, u, with, err) == SF_OK &&
+        surrogate((void *)fit, given, without, err) == SF_OK)
+        for (unsigned long k = 0; k < n; k++)
+            y[k] += with[k] - without[k];
+    free(with);
+    free(without);
+    return err->status;
+}
+
 static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
     sf_drop_fit *fit = context;
     char name[SF_FIT_NAME_SIZE];
     snprintf(name, sizeof name, "iterate-%02d", fit->iteration++);
-    return simulate_drops(fit, 0, fit->measured_drops, name, u, y, err);
+    if (simulate_drops(fit, 0, fit->measured_drops, name, u, y, err) != SF_OK)
+        return err->status;
+    return add_speeds(fit, u, y, err);
 }
 
 static void report_progress(void *context, int iteration, const double *u, const double *y,
@@ -210,8 +234,8 @@ static sf_status leave_one_out(sf_drop_fit *fit, const sf_mapping_problem *probl
 /* sqrt(g^T C g). */
 static double deviation(const sf_drop_fit *fit, const double *gradient) {
     double sum = 0;
-    for (int j = 0; j < fit->input->unknown_count; j++)
-        for (int k = 0; k < fit->input->unknown_count; k++)
+    for (int j = 0; j < fit->parameters; j++)
+        for (int k = 0; k < fit->parameters; k++)
             sum += gradient[j] * fit->result.covariance[j][k] * gradient[k];
     return sqrt(fmax(0, sum));
 }
@@ -230,7 +254,7 @@ static double stress_at(const sf_foam_card *card, double strain) {
 static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
     static const double step = 1e-3;
     const sf_fit_input *in = fit->input;
-    double gradient[SF_FIT_STRAIN_BINS][SF_MAPPING_MAX_PARAMETERS], u[SF_MAPPING_MAX_PARAMETERS];
+    double gradient[SF_FIT_STRAIN_BINS][SF_MAPPING_MAX_PARAMETERS] = {{0}}, u[SF_MAPPING_MAX_PARAMETERS];
     for (int j = 0; j < in->unknown_count; j++) {
         sf_foam_card low, high;
         memcpy(u, fit->result.u, sizeof u);
@@ -245,6 +269,8 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
             }
         sf_foam_card_free(&low);
         sf_foam_card_free(&high);
+        if (err->status != SF_OK)
+            return err->status;
     }
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
         double prior = 0;
@@ -256,25 +282,34 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
     return err->status;
 }
 
-/* The curve raised by a hat over one bin: how much do the measured responses of the columns change? */
+static const double RAISE = 0.05; /* of the stress, by a hat over one bin */
+
+/* Responses of the columns with the curve raised in bin `b`; -1: nowhere. */
+static sf_status respond_raised(const sf_drop_fit *fit, int b, double *y, sf_error *err) {
+    sf_foam_card card;
+    if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) != SF_OK)
+        return err->status;
+    sf_foam_card_resample(&card, err);
+    for (int64_t k = 0; k < card.curve_points && b >= 0; k++) {
+        double away = fabs(card.curve_strain[k] - (b + 0.5) * BIN_WIDTH) / BIN_WIDTH;
+        card.curve_stress[k] *= 1 + RAISE * fmax(0, 1 - away);
+    }
+    if (err->status == SF_OK)
+        columns_respond(fit, 0, fit->measured_drops, &card, NULL, y, err);
+    sf_foam_card_free(&card);
+    return err->status;
+}
+
+/* How much do the measured responses change with the curve in each bin? */
 static sf_status locate_information(sf_drop_fit *fit, sf_error *err) {
-    static const double raise = 0.05;
     size_t n = (size_t)fit->row[fit->measured_drops];
     double *y = sf_alloc(err, n, sizeof *y, "responses"), *base = sf_alloc(err, n, sizeof *base, "responses");
     if (err->status == SF_OK)
-        surrogate(fit, fit->result.u, base, err);
+        respond_raised(fit, -1, base, err);
     for (int b = 0; b < SF_FIT_STRAIN_BINS && err->status == SF_OK; b++) {
-        sf_foam_card card;
-        if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) != SF_OK)
-            break;
-        for (int64_t k = 0; k < card.curve_points; k++) {
-            double away = fabs(card.curve_strain[k] - (b + 0.5) * BIN_WIDTH) / BIN_WIDTH;
-            card.curve_stress[k] *= 1 + raise * fmax(0, 1 - away);
-        }
-        columns_respond(fit, 0, fit->measured_drops, &card, y, err);
-        sf_foam_card_free(&card);
+        respond_raised(fit, b, y, err);
         for (size_t k = 0; k < n; k++)
-            fit->information[b] += isinf(fit->sd[k]) ? 0 : pow((y[k] - base[k]) / (raise * fit->sd[k]), 2);
+            fit->information[b] += isinf(fit->sd[k]) ? 0 : pow((y[k] - base[k]) / (RAISE * fit->sd[k]), 2);
     }
     free(y);
     free(base);
@@ -298,7 +333,7 @@ static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
         if (columns_at(fit, fit->measured_drops, in->drop_count, u, low, err) != SF_OK)
             break;
         for (int k = first; k < last; k++)
-            fit->gradient[k * in->unknown_count + j] = (high[k] - low[k]) / (2 * step);
+            fit->gradient[k * fit->parameters + j] = (high[k] - low[k]) / (2 * step);
     }
     free(high);
     free(low);
@@ -308,7 +343,7 @@ static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
 /* The measured drops with the best parameters, which the runner still has, and the predicted ones. */
 static sf_status finish(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
-    int n = in->unknown_count;
+    int n = fit->parameters;
     FILE *log = fit->runner->log;
     fit->runner->log = NULL;
     simulate_drops(fit, 0, fit->measured_drops, "result", fit->result.u, fit->y, err);
@@ -333,16 +368,21 @@ static sf_status conclude(sf_drop_fit *fit, const sf_mapping_problem *problem, s
 
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
-    double start[SF_MAPPING_MAX_PARAMETERS];
+    double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS];
     if (list_data(fit, err) != SF_OK)
         return err->status;
-    for (int k = 0; k < in->unknown_count; k++)
+    for (int k = 0; k < in->unknown_count; k++) {
         start[k] = log(in->prior[k]);
-    const sf_mapping_problem problem = {.parameters = in->unknown_count,
+        prior_sd[k] = in->prior_sd[k];
+    }
+    for (int d = 0; d < in->drop_count; d++)
+        if (fit->speed[d] >= 0)
+            prior_sd[fit->speed[d]] = in->drop[d].speed_sd;
+    const sf_mapping_problem problem = {.parameters = fit->parameters,
                                         .responses = fit->row[fit->measured_drops],
                                         .start = start,
                                         .prior = start,
-                                        .prior_sd = in->prior_sd,
+                                        .prior_sd = prior_sd,
                                         .measured = fit->measured,
                                         .sd = fit->sd,
                                         .surrogate = surrogate,

@@ -30,14 +30,16 @@ typedef struct sf_drop_fit {
     /* out */
     int row[SF_FIT_MAX_DROPS + 1]; /* first response of each drop, and their number; measured drops first */
     int measured_drops;
-    double *measured, *sd; /* [responses] scaled; sd INFINITY where nothing was measured; owned */
+    int parameters;              /* unknown parameters of the foam, then speeds */
+    int speed[SF_FIT_MAX_DROPS]; /* index of the drop's speed among them; -1: it is known */
+    double *measured, *sd;       /* [responses] scaled; sd INFINITY where nothing was measured; owned */
     sf_columns columns[SF_FIT_MAX_DROPS];
     sf_fit_simulated simulated[SF_FIT_MAX_DROPS];
     int iteration;
     sf_mapping_result result; /* of the measured drops */
     double *y;                /* [responses] of the simulations with the result; owned */
-    double *gradient;    /* [responses][unknowns] by the parameters: corrected columns, for predictions plain;
-                            owned */
+    double *gradient; /* [responses][parameters] by the parameters: corrected columns, for predictions plain;
+                         owned */
     double *response_sd; /* [responses] standard deviation by the parameters; owned */
     double
         *without; /* [responses] each measured drop predicted by the others; NaN if there are none; owned */

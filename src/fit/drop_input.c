@@ -70,6 +70,7 @@ static sf_status read_measurement(const sf_config *config, const config_setting_
     drop->sample_sd = 0.03;
     if (sf_config_number(config, group, "a_max_g", false, 1e-3, 1e5, &drop->a_max_g, err) != SF_OK ||
         sf_config_number(config, group, "HIC", false, 1e-3, 1e7, &drop->hic, err) != SF_OK ||
+        sf_config_number(config, group, "speed_sd", false, 0, 0.2, &drop->speed_sd, err) != SF_OK ||
         sf_config_number(config, group, "a_max_sd", false, 1e-4, 1, &drop->a_max_sd, err) != SF_OK ||
         sf_config_number(config, group, "HIC_sd", false, 1e-4, 1, &drop->hic_sd, err) != SF_OK ||
         sf_config_number(config, group, "curve_sd", false, 1e-4, 1, &drop->sample_sd, err) != SF_OK ||
@@ -86,7 +87,8 @@ static sf_status read_measurement(const sf_config *config, const config_setting_
 
 static sf_status read_drop(const sf_config *config, const config_setting_t *group, bool predicted,
                            sf_fit_input *in, sf_error *err) {
-    static const char *const names[2] = {"name|case|a_max_g|HIC|a_max_sd|HIC_sd|curve|curve_sd", "name|case"};
+    static const char *const names[2] = {"name|case|a_max_g|HIC|speed_sd|a_max_sd|HIC_sd|curve|curve_sd",
+                                         "name|case"};
     sf_fit_drop *drop = &in->drop[in->drop_count];
     *drop = (sf_fit_drop){.predicted = predicted, .a_max_g = NAN, .hic = NAN};
     if (sf_config_names(config, group, names[predicted], err) != SF_OK ||
@@ -127,9 +129,11 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     if (strcmp(form, "gas") != 0 && strcmp(form, "table") != 0)
         return sf_config_refuse(config, config_setting_get_member(root, "curve_form"), err,
                                 "curve_form is \"%s\": gas or table is expected", form);
-    if (strpbrk(name, "/\"\\"))
-        return sf_config_refuse(config, config_setting_get_member(root, "name"), err,
-                                "the name \"%s\" is the name of a file: no slashes or quotes", name);
+    if (strpbrk(name, "/\"'\\\n\r") || strncmp(name, "fit", 3) == 0)
+        return sf_config_refuse(
+            config, config_setting_get_member(root, "name"), err,
+            "the name \"%s\" names files: no slashes or quotes, and not fit..., which other files are called",
+            name);
     snprintf(in->material_name, sizeof in->material_name, "%s", name);
     snprintf(in->title, sizeof in->title, "%s", title);
     snprintf(override, sizeof override, "material=@%s", in->material_path);
@@ -166,9 +170,23 @@ static sf_status read_start(const sf_config *config, const config_setting_t *roo
         else
             sf_config_quantity(config, group, about->name, about->quantity, true, about->low, &in->start[p],
                                err);
+        if (err->status == SF_OK && !(in->start[p] <= about->high))
+            sf_config_refuse(config, item, err, "%s is above %g", about->name, about->high);
         if (err->status != SF_OK)
             return err->status;
     }
+    return SF_OK;
+}
+
+/* The start must make a curve. */
+static sf_status check_start(const sf_config *config, const config_setting_t *root, const sf_fit_input *in,
+                             sf_error *err) {
+    sf_foam_card card;
+    sf_error inner = SF_ERROR_INIT;
+    const config_setting_t *group = config_setting_get_member(root, "start");
+    if (sf_foam_form_card(&in->form, in->start, &card, &inner) != SF_OK)
+        return sf_config_refuse(config, group ? group : root, err, "start: %s", inner.text);
+    sf_foam_card_free(&card);
     return SF_OK;
 }
 
@@ -206,7 +224,7 @@ static sf_status read_unknowns(const sf_config *config, const config_setting_t *
         {SF_PARAMETER_STRESS_SCALE, SF_PARAMETER_ED},
         {SF_PARAMETER_S0, SF_PARAMETER_P0, SF_PARAMETER_B, SF_PARAMETER_M, SF_PARAMETER_ED}};
     const config_setting_t *list;
-    if (sf_config_list(config, root, "unknown", false, SF_MAPPING_MAX_PARAMETERS, &list, err) != SF_OK)
+    if (sf_config_list(config, root, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err) != SF_OK)
         return err->status;
     for (int k = 0; list && k < config_setting_length(list); k++)
         if (read_unknown(config, config_setting_get_elem(list, (unsigned)k), in, err) != SF_OK)
@@ -244,7 +262,8 @@ sf_status sf_fit_input_read(const char *path, sf_fit_input *in, sf_error *err) {
                             err) == SF_OK &&
             read_drops(&config, root, "drops", false, in, err) == SF_OK &&
             read_drops(&config, root, "predict", true, in, err) == SF_OK &&
-            read_material(&config, root, in, err) == SF_OK && read_start(&config, root, in, err) == SF_OK)
+            read_material(&config, root, in, err) == SF_OK && read_start(&config, root, in, err) == SF_OK &&
+            check_start(&config, root, in, err) == SF_OK)
             read_unknowns(&config, root, in, err);
     }
     sf_config_close(&config);

@@ -8,7 +8,7 @@
 #include "fit/space_mapping.h"
 #include "post/signal.h"
 
-enum { SF_FIT_MAX_DROPS = 24, SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
+enum { SF_FIT_MAX_DROPS = 24, SF_FIT_MAX_UNKNOWNS = 12, SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
 
 /* A drop that was measured, or (predicted) is only to be simulated with the identified material. */
 typedef struct sf_fit_drop {
@@ -16,6 +16,7 @@ typedef struct sf_fit_drop {
     char *case_path; /* owned */
     bool predicted;
     double a_max_g, hic;     /* measured; NaN: not */
+    double speed_sd;         /* relative standard deviation of the case's speed; 0: it is known */
     double a_max_sd, hic_sd; /* relative standard deviations */
     int samples;             /* of the measured curve; 0: none */
     double *sample_time;     /* [samples] s after contact; owned */
@@ -34,9 +35,9 @@ typedef struct sf_fit_input {
     sf_fit_drop drop[SF_FIT_MAX_DROPS];
     double start[SF_PARAMETER_COUNT]; /* SI, every parameter */
     int unknown_count;
-    sf_foam_parameter unknown[SF_MAPPING_MAX_PARAMETERS];
-    double prior[SF_MAPPING_MAX_PARAMETERS];    /* SI, median */
-    double prior_sd[SF_MAPPING_MAX_PARAMETERS]; /* of the logarithm */
+    sf_foam_parameter unknown[SF_FIT_MAX_UNKNOWNS];
+    double prior[SF_FIT_MAX_UNKNOWNS];    /* SI, median */
+    double prior_sd[SF_FIT_MAX_UNKNOWNS]; /* of the logarithm */
 } sf_fit_input;
 
 /* Reads and checks everything, the cases and the measured curves too. Release with sf_fit_input_free, also on

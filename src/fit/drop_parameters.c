@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/drop_parameters.h"
 
+#include "core/curve.h"
 #include "fit/gas_curve.h"
 #include <math.h>
 #include <stdlib.h>
@@ -112,9 +113,48 @@ sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARA
         card->densification_start = 0; /* at the table's end, rule H1 */
         card->densification_limit = 1;
         card->densification_exponent = 0;
-        sf_gas_curve_tabulate(&curve, card, err);
+        if (!(curve.pressure < curve.modulus && curve.exponent > 1))
+            SF_FAIL(err, SF_ERR_NUMERIC,
+                    "p0 = %g Pa is not below E = %g Pa, or m = %g not above 1: no rising curve of "
+                    "initial slope E",
+                    curve.pressure, curve.modulus, curve.exponent);
+        else
+            sf_gas_curve_tabulate(&curve, card, err);
     }
     if (err->status != SF_OK)
         sf_foam_card_free(card);
     return err->status;
+}
+
+sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
+    enum { POINTS = 196 };
+    double last = 0.975 * card->densification_limit;
+    int64_t n = card->curve_count;
+    double *strain = sf_alloc(err, (unsigned long)n * POINTS, sizeof *strain, "curves"),
+           *stress = sf_alloc(err, (unsigned long)n * POINTS, sizeof *stress, "curves");
+    for (int64_t c = 0; c < n && err->status == SF_OK; c++) {
+        sf_curve curve;
+        if (sf_curve_build(card, c, &curve, err) != SF_OK)
+            break;
+        for (int k = 0; k < POINTS; k++) {
+            double slope, energy;
+            strain[c * POINTS + k] = last * k / (POINTS - 1);
+            sf_curve_evaluate(&curve, strain[c * POINTS + k], &stress[c * POINTS + k], &slope, &energy);
+        }
+        sf_curve_free(&curve);
+    }
+    if (err->status != SF_OK) {
+        free(strain);
+        free(stress);
+        return err->status;
+    }
+    free(card->curve_strain);
+    free(card->curve_stress);
+    card->curve_strain = strain;
+    card->curve_stress = stress;
+    card->curve_points = n * POINTS;
+    for (int64_t c = 0; c <= n; c++)
+        card->curve_ptr[c] = c * POINTS;
+    card->densification_start = 0;
+    return SF_OK;
 }

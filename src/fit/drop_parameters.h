@@ -49,10 +49,13 @@ typedef struct sf_foam_form {
  * closed-cell foams: s0 = 0.02 E, p0 = 101 kPa but at most E/2, B = p0/4, m = 3. */
 void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]);
 
-/* A card with these values; its arrays are owned by the caller (sf_foam_card_free). */
+/* A card with these values; its arrays are owned by the caller (sf_foam_card_free). SF_ERR_NUMERIC if the
+ * values make no curve (p0 not below E, m not above 1). */
 sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
                             sf_foam_card *card, sf_error *err);
 sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err);
+/* Puts a fine table, up to 0.975 of the strain limit, in place of each curve and its densification. */
+sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err);
 void sf_foam_card_free(sf_foam_card *card);
 
 #endif

@@ -5,11 +5,17 @@
 #include "campaign/material_file.h"
 #include "post/gnuplot.h"
 #include "post/json.h"
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double Z95 = 1.959963985; /* two-sided 95 % of the normal distribution */
+/* Half width of a 95 % interval in standard deviations: of the normal distribution, or of Student's t where
+ * the scale of the data's errors is itself estimated. */
+static double half_width(const sf_drop_fit *fit) {
+    return fit->result.scale > 1 ? gsl_cdf_tdist_Pinv(0.975, fit->result.freedom)
+                                 : gsl_cdf_ugaussian_Pinv(0.975);
+}
 
 /* ---- numbers that every form shows ---- */
 
@@ -25,8 +31,8 @@ static estimate estimate_of(const sf_drop_fit *fit, int k) {
     double sd = sqrt(r->covariance[k][k]);
     return (estimate){.about = sf_parameter_get(fit->input->unknown[k]),
                       .value = exp(r->u[k]),
-                      .low = exp(r->u[k] - Z95 * sd),
-                      .high = exp(r->u[k] + Z95 * sd),
+                      .low = exp(r->u[k] - half_width(fit) * sd),
+                      .high = exp(r->u[k] + half_width(fit) * sd),
                       .prior = fit->input->prior[k],
                       .shrinkage = sd / fit->input->prior_sd[k]};
 }
@@ -120,12 +126,35 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
             "freedom",
             fit->result.misfit, fit->result.freedom);
     if (fit->result.scale > 1)
-        fprintf(
-            f,
-            "; the model misses the data by more than their stated standard deviations, so every standard "
-            "deviation below is multiplied by %.2f",
-            fit->result.scale);
+        fprintf(f,
+                "; the model misses the data by more than their stated standard deviations, so theirs are "
+                "multiplied by %.2f in the intervals",
+                fit->result.scale);
     fputs(".\n\n", f);
+}
+
+/* Speeds that are not known exactly: what the fit makes of them. */
+static void put_speeds(FILE *f, const sf_drop_fit *fit) {
+    bool any = false;
+    for (int d = 0; d < fit->measured_drops; d++)
+        any = any || fit->speed[d] >= 0;
+    if (!any)
+        return;
+    fputs("The speeds are known with a standard deviation only, and are unknowns of the fit; the table above "
+          "is simulated with "
+          "the given ones.\n\n| drop | given (m/s) | standard deviation (%) | in the fit (%) | 95 % "
+          "|\n|---|---|---|---|---|\n",
+          f);
+    for (int d = 0; d < fit->measured_drops; d++) {
+        int k = fit->speed[d];
+        if (k < 0)
+            continue;
+        double shift = fit->result.u[k], width = half_width(fit) * sqrt(fit->result.covariance[k][k]);
+        fprintf(f, "| %s | %.4g | %.2f | %+.2f | %+.2f to %+.2f |\n", fit->input->drop[d].name,
+                fit->columns[d].speed, 100 * fit->input->drop[d].speed_sd, 100 * expm1(shift),
+                100 * expm1(shift - width), 100 * expm1(shift + width));
+    }
+    fputc('\n', f);
 }
 
 static void put_predictions(FILE *f, const sf_drop_fit *fit) {
@@ -141,7 +170,8 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
         if (!in->drop[d].predicted)
             continue;
         double a = response(fit, d, SF_FIT_A_MAX), h = response(fit, d, SF_FIT_HIC),
-               sa = Z95 * response_sd(fit, d, SF_FIT_A_MAX), sh = Z95 * response_sd(fit, d, SF_FIT_HIC);
+               sa = half_width(fit) * response_sd(fit, d, SF_FIT_A_MAX),
+               sh = half_width(fit) * response_sd(fit, d, SF_FIT_HIC);
         fprintf(f, "| %s | %.1f | %.1f to %.1f | %.0f | %.0f to %.0f | %.3f |\n", in->drop[d].name, a,
                 a * exp(-sa), a * exp(sa), h, h * exp(-sh), h * exp(sh), fit->simulated[d].max_local_strain);
     }
@@ -190,7 +220,7 @@ static void put_sensitivities(FILE *f, const sf_drop_fit *fit) {
         for (int which = 0; which < SF_FIT_SAMPLES; which++) {
             fprintf(f, "\n| %s, %s |", in->drop[d].name, which == SF_FIT_A_MAX ? "a_max" : "HIC");
             for (int k = 0; k < in->unknown_count; k++)
-                fprintf(f, " %+.3f |", fit->gradient[(fit->row[d] + which) * in->unknown_count + k]);
+                fprintf(f, " %+.3f |", fit->gradient[(fit->row[d] + which) * fit->parameters + k]);
         }
     fputs("\n\n", f);
 }
@@ -209,7 +239,7 @@ static void put_strains(FILE *f, const sf_drop_fit *fit) {
             low, high);
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
         fprintf(f, "| %.2f to %.2f | %.1f %% | %.1f %% | %.0f %% |\n", 0.05 * b, 0.05 * (b + 1),
-                100 * fit->information[b] / sum, 100 * expm1(fit->curve_sd[b]),
+                100 * fit->information[b] / fmax(sum, 1e-300), 100 * expm1(fit->curve_sd[b]),
                 100 * expm1(fit->curve_prior_sd[b]));
     fputc('\n', f);
 }
@@ -226,6 +256,7 @@ static sf_status write_report(const sf_drop_fit *fit, const char *input_path, co
         fit->input->material_name, SF_VERSION, SF_GIT_REVISION, input_path,
         fit->result.converged ? "converged" : "**not converged**", fit->result.iterations);
     put_drops(f, fit);
+    put_speeds(f, fit);
     put_predictions(f, fit);
     put_parameters(f, fit);
     put_sensitivities(f, fit);
@@ -337,6 +368,12 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
         fprintf(f, "%s = %.4g%s%s (95 %%: %.4g to %.4g; %s)\n", e.about->name, e.value / s,
                 *e.about->unit ? " " : "", e.about->unit, e.low / s, e.high / s, e.about->description);
     }
+    double low, high;
+    informed_strains(fit, &low, &high);
+    fprintf(f,
+            "The drops inform the curve between strains of %.2f and %.2f; beyond, it is what its form makes "
+            "it.\n",
+            low, high);
     if (fit->input->form.gas)
         fputs("Curve: s0 (1 - exp(-(E - p0) e / s0)) + p0 x + B x^m with x = e / (1 - e).\n", f);
     if (fclose(f) != 0)
@@ -365,10 +402,11 @@ static sf_status write_strain_data(const sf_drop_fit *fit, const sf_output *outp
         fputs("strain,stress_kPa,low95_kPa,high95_kPa,information\n", f);
         if (sf_curve_build(&card, 0, &curve, err) == SF_OK)
             for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
-                double strain = 0.05 * (b + 0.5), stress, slope, energy, band = exp(Z95 * fit->curve_sd[b]);
+                double strain = 0.05 * (b + 0.5), stress, slope, energy,
+                       band = exp(half_width(fit) * fit->curve_sd[b]);
                 sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
                 fprintf(f, "%.3f,%.6g,%.6g,%.6g,%.6g\n", strain, 1e-3 * stress, 1e-3 * stress / band,
-                        1e-3 * stress * band, fit->information[b] / sum);
+                        1e-3 * stress * band, fit->information[b] / fmax(sum, 1e-300));
             }
         sf_curve_free(&curve);
         sf_foam_card_free(&card);
@@ -475,8 +513,8 @@ void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
             fprintf(f, " (measured %.1f)", drop->hic);
         if (drop->predicted)
             fprintf(f, "  predicted: +- %.1f %% and %.1f %% (95 %%)",
-                    100 * Z95 * response_sd(fit, d, SF_FIT_A_MAX),
-                    100 * Z95 * response_sd(fit, d, SF_FIT_HIC));
+                    100 * half_width(fit) * response_sd(fit, d, SF_FIT_A_MAX),
+                    100 * half_width(fit) * response_sd(fit, d, SF_FIT_HIC));
         fputc('\n', f);
     }
     fprintf(f, "  the drops see the curve between strains of %.2f and %.2f\n", low, high);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit WORD ...: material parameters from measurements. The first word chooses what is measured. */
 #include "build_info.h"
+#include "core/error.h"
 #include "fit/compression_command.h"
 #include "fit/drop_command.h"
 
@@ -29,6 +30,7 @@ static void print_usage(FILE *file) {
 
 int main(int argc, char **argv) {
     const char *word = argc > 1 ? argv[1] : "";
+    sf_error_ignore_closed_pipe();
     argp_program_version = "softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")";
     for (int k = 0; k < COMMANDS; k++)
         if (strcmp(word, commands[k].word) == 0)

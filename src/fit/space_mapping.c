@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum { FIT_STEPS = 60 };
-static const double DIFFERENCE = 1e-4; /* of the scaled parameters, for Jacobians */
+static const double DIFFERENCE = 1e-3; /* of the scaled parameters, for Jacobians */
 
 /* The corrected surrogate, anchored at a simulated point. */
 typedef struct anchor {
@@ -17,6 +17,10 @@ typedef struct anchor {
     const double *offset; /* [responses] */
     const double *matrix; /* [responses][parameters] */
 } anchor;
+
+/* Steps below it, in standard deviations, teach nothing about derivatives: the simulation's own noise would.
+ */
+static const double LEAST_UPDATE = 0.3;
 
 /* One minimisation. */
 typedef struct minimisation {
@@ -62,13 +66,34 @@ static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
     return GSL_SUCCESS;
 }
 
+/* Their Jacobian by central differences: absolute steps, as the parameters are logarithms. */
+static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobian) {
+    gsl_vector *at = gsl_vector_alloc(x->size), *high = gsl_vector_alloc(jacobian->size1),
+               *low = gsl_vector_alloc(jacobian->size1);
+    int status = at && high && low ? GSL_SUCCESS : GSL_ENOMEM;
+    for (size_t j = 0; j < x->size && status == GSL_SUCCESS; j++) {
+        gsl_vector_memcpy(at, x);
+        gsl_vector_set(at, j, gsl_vector_get(x, j) + DIFFERENCE);
+        residuals(at, data, high);
+        gsl_vector_set(at, j, gsl_vector_get(x, j) - DIFFERENCE);
+        residuals(at, data, low);
+        gsl_vector_sub(high, low);
+        gsl_vector_scale(high, 1 / (2 * DIFFERENCE));
+        gsl_matrix_set_col(jacobian, j, high);
+    }
+    gsl_vector_free(at);
+    gsl_vector_free(high);
+    gsl_vector_free(low);
+    return status;
+}
+
 /* Minimises from `u`, which gets the minimum. */
 static sf_status minimise(minimisation *m, double *u, sf_error *err) {
     const sf_mapping_problem *p = m->anchor.problem;
     size_t n = (size_t)p->responses + 2 * (size_t)p->parameters;
     gsl_multifit_nlinear_parameters options = gsl_multifit_nlinear_default_parameters();
-    options.h_df = DIFFERENCE;
-    gsl_multifit_nlinear_fdf fdf = {.f = residuals, .n = n, .p = (size_t)p->parameters, .params = m};
+    gsl_multifit_nlinear_fdf fdf = {
+        .f = residuals, .df = residual_jacobian, .n = n, .p = (size_t)p->parameters, .params = m};
     gsl_multifit_nlinear_workspace *w =
         gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &options, n, (size_t)p->parameters);
     m->y = sf_alloc(err, (unsigned long)p->responses, sizeof *m->y, "responses");
@@ -97,14 +122,14 @@ static sf_status differentiate(const anchor *a, double *jacobian, sf_error *err)
            *minus = sf_alloc(err, n, sizeof *minus, "responses");
     for (int j = 0; j < p->parameters && err->status == SF_OK; j++) {
         memcpy(u, a->u, (size_t)p->parameters * sizeof *u);
-        u[j] = a->u[j] + 10 * DIFFERENCE;
+        u[j] = a->u[j] + DIFFERENCE;
         if (evaluate(a, u, plus, err) != SF_OK)
             break;
-        u[j] = a->u[j] - 10 * DIFFERENCE;
+        u[j] = a->u[j] - DIFFERENCE;
         if (evaluate(a, u, minus, err) != SF_OK)
             break;
         for (int i = 0; i < p->responses; i++)
-            jacobian[i * p->parameters + j] = (plus[i] - minus[i]) / (20 * DIFFERENCE);
+            jacobian[i * p->parameters + j] = (plus[i] - minus[i]) / (2 * DIFFERENCE);
     }
     free(plus);
     free(minus);
@@ -230,36 +255,79 @@ static sf_status measure_step(const sf_mapping_problem *p, sf_mapping_result *r,
     return SF_OK;
 }
 
+/* The minimum of the corrected surrogate at `best`, held back by `radius`. */
+static sf_status propose(const sf_mapping_problem *p, const sf_mapping_result *r, const point *best,
+                         double radius, double *next, sf_error *err) {
+    minimisation m = {.anchor = {p, best->u, best->offset, r->matrix},
+                      .sd = p->sd,
+                      .about = best->u,
+                      .radius = radius,
+                      .err = SF_ERROR_INIT};
+    memcpy(next, best->u, (size_t)p->parameters * sizeof *next);
+    return minimise(&m, next, err);
+}
+
+/* How much the corrected surrogate says that the objective falls from `best` to the trial; its y is
+ * overwritten. */
+static sf_status predict_gain(const sf_mapping_problem *p, const sf_mapping_result *r, const point *best,
+                              point *trial, double *gain, sf_error *err) {
+    anchor a = {p, best->u, best->offset, r->matrix};
+    if (evaluate(&a, trial->u, trial->y, err) == SF_OK)
+        *gain = best->objective - misfit_of(p, trial->y) - prior_of(p, trial->u);
+    return err->status;
+}
+
+/* Simulates the trial point; a drop that fails numerically there is a point of infinite objective. */
+static sf_status try_point(const sf_mapping_problem *p, int iteration, point *trial, sf_error *err) {
+    sf_error failure = SF_ERROR_INIT;
+    if (simulate(p, iteration, trial, &failure) == SF_OK)
+        return SF_OK;
+    if (failure.status != SF_ERR_NUMERIC)
+        *err = failure;
+    trial->objective = INFINITY;
+    return err->status;
+}
+
+static double distance(const sf_mapping_problem *p, const point *a, const point *b) {
+    double largest = 0;
+    for (int j = 0; j < p->parameters; j++)
+        largest = fmax(largest, fabs(a->u[j] - b->u[j]));
+    return largest;
+}
+
+/* The end: the free step is short, or would gain nothing that counts, or two steps in a row gained nothing.
+ */
+static bool is_settled(const sf_mapping_problem *p, double step, double gain, int idle) {
+    return step < p->tolerance || gain < p->tolerance * p->tolerance || idle >= 2;
+}
+
 static sf_status iterate(const sf_mapping_problem *p, sf_mapping_result *r, point *best, point *trial,
                          sf_error *err) {
-    double radius = INFINITY, step = 0;
-    size_t bytes = (size_t)p->parameters * sizeof *best->u;
-    memcpy(best->u, p->start, bytes);
+    double radius = INFINITY, step = 0, gain = 0;
+    int idle = 0; /* steps in a row that were taken and gained nothing that counts */
+    memcpy(best->u, p->start, (size_t)p->parameters * sizeof *best->u);
     if (simulate(p, 0, best, err) != SF_OK)
         return err->status;
     for (r->iterations = 1;; r->iterations++) {
-        minimisation m = {.anchor = {p, best->u, best->offset, r->matrix},
-                          .sd = p->sd,
-                          .about = best->u,
-                          .radius = radius,
-                          .err = SF_ERROR_INIT};
-        memcpy(trial->u, best->u, bytes);
-        if (minimise(&m, trial->u, err) != SF_OK || measure_step(p, r, best, trial->u, &step, err) != SF_OK)
+        if (propose(p, r, best, INFINITY, trial->u, err) != SF_OK ||
+            measure_step(p, r, best, trial->u, &step, err) != SF_OK ||
+            predict_gain(p, r, best, trial, &gain, err) != SF_OK)
             return err->status;
-        r->converged = step < p->tolerance;
+        r->converged = is_settled(p, step, gain, idle);
         if (r->converged || r->iterations == p->max_iterations)
             return estimate(p, true, r, err);
-        if (simulate(p, r->iterations, trial, err) != SF_OK)
+        if ((!isinf(radius) && propose(p, r, best, radius, trial->u, err) != SF_OK) ||
+            measure_step(p, r, best, trial->u, &step, err) != SF_OK ||
+            try_point(p, r->iterations, trial, err) != SF_OK)
             return err->status;
-        update_matrix(p, best, trial, r->matrix);
+        if (isfinite(trial->objective) && step > LEAST_UPDATE)
+            update_matrix(p, best, trial, r->matrix);
         if (trial->objective < best->objective) {
+            idle = best->objective - trial->objective < 2 * p->tolerance * p->tolerance ? idle + 1 : 0;
             swap_points(best, trial);
             radius *= 2;
         } else {
-            double length = 0;
-            for (int j = 0; j < p->parameters; j++)
-                length = fmax(length, fabs(trial->u[j] - best->u[j]));
-            radius = fmin(radius, length) / 2;
+            radius = fmin(radius, distance(p, trial, best)) / 2;
         }
     }
 }

@@ -16,7 +16,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { SF_MAPPING_MAX_PARAMETERS = 12, SF_MAPPING_MAX_ITERATIONS = 32 };
+enum { SF_MAPPING_MAX_PARAMETERS = 36 };
 
 typedef struct sf_mapping_problem {
     int parameters, responses;
@@ -29,7 +29,9 @@ typedef struct sf_mapping_problem {
     sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
     void *context;
     int max_iterations; /* simulations at most */
-    double tolerance;   /* converged: the next step is below it in every parameter, in standard deviations */
+    double tolerance; /* in standard deviations. Converged: the free next step is below it in every parameter,
+                         or would lower the objective by less than its square, or two steps in a row did by
+                         less than twice that */
     /* called after each simulation; may be NULL */
     void (*progress)(void *context, int iteration, const double *u, const double *y, double objective);
 } sf_mapping_problem;

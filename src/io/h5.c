@@ -6,13 +6,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-enum { SF_H5_MAX_RANK = 4 };
+enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536 };
 
 struct sf_h5 {
     hid_t id;
     char *path;
+    uint64_t size; /* bytes of a file opened for reading: no dataset can hold more */
 };
 
 static hid_t native_type(sf_h5_type type) {
@@ -33,7 +35,7 @@ static size_t type_size(sf_h5_type type) {
     return type == SF_H5_U8 ? 1 : type == SF_H5_I32 ? 4 : 8;
 }
 
-static sf_status wrap(hid_t id, const char *path, sf_h5 **file, sf_error *err) {
+static sf_status wrap(hid_t id, const char *path, uint64_t size, sf_h5 **file, sf_error *err) {
     sf_h5 *made = malloc(sizeof *made);
     char *copy = strdup(path);
     if (!made || !copy) {
@@ -44,33 +46,44 @@ static sf_status wrap(hid_t id, const char *path, sf_h5 **file, sf_error *err) {
     }
     made->id = id;
     made->path = copy;
+    made->size = size;
     *file = made;
     return SF_OK;
 }
 
+/* Before the first call. HDF5's own cleaning up at exit crashes after a file that could not be closed (a full
+ * disk); everything is closed without it. */
+static void begin_library(void) {
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
 sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
     *file = NULL;
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    begin_library();
     errno = 0;
     hid_t id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "cannot create %s: %s", path,
                        errno ? strerror(errno) : "HDF5 refuses it");
-    return wrap(id, path, file, err);
+    return wrap(id, path, 0, file, err);
 }
 
 sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
     *file = NULL;
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    if (access(path, R_OK) != 0)
+    begin_library();
+    struct stat info;
+    if (access(path, R_OK) != 0 || stat(path, &info) != 0)
         return SF_FAIL(err, SF_ERR_IO, "cannot read %s: %s", path, strerror(errno));
+    if (!S_ISREG(info.st_mode)) /* opening a pipe would wait for ever */
+        return SF_FAIL(err, SF_ERR_IO, "%s is not a plain file", path);
     if (H5Fis_hdf5(path) <= 0)
         return SF_FAIL(err, SF_ERR_IO, "%s is not an HDF5 file", path);
     hid_t id = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: it is damaged or another program is writing it",
                        path);
-    return wrap(id, path, file, err);
+    return wrap(id, path, (uint64_t)info.st_size, file, err);
 }
 
 sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
@@ -86,26 +99,60 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
     return status;
 }
 
-bool sf_h5_exists(const sf_h5 *file, const char *path) {
-    /* H5Lexists fails on a path whose parent is missing: test each prefix. */
+enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE };
+
+/* Does the link stand for the object of the same path in a file of the folder that belongs to this file while
+ * its run goes on (FILE.run, docs/formats.md)? */
+static bool is_own_link(const sf_h5 *file, const char *path, size_t size) {
+    char value[1024], folder[512];
+    const char *slash = strrchr(file->path, '/'), *target = NULL, *object = NULL;
+    unsigned flags;
+    int length = snprintf(folder, sizeof folder, "%s.run/", slash ? slash + 1 : file->path);
+    if (size > sizeof value || (size_t)length >= sizeof folder ||
+        H5Lget_val(file->id, path, value, sizeof value, H5P_DEFAULT) < 0 ||
+        H5Lunpack_elink_val(value, size, &flags, &target, &object) < 0)
+        return false;
+    return strncmp(target, folder, (size_t)length) == 0 && !strchr(target + length, '/') &&
+           strcmp(object, path) == 0;
+}
+
+/* What stands at a path. Soft links and those into other files are found but not followed, but for a file's
+ * own: a file speaks of itself only. */
+static int find_link(const sf_h5 *file, const char *path) {
     char part[512];
     size_t length = strlen(path);
     if (length >= sizeof part || path[0] != '/')
-        return false;
+        return LINK_NONE;
+    /* H5Lexists fails on a path whose parent is missing: test each prefix. */
     for (size_t k = 1; k <= length; k++) {
+        H5L_info_t info;
         if (path[k] != '/' && path[k] != '\0')
             continue;
         memcpy(part, path, k);
         part[k] = '\0';
-        if (k > 1 && H5Lexists(file->id, part, H5P_DEFAULT) <= 0)
-            return false;
+        if (k == 1)
+            continue;
+        if (H5Lexists(file->id, part, H5P_DEFAULT) <= 0 ||
+            H5Lget_info(file->id, part, &info, H5P_DEFAULT) < 0)
+            return LINK_NONE;
+        if (info.type != H5L_TYPE_HARD &&
+            !(info.type == H5L_TYPE_EXTERNAL && is_own_link(file, part, info.u.val_size)))
+            return LINK_ELSEWHERE;
+        if (info.type == H5L_TYPE_EXTERNAL && H5Oexists_by_name(file->id, part, H5P_DEFAULT) <= 0)
+            return LINK_NONE;
     }
-    return true;
+    return LINK_HARD;
+}
+
+bool sf_h5_exists(const sf_h5 *file, const char *path) {
+    return find_link(file, path) == LINK_HARD;
 }
 
 int64_t sf_h5_group_size(const sf_h5 *file, const char *path) {
     H5G_info_t info;
     if (!sf_h5_exists(file, path) || H5Gget_info_by_name(file->id, path, &info, H5P_DEFAULT) < 0)
+        return -1;
+    if (info.nlinks > file->size) /* a count that no such file can hold */
         return -1;
     return (int64_t)info.nlinks;
 }
@@ -204,8 +251,12 @@ sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text
 }
 
 static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, sf_error *err) {
-    if (!sf_h5_exists(file, path))
+    int found = find_link(file, path);
+    if (found == LINK_NONE)
         return SF_FAIL(err, SF_ERR_IO, "%s has no dataset %s: it is incomplete or not of this kind",
+                       file->path, path);
+    if (found == LINK_ELSEWHERE)
+        return SF_FAIL(err, SF_ERR_IO, "%s: %s is reached by a soft or external link, which is not followed",
                        file->path, path);
     *set = H5Dopen2(file->id, path, H5P_DEFAULT);
     if (*set < 0)
@@ -213,58 +264,96 @@ static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, s
     return SF_OK;
 }
 
-/* Rank and extents of an open dataset against what the caller expects; fills dims and the number of items. */
-static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, int rank, int64_t *dims,
-                             unsigned long *count, sf_error *err) {
+/* Data of other files (external, virtual) would let a file reach what it does not hold, and a filter
+ * (compression) lets a small file claim a large memory: softfall writes neither and refuses both. */
+static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, sf_error *err) {
+    hid_t creation = H5Dget_create_plist(set);
+    H5D_layout_t layout = H5Pget_layout(creation);
+    int external = H5Pget_external_count(creation), filters = H5Pget_nfilters(creation);
+    H5Pclose(creation);
+    if (external != 0 || layout == H5D_VIRTUAL || layout == H5D_LAYOUT_ERROR)
+        return SF_FAIL(err, SF_ERR_IO, "%s: the data of %s are in another file, which is not read",
+                       file->path, path);
+    if (filters != 0)
+        return SF_FAIL(
+            err, SF_ERR_IO,
+            "%s: %s is compressed or filtered; only plain data are read (h5repack -f NONE undoes it)",
+            file->path, path);
+    return SF_OK;
+}
+
+/* Bytes of the file that holds an open object. */
+static uint64_t size_of_file(hid_t object) {
+    hid_t owner = H5Iget_file_id(object);
+    hsize_t size = 0;
+    H5Fget_filesize(owner, &size);
+    H5Fclose(owner);
+    return size;
+}
+
+/* Rank and extents of an open dataset against what the caller expects; fills dims and the number of items.
+ * A header may claim any extent: the items must be stored, and within the size of the file. */
+static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, size_t item_size, int rank,
+                             int64_t *dims, unsigned long *count, sf_error *err) {
     hid_t space = H5Dget_space(set);
     int found = H5Sget_simple_extent_ndims(space);
+    H5S_class_t kind = H5Sget_simple_extent_type(space);
     hsize_t extent[SF_H5_MAX_RANK] = {0};
     if (found == rank)
         H5Sget_simple_extent_dims(space, extent, NULL);
     H5Sclose(space);
-    if (found != rank)
+    if (found != rank || kind == H5S_NULL)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s has rank %d, expected %d", file->path, path, found, rank);
+    uint64_t bytes = item_size;
+    bool overflow = false;
     *count = 1;
     for (int k = 0; k < rank; k++) {
         if (dims[k] >= 0 && (hsize_t)dims[k] != extent[k])
             return SF_FAIL(err, SF_ERR_IO, "%s: %s has extent %llu in dimension %d, expected %lld",
                            file->path, path, (unsigned long long)extent[k], k, (long long)dims[k]);
+        overflow = overflow || extent[k] > INT64_MAX || __builtin_mul_overflow(bytes, extent[k], &bytes) ||
+                   __builtin_mul_overflow(*count, (unsigned long)extent[k], count);
         dims[k] = (int64_t)extent[k];
-        *count *= extent[k];
     }
+    hsize_t stored = H5Dget_storage_size(set);
+    uint64_t size = size_of_file(set);
+    if (overflow || (*count > 0 && (bytes > stored || bytes > size)))
+        return SF_FAIL(err, SF_ERR_IO,
+                       "%s: %s claims %llu%s bytes, of which %llu are stored in a file of %llu", file->path,
+                       path, (unsigned long long)bytes, overflow ? " (and more)" : "",
+                       (unsigned long long)stored, (unsigned long long)size);
     return SF_OK;
 }
 
-sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
-                     void **data, sf_error *err) {
-    *data = NULL;
-    hid_t set = -1, stored = -1;
+static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h5_type type, int rank,
+                            int64_t *dims, void **data, sf_error *err) {
     unsigned long count = 0;
-    if (open_dataset(file, path, &set, err) != SF_OK)
+    hid_t stored = H5Dget_type(set);
+    H5T_class_t expected = type == SF_H5_F64 ? H5T_FLOAT : H5T_INTEGER, found = H5Tget_class(stored);
+    size_t size = H5Tget_size(stored);
+    H5Tclose(stored);
+    if (found != expected)
+        return SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
+                       expected == H5T_FLOAT ? "floating-point" : "integer");
+    if (check_storage(file, path, set, err) != SF_OK ||
+        check_shape(file, path, set, size, rank, dims, &count, err) != SF_OK)
         return err->status;
-    stored = H5Dget_type(set);
-    H5T_class_t expected = type == SF_H5_F64 ? H5T_FLOAT : H5T_INTEGER;
-    if (H5Tget_class(stored) != expected) {
-        SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
-                expected == H5T_FLOAT ? "floating-point" : "integer");
-        goto done;
-    }
-    if (check_shape(file, path, set, rank, dims, &count, err) != SF_OK)
-        goto done;
-    /* A header may claim any extent; contiguous data cannot exceed what the file stores. */
-    if (H5Dget_storage_size(set) == 0 && count > 0) {
-        SF_FAIL(err, SF_ERR_IO, "%s: %s holds no data", file->path, path);
-        goto done;
-    }
     *data = sf_alloc(err, count, type_size(type), path);
     if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0) {
         SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", file->path, path);
         free(*data);
         *data = NULL;
     }
-done:
-    if (stored >= 0)
-        H5Tclose(stored);
+    return err->status;
+}
+
+sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
+                     void **data, sf_error *err) {
+    *data = NULL;
+    hid_t set = -1;
+    if (open_dataset(file, path, &set, err) != SF_OK)
+        return err->status;
+    read_items(file, path, set, type, rank, dims, data, err);
     H5Dclose(set);
     return err->status;
 }
@@ -278,9 +367,11 @@ sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, 
     return SF_OK;
 }
 
-/* Reads a fixed-length string of an open dataset or attribute type; the caller frees. */
-static char *text_buffer(hid_t type) {
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
+/* Room for one fixed-length string of at most `limit` bytes, NULL if the type or the space is anything else;
+ * the caller frees. */
+static char *text_buffer(hid_t type, hid_t space, uint64_t limit) {
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 ||
+        H5Sget_simple_extent_npoints(space) != 1 || H5Tget_size(type) > limit)
         return NULL;
     return calloc(H5Tget_size(type) + 1, 1);
 }
@@ -290,14 +381,16 @@ sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_e
     hid_t set = -1;
     if (open_dataset(file, path, &set, err) != SF_OK)
         return err->status;
-    hid_t type = H5Dget_type(set);
-    char *buffer = text_buffer(type);
+    hid_t type = H5Dget_type(set), space = H5Dget_space(set);
+    char *buffer =
+        check_storage(file, path, set, err) == SF_OK ? text_buffer(type, space, size_of_file(set)) : NULL;
     if (!buffer || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0) {
         free(buffer);
         SF_FAIL(err, SF_ERR_IO, "%s: %s is not a readable text", file->path, path);
     } else {
         *text = buffer;
     }
+    H5Sclose(space);
     H5Tclose(type);
     H5Dclose(set);
     return err->status;
@@ -326,13 +419,14 @@ sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char 
     hid_t id = -1;
     if (open_attribute(file, object, name, &id, err) != SF_OK)
         return err->status;
-    hid_t type = H5Aget_type(id);
-    char *buffer = text_buffer(type);
+    hid_t type = H5Aget_type(id), space = H5Aget_space(id);
+    char *buffer = text_buffer(type, space, SF_H5_ATTRIBUTE_SIZE);
     if (!buffer || H5Aread(id, type, buffer) < 0)
         SF_FAIL(err, SF_ERR_IO, "%s: attribute %s of %s is not a readable text", file->path, name, object);
     else
         snprintf(text, size, "%s", buffer);
     free(buffer);
+    H5Sclose(space);
     H5Tclose(type);
     H5Aclose(id);
     return err->status;
@@ -369,13 +463,51 @@ sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const c
     return err->status;
 }
 
+/* One plain dataset with its two attributes. */
+static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf_h5 *to, sf_error *err) {
+    char units[128], description[512];
+    hid_t type = H5Dget_type(set), space = H5Dget_space(set), made = -1;
+    hssize_t items = H5Sget_simple_extent_npoints(space);
+    size_t size = H5Tget_size(type);
+    void *data = NULL;
+    if (check_storage(from, path, set, err) == SF_OK &&
+        sf_h5_get_attribute(from, path, "units", units, sizeof units, err) == SF_OK &&
+        sf_h5_get_attribute(from, path, "description", description, sizeof description, err) == SF_OK &&
+        (items < 0 || size == 0 || (uint64_t)items > size_of_file(set) / size))
+        SF_FAIL(err, SF_ERR_IO, "%s: %s claims more than its file can hold", from->path, path);
+    if (err->status == SF_OK)
+        data = sf_alloc(err, (unsigned long)items, size, path);
+    if (data && items > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+        SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", from->path, path);
+    sf_h5_info info = {path, units, description};
+    if (err->status == SF_OK && create_dataset(to, &info, type, space, &made, err) == SF_OK && items > 0 &&
+        H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+        SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);
+    if (made >= 0)
+        H5Dclose(made);
+    free(data);
+    H5Sclose(space);
+    H5Tclose(type);
+    return err->status;
+}
+
+/* Not by H5Ocopy, which crashes when the disk is full (HDF5 1.10). */
 sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *err) {
-    hid_t links = make_groups();
-    herr_t result = H5Ocopy(from->id, path, to->id, path, H5P_DEFAULT, links);
-    H5Pclose(links);
-    if (result < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s of %s cannot be copied to %s", path, from->path, to->path);
-    return SF_OK;
+    int64_t members = sf_h5_group_size(from, path);
+    hid_t set = -1;
+    for (int64_t k = 0; k < members && err->status == SF_OK; k++) {
+        char name[128], member[512];
+        if (sf_h5_group_member(from, path, k, name, sizeof name, err) != SF_OK)
+            break;
+        if ((size_t)snprintf(member, sizeof member, "%s/%s", path, name) >= sizeof member)
+            return SF_FAIL(err, SF_ERR_IO, "%s: %s lies too deep", from->path, path);
+        sf_h5_copy(from, member, to, err);
+    }
+    if (members >= 0 || open_dataset(from, path, &set, err) != SF_OK)
+        return err->status;
+    copy_dataset(from, path, set, to, err);
+    H5Dclose(set);
+    return err->status;
 }
 
 sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error *err) {

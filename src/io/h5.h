@@ -28,9 +28,11 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
 /* Closes; `*file` may be NULL and is NULL afterwards. Reports a failed final write. */
 sf_status sf_h5_close(sf_h5 **file, sf_error *err);
 
-/* True if a group or dataset of this path exists. */
+/* True if a group or dataset of this path exists in the file itself, or by a link of sf_h5_link into the
+ * folder of its run (FILE.run); other soft and external links do not count and are never followed. */
 bool sf_h5_exists(const sf_h5 *file, const char *path);
-/* Number of members of a group (-1 if there is no such group), and the name of member `index` in name order.
+/* Number of members of a group (-1 if there is no such group, or more than its file can hold), and the name
+ * of member `index` in name order.
  */
 int64_t sf_h5_group_size(const sf_h5 *file, const char *path);
 sf_status sf_h5_group_member(const sf_h5 *file, const char *path, int64_t index, char *name, size_t size,
@@ -44,11 +46,12 @@ sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text
 
 /* Reads a whole dataset. `dims[rank]`: on entry the expected extent or -1 for any, on return the extent
  * found. The rank, every given extent and the type class must agree with the file. `*data` comes from
- * sf_alloc, owned by the caller. No allocation is larger than the dataset's stored extent. */
+ * sf_alloc, owned by the caller. Nothing is allocated before the claimed size is found to be stored and
+ * within the file's; data in other files and filters (compression) are refused. */
 sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
                      void **data, sf_error *err);
 sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err);
-/* `*text` is NUL-terminated, from malloc, owned by the caller. */
+/* One string of fixed length. `*text` is NUL-terminated, from malloc, owned by the caller. */
 sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_error *err);
 
 /* Attributes of an existing group or dataset ("/" for the file). */

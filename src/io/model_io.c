@@ -71,8 +71,9 @@ static sf_status read_field(const sf_h5 *h5, const sf_model_field *field, sf_mod
         return SF_OK;
     }
     int64_t rows = *(const int64_t *)(base + field->rows_offset);
-    if (rows < 0)
-        return SF_FAIL(err, SF_ERR_MODEL, "%s: its count is negative", field->path);
+    if (rows < 0 || rows > INT64_MAX / 2)
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: its count %lld is not between 0 and %lld", field->path,
+                       (long long)rows, (long long)(INT64_MAX / 2));
     if (absent && rows == 0)
         return SF_OK;
     int64_t dims[2] = {rows + field->rows_extra, field->columns};

@@ -231,6 +231,7 @@ int main(int argc, char **argv) {
     options o;
     job j = {0};
     sf_error err = SF_ERROR_INIT;
+    sf_error_ignore_closed_pipe();
     if (parse_command(argc, argv, &o) != SF_OK) {
         err = o.err;
     } else {

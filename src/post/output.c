@@ -3,11 +3,16 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* The staging directory's name begins so, then follow the process and six letters. */
+#define STAGING ".softfall-"
 
 static char *join(const char *directory, const char *name, sf_error *err) {
     char *path = NULL;
@@ -45,6 +50,41 @@ static sf_status make_directory(sf_output *output, bool force, sf_error *err) {
     return SF_OK;
 }
 
+/* Removes the plain files of a directory and itself; a link instead of a directory is not followed. */
+static void remove_flat(int parent, const char *name) {
+    int handle = openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    DIR *listing = handle >= 0 ? fdopendir(handle) : NULL;
+    struct dirent *entry;
+    while (listing && (entry = readdir(listing)) != NULL)
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+            unlinkat(handle, entry->d_name, 0);
+    if (listing)
+        closedir(listing);
+    else if (handle >= 0)
+        close(handle);
+    unlinkat(parent, name, AT_REMOVEDIR);
+}
+
+/* What runs that were killed have left: staging directories of processes that are gone. */
+static void remove_stale(const char *directory) {
+    DIR *listing = opendir(directory);
+    struct dirent *entry;
+    while (listing && (entry = readdir(listing)) != NULL) {
+        int owner = 0, end = 0;
+        if (sscanf(entry->d_name, STAGING "%d-%n", &owner, &end) == 1 && end > 0 && owner > 0 &&
+            strlen(entry->d_name + end) == 6 && kill(owner, 0) != 0 && errno == ESRCH)
+            remove_flat(dirfd(listing), entry->d_name);
+    }
+    if (listing)
+        closedir(listing);
+}
+
+static char *name_staging(const char *directory, sf_error *err) {
+    char name[64];
+    snprintf(name, sizeof name, STAGING "%d-XXXXXX", (int)getpid());
+    return join(directory, name, err);
+}
+
 sf_status sf_output_begin(const char *directory, const char *const *names, bool force, sf_output *output,
                           sf_error *err) {
     *output = (sf_output){.names = names};
@@ -53,7 +93,8 @@ sf_status sf_output_begin(const char *directory, const char *const *names, bool 
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", directory);
     if (make_directory(output, force, err) != SF_OK)
         goto failed;
-    output->staging = join(directory, ".softfall-XXXXXX", err);
+    remove_stale(directory);
+    output->staging = name_staging(directory, err);
     if (!output->staging)
         goto failed;
     if (!mkdtemp(output->staging)) {
@@ -115,19 +156,8 @@ sf_status sf_output_commit(sf_output *output, sf_error *err) {
 }
 
 void sf_output_end(sf_output *output) {
-    sf_error ignored = SF_ERROR_INIT;
-    DIR *listing = output->staging ? opendir(output->staging) : NULL;
-    struct dirent *entry;
-    while (listing && (entry = readdir(listing)) != NULL) {
-        char *path = entry->d_name[0] == '.' ? NULL : join(output->staging, entry->d_name, &ignored);
-        if (path)
-            unlink(path);
-        free(path);
-    }
-    if (listing)
-        closedir(listing);
     if (output->staging)
-        rmdir(output->staging);
+        remove_flat(AT_FDCWD, output->staging);
     if (output->created)
         rmdir(output->directory);
     free(output->staging);

@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* s; a run ends at 1000 s at the latest (sf_model_check), and resampling to 100 kHz must fit into memory. */
+static const double LONGEST_TIME = 1001;
+
 bool sf_results_ended_well(const sf_results *r) {
     return strcmp(r->status, "finished") == 0 || strcmp(r->status, "rebound") == 0 ||
            strcmp(r->status, "interrupted") == 0;
@@ -137,6 +140,9 @@ static sf_status check_row(const sf_results *r, int64_t i, sf_error *err) {
             return SF_FAIL(err, SF_ERR_IO, "/history/%s: row %lld is not finite",
                            sf_history_name((sf_history_column)c), (long long)i);
     const double *time = r->history[SF_HISTORY_TIME];
+    if (!(time[i] >= 0 && time[i] <= LONGEST_TIME))
+        return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld, it must be in 0 to %g s", time[i],
+                       (long long)i, LONGEST_TIME);
     if (i > 0 && !(time[i] > time[i - 1]))
         return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld does not follow %.9g s", time[i],
                        (long long)i, time[i - 1]);

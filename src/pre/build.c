@@ -4,6 +4,7 @@
 #include "core/stability.h"
 #include "pre/cloud.h"
 #include "pre/domains.h"
+#include "pre/drop_check.h"
 #include "pre/dual.h"
 #include "pre/missile_shape.h"
 #include <math.h>
@@ -304,7 +305,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     memset(report, 0, sizeof *report);
     if (build_cloud(c, mesh, m, report, err) == SF_OK && build_sets(c, mesh, m, report, err) == SF_OK &&
         build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK &&
-        sf_model_check(m, err) == SF_OK)
+        sf_drop_check(c, mesh, m, err) == SF_OK && sf_model_check(m, err) == SF_OK)
         first_step(m, &report->first_step, err);
     if (err->status != SF_OK)
         sf_model_free(m);

@@ -77,6 +77,9 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
                 (long long)table.count, SF_CURVE_MIN_POINTS);
     else if (!(table.value[1][table.count - 1] > 0.0))
         SF_FAIL(err, SF_ERR_INPUT, "%s: the stress is zero everywhere", path);
+    else if (!(table.value[0][table.count - 1] >= SF_CURVE_MIN_END))
+        SF_FAIL(err, SF_ERR_INPUT, "%s: the curve stops at the strain %g; it must reach at least %g", path,
+                table.value[0][table.count - 1], SF_CURVE_MIN_END);
     else
         take_points(&table, curve, err);
     sf_case_csv_free(&table);

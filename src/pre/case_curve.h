@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 enum { SF_CURVE_MIN_POINTS = 4 };
+#define SF_CURVE_MIN_END 0.2 /* a table that stops earlier says nothing of a foam that is hit */
 
 typedef struct sf_case_curve {
     int64_t count;

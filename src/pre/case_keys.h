@@ -9,6 +9,7 @@
 
 #include "core/units.h"
 #include "pre/case.h"
+#include "pre/case_source.h"
 #include <libconfig.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -63,10 +64,10 @@ const char *sf_case_near_name(const char *group, const char *name, char *out, si
 /* What the readers need beside the table. */
 typedef struct sf_case_reader {
     const char *path; /* of the case file, as given */
-    char *folder;     /* that holds it; owned */
     sf_units *units;
     sf_case *out;
     config_t config;
+    sf_case_source source;  /* of the settings without a hook */
     bool given[SF_KEY_MAX]; /* per row of the table */
     FILE *listing;          /* the parameters text under construction */
 } sf_case_reader;
@@ -104,16 +105,8 @@ bool sf_case_is_given(const sf_case_reader *reader, const char *group, const cha
 sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
 /* Location of a key "group.name", or of its group, or of the file: whatever is there. */
 const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
-/* The folder part of a path, "." if there is none; from malloc. */
-char *sf_case_folder_of(const char *path, sf_error *err);
 /* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
 const char *sf_case_override_file(const char *text);
 /* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
-/* The text of the case with its includes put in place and the overrides as comments; from malloc. Also
- * refuses includes that are missing or no plain files (libconfig's scanner would end the process on a
- * folder). */
-char *sf_case_load_text(const char *path, const char *folder, int count, const char *const *overrides,
-                        sf_error *err);
-
 #endif

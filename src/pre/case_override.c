@@ -25,19 +25,15 @@ static bool mark(config_setting_t *setting, const char *text, unsigned line) {
 /* Where the copies of a setting come from: a --set text, or (text NULL) the file that holds the setting. */
 typedef struct copy_source {
     const char *text;
-    const char *path, *folder; /* of the file that was read */
+    const sf_case_source *source; /* of the text that was read */
 } copy_source;
 
 static bool mark_copy(const config_setting_t *from, config_setting_t *to, const copy_source *source) {
-    char path[SF_CASE_WHERE_SIZE];
+    int line = (int)config_setting_source_line(from);
     if (source->text)
         return mark(to, source->text, 0);
-    const char *file = config_setting_source_file(from);
-    if (!file || strcmp(file, source->path) == 0)
-        snprintf(path, sizeof path, "%s", source->path);
-    else
-        snprintf(path, sizeof path, "%s/%s", source->folder, file);
-    return mark(to, path, (unsigned)config_setting_source_line(from));
+    const char *path = sf_case_source_find(source->source, line, &line);
+    return mark(to, path, (unsigned)line);
 }
 
 /* Copies a scalar or, item by item, an aggregate. */
@@ -106,17 +102,15 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
                                sf_error *err) {
     config_t scratch;
     config_init(&scratch);
-    char *folder = sf_case_folder_of(path, err);
-    char *whole =
-        folder ? sf_case_load_text(path, folder, 0, NULL, err) : NULL; /* refuses what is no text file */
+    sf_case_source lines = {0};
+    char *whole = sf_case_load_text(path, 0, NULL, &lines, err);
     if (whole) {
-        config_set_include_dir(&scratch, folder);
         config_setting_t *root = config_root_setting(config);
-        const copy_source source = {.path = path, .folder = folder};
-        if (!config_read_file(&scratch, path)) {
-            const char *file = config_error_file(&scratch);
-            SF_FAIL(err, SF_ERR_INPUT, "--set %s: %s:%d: %s", text, file ? file : path,
-                    config_error_line(&scratch), config_error_text(&scratch));
+        const copy_source source = {.source = &lines};
+        if (!config_read_string(&scratch, whole)) {
+            int line = 0;
+            const char *file = sf_case_source_find(&lines, config_error_line(&scratch), &line);
+            SF_FAIL(err, SF_ERR_INPUT, "--set %s: %s:%d: %s", text, file, line, config_error_text(&scratch));
         } else {
             config_setting_remove(root, name);
             config_setting_t *group = config_setting_add(root, name, CONFIG_TYPE_GROUP);
@@ -130,8 +124,8 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
         }
     }
     config_destroy(&scratch);
+    sf_case_source_free(&lines);
     free(whole);
-    free(folder);
     return err->status;
 }
 

@@ -7,30 +7,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { GROUP_SIZE = 160 };
-
-/* libconfig keeps the name of an included file as written, relative to the include folder. */
-static const char *source_path(const sf_case_reader *reader, const char *file, char *out) {
-    if (!file || strcmp(file, reader->path) == 0)
-        snprintf(out, SF_CASE_WHERE_SIZE, "%s", reader->path);
-    else
-        snprintf(out, SF_CASE_WHERE_SIZE, "%s/%s", reader->folder, file);
-    return out;
-}
+enum { GROUP_SIZE = 160, LEAST_STEPS = 3, MOST_FRAMES = 100000 };
 
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out) {
-    char file[SF_CASE_WHERE_SIZE];
     const sf_case_origin *origin = setting ? config_setting_get_hook(setting) : NULL;
-    if (origin && origin->line == 0)
+    int line = setting ? (int)config_setting_source_line(setting) : 0;
+    if (origin && origin->line == 0) {
         snprintf(out, SF_CASE_WHERE_SIZE, "--set %s", origin->text);
-    else if (origin)
+    } else if (origin) {
         snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%u", origin->text, origin->line);
-    else if (setting && config_setting_source_line(setting) > 0)
-        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%u",
-                 source_path(reader, config_setting_source_file(setting), file),
-                 (unsigned)config_setting_source_line(setting));
-    else
+    } else if (line > 0) {
+        const char *path = sf_case_source_find(&reader->source, line, &line);
+        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%d", path, line);
+    } else {
         snprintf(out, SF_CASE_WHERE_SIZE, "%s", reader->path);
+    }
     return out;
 }
 
@@ -44,13 +35,13 @@ char *sf_case_folder_of(const char *path, sf_error *err) {
 
 char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
                       sf_error *err) {
-    char file[SF_CASE_WHERE_SIZE];
     char *out = NULL;
     const sf_case_origin *origin = config_setting_get_hook(setting);
-    char *folder = sf_case_folder_of(origin && origin->line > 0
-                                         ? origin->text
-                                         : source_path(reader, config_setting_source_file(setting), file),
-                                     err);
+    int line = (int)config_setting_source_line(setting);
+    const char *file = origin && origin->line > 0 ? origin->text
+                       : !origin && line > 0      ? sf_case_source_find(&reader->source, line, &line)
+                                                  : reader->path;
+    char *folder = sf_case_folder_of(file, err);
     if (folder && *path == '/')
         out = strdup(path);
     else if (folder && asprintf(&out, "%s/%s", folder, path) < 0)
@@ -248,6 +239,52 @@ static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
+/* The free missile falls while it travels along its direction. */
+static sf_status check_reach(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    const sf_missile_card *card = &c->missile_card;
+    double time = c->run.end_time, reach = 0;
+    for (int64_t k = 0; k < c->motion_count; k++)
+        reach = fmax(reach, c->motion_displacement[k]);
+    if (c->motion_count == 0)
+        reach = card->speed * time - 0.5 * card->gravity * card->direction[2] * time * time;
+    if (reach > card->gap)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "%s: missile.gap: the missile travels %g m until solver.end_time (%g s) and never reaches the "
+        "pad, which is %g m away",
+        sf_case_where_is(reader, "missile.gap", where), reach, time, card->gap);
+}
+
+/* A curve needs 3 rows of the history, one per step; frames are files' worth of fields. */
+static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    const sf_run_options *run = &c->run;
+    if (run->end_time < LEAST_STEPS * run->step_limit)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: solver.end_time: %g s is less than %d times solver.step_limit (%g s): there would "
+            "be no curve",
+            sf_case_where_is(reader, "solver.end_time", where), run->end_time, LEAST_STEPS, run->step_limit);
+    if (run->end_time / run->frame_interval > MOST_FRAMES)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: output.frame_interval: %g s up to solver.end_time (%g s) means %.3g frames; at most "
+            "%d are written",
+            sf_case_where_is(reader, "output.frame_interval", where), run->frame_interval, run->end_time,
+            run->end_time / run->frame_interval, MOST_FRAMES);
+    for (int k = 0; k < c->frame_time_count; k++)
+        if (c->frame_time[k] > run->end_time)
+            fprintf(stderr,
+                    "softfall-pre: warning: %s: output.times: %g s lies beyond solver.end_time (%g s): there "
+                    "will be no such frame\n",
+                    sf_case_where_is(reader, "output.times", where), c->frame_time[k], run->end_time);
+    return SF_OK;
+}
+
 /* Rules that join several keys. */
 static sf_status check_case(sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
@@ -275,7 +312,8 @@ static sf_status check_case(sf_case_reader *reader, sf_error *err) {
                        "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
                        sf_case_where_is(reader, "pad.fixed", where));
     if (check_densification(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
-        sf_case_check_motion(reader, err) != SF_OK)
+        sf_case_check_motion(reader, err) != SF_OK || check_times(reader, err) != SF_OK ||
+        check_reach(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
         fprintf(
@@ -286,13 +324,12 @@ static sf_status check_case(sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status parse_file(sf_case_reader *reader, int count, const char *const *overrides, sf_error *err) {
+static sf_status parse_text(sf_case_reader *reader, int count, const char *const *overrides, sf_error *err) {
     config_t *config = &reader->config;
-    config_set_include_dir(config, reader->folder);
-    if (!config_read_file(config, reader->path)) {
-        char file[SF_CASE_WHERE_SIZE];
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", source_path(reader, config_error_file(config), file),
-                       config_error_line(config), config_error_text(config));
+    if (!config_read_string(config, reader->out->text)) {
+        int line = 0;
+        const char *path = sf_case_source_find(&reader->source, config_error_line(config), &line);
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line, config_error_text(config));
     }
     for (int i = 0; i < count; i++)
         if (sf_case_override(config, overrides[i], err) != SF_OK)
@@ -307,8 +344,7 @@ sf_status sf_case_read(const char *path, int count, const char *const *overrides
     size_t listing_size = 0;
     config_init(&reader.config);
     config_set_destructor(&reader.config, free); /* of the hooks */
-    reader.folder = sf_case_folder_of(path, err);
-    if (!reader.folder || sf_units_open(&reader.units, err) != SF_OK)
+    if (sf_units_open(&reader.units, err) != SF_OK)
         goto done;
     reader.listing = open_memstream(&out->parameters, &listing_size);
     out->path = strdup(path);
@@ -316,8 +352,8 @@ sf_status sf_case_read(const char *path, int count, const char *const *overrides
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case %s", path);
         goto done;
     }
-    out->text = sf_case_load_text(path, reader.folder, count, overrides, err);
-    if (!out->text || parse_file(&reader, count, overrides, err) != SF_OK || read_keys(&reader, err) != SF_OK)
+    out->text = sf_case_load_text(path, count, overrides, &reader.source, err);
+    if (!out->text || parse_text(&reader, count, overrides, err) != SF_OK || read_keys(&reader, err) != SF_OK)
         goto done;
     check_case(&reader, err);
 done:
@@ -325,7 +361,7 @@ done:
         fclose(reader.listing);
     sf_units_close(&reader.units);
     config_destroy(&reader.config);
-    free(reader.folder);
+    sf_case_source_free(&reader.source);
     if (err->status != SF_OK)
         sf_case_free(out);
     return err->status;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/case_keys.h"
 
+#include "core/motion.h"
 #include <string.h>
 
 #define AT(member) .offset = offsetof(sf_case, member)
@@ -12,6 +13,7 @@
 /* A tensile strength that no foam reaches: finite, so that it can be stored and compared. */
 #define NO_CUTOFF 1e30
 
+/* The bounds are those of sf_model_check, so that the sentence about a value names its place in the case. */
 /* clang-format off */
 static const sf_key keys[] = {
     /* geometry */
@@ -38,33 +40,33 @@ static const sf_key keys[] = {
      .count_offset = offsetof(sf_case, symmetry_count)},
     /* material */
     {"material", "density", SF_KEY_QUANTITY, NULL, AT(foam.density),
-     "of the undeformed foam", .quantity = SF_DENSITY, POSITIVE},
+     "of the undeformed foam", .quantity = SF_DENSITY, .low = 1e-3, .high = 1e5},
     {"material", "E", SF_KEY_QUANTITY, NULL, AT(foam.modulus),
-     "modulus in tension, and the least stiffness of the stabilisation", .quantity = SF_PRESSURE, POSITIVE},
+     "modulus in tension, and the least stiffness of the stabilisation", .quantity = SF_PRESSURE, .low = 1.0, .high = 1e12},
     {"material", "curve", SF_KEY_CURVE, "", AT(foam),
      "compression curve, a CSV file (see below); relative to the file that names it"},
     {"material", "curves", SF_KEY_CURVES, "", AT(foam),
      "instead of `curve`: curves at several strain rates, ascending: ( { rate = \"0.0017 1/s\"; file = \"slow.csv\"; }, ... )"},
     {"material", "HU", SF_KEY_NUMBER, "1.0", AT(foam.hysteresis_hu),
-     "hysteretic unloading factor; 1 = no hysteresis", .low_open = true, .high = 1.0},
+     "hysteretic unloading factor; 1 = no hysteresis", .low = 1e-6, .high = 1.0},
     {"material", "SHAPE", SF_KEY_NUMBER, "1.0", AT(foam.hysteresis_shape),
-     "shape of unloading", POSITIVE, .high = 100.0},
+     "shape of unloading", .low = 1e-3, .high = 100.0},
     {"material", "DAMP", SF_KEY_NUMBER, "0.0", AT(foam.damp),
      "viscous coefficient: stress DAMP x density x wave speed x length x strain rate", .high = 10.0},
     {"material", "damp_length", SF_KEY_QUANTITY, "\"spacing\"", AT(foam.damp_length),
-     "the length in DAMP: \"spacing\" (of each node) or a fixed length", .quantity = SF_LENGTH, POSITIVE,
+     "the length in DAMP: \"spacing\" (of each node) or a fixed length", .quantity = SF_LENGTH, POSITIVE, .high = 1e3,
      .words = "spacing", .word_value = 0.0},
     {"material", "ED", SF_KEY_QUANTITY, "\"0 Pa\"", AT(foam.maxwell_modulus),
-     "modulus of the Maxwell branch; 0 = none", .quantity = SF_PRESSURE},
+     "modulus of the Maxwell branch; 0 = none", .quantity = SF_PRESSURE, .high = 1e12},
     {"material", "BETA1", SF_KEY_QUANTITY, "\"5000 1/s\"", AT(foam.maxwell_rate),
-     "decay rate of the Maxwell branch; must be given when ED is", .quantity = SF_RATE, POSITIVE},
+     "decay rate of the Maxwell branch; must be given when ED is", .quantity = SF_RATE, .low = 1e-6, .high = 1e12},
     {"material", "eta", SF_KEY_QUANTITY, "\"0 Pa s\"", AT(foam.kelvin_viscosity),
-     "Kelvin viscosity; bounds the time step", .quantity = SF_VISCOSITY},
+     "Kelvin viscosity; bounds the time step", .quantity = SF_VISCOSITY, .high = 1e9},
     {"material", "tension_cutoff", SF_KEY_QUANTITY, "\"none\"", AT(foam.tension_cutoff),
-     "largest tensile nominal stress, or \"none\"", .quantity = SF_PRESSURE, POSITIVE,
+     "largest tensile nominal stress, or \"none\"", .quantity = SF_PRESSURE, POSITIVE, .high = 1e12,
      .words = "none", .word_value = NO_CUTOFF},
     {"material", "rate_filter_time", SF_KEY_QUANTITY, "\"0.1 ms\"", AT(foam.rate_filter_time),
-     "time constant of the strain rate that chooses among `curves`", .quantity = SF_TIME, POSITIVE},
+     "time constant of the strain rate that chooses among `curves`", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},
     {"material.densification", "rule", SF_KEY_CHOICE, "\"H1\"", AT(densification_rule),
      "law beyond the table: H1: A + B/(1 - strain)^n; H2: A + B/(limit - strain)^m; value and slope continuous",
      .words = "H1|H2"},
@@ -73,12 +75,12 @@ static const sf_key keys[] = {
     {"material.densification", "exponent", SF_KEY_NUMBER, "0.0", AT(foam.densification_exponent),
      "n of H1 (0 = the one that makes A vanish) or m of H2 (required)", .high = 100.0},
     {"material.densification", "limit", SF_KEY_NUMBER, "1.0", AT(foam.densification_limit),
-     "strain at which the stress of H2 becomes infinite (required); 1 for H1", POSITIVE, .high = 1.0},
+     "strain at which the stress of H2 becomes infinite (required); 1 for H1", .low = 0.01, .high = 1.0},
     /* missile */
     {"missile", "mass", SF_KEY_QUANTITY, "", AT(missile_card.mass),
-     "of the whole missile, also in a quarter model; required without `motion`", .quantity = SF_MASS, POSITIVE},
+     "of the whole missile, also in a quarter model; required without `motion`", .quantity = SF_MASS, .low = 1e-9, .high = 1e9},
     {"missile", "velocity", SF_KEY_QUANTITY, "", AT(missile_card.speed),
-     "speed when it touches the pad; required without `motion`", .quantity = SF_SPEED, POSITIVE},
+     "speed when it touches the pad; required without `motion`", .quantity = SF_SPEED, .low = 1e-9, .high = SF_MOTION_MAX_SPEED},
     {"missile", "motion", SF_KEY_MOTION, "", AT(motion_count),
      "displacement over time of a missile that a machine drives, a CSV file (see above), instead of `mass` and `velocity`; relative to the file that names it"},
     {"missile", "direction", SF_KEY_VECTOR, "[0.0, 0.0, -1.0]", AT(missile_card.direction),
@@ -91,9 +93,9 @@ static const sf_key keys[] = {
      "contact with an exact sphere, with the surface's triangles, or (auto) a sphere if the surface is one",
      .words = "auto|sphere|surface"},
     {"missile", "gravity", SF_KEY_QUANTITY, "\"9.80665 m/s2\"", AT(missile_card.gravity),
-     "along -z, on the missile", .quantity = SF_ACCELERATION},
+     "along -z, on the missile", .quantity = SF_ACCELERATION, .high = 1e4},
     {"missile", "gap", SF_KEY_QUANTITY, "\"0 mm\"", AT(missile_card.gap),
-     "distance to the pad at the start", .quantity = SF_LENGTH},
+     "distance to the pad at the start", .quantity = SF_LENGTH, .high = 1e3},
     /* kernel */
     {"kernel", "support_ratio", SF_KEY_NUMBER, "1.4", AT(support_ratio),
      "kernel radius over spacing, R/h; 2 or more makes the constraint matrix nearly singular",
@@ -104,18 +106,18 @@ static const sf_key keys[] = {
      "coefficient of the stabilisation stiffness", .high = 10.0},
     /* solver */
     {"solver", "end_time", SF_KEY_QUANTITY, NULL, AT(run.end_time),
-     "latest end of the run", .quantity = SF_TIME, POSITIVE},
+     "latest end of the run, at least 3 step_limit", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},
     {"solver", "step_safety", SF_KEY_NUMBER, "0.9", AT(run.step_safety),
-     "time step as a fraction of the stability limit", POSITIVE, .high = 1.0},
+     "time step as a fraction of the stability limit", .low = 1e-3, .high = 1.0},
     {"solver", "step_limit", SF_KEY_QUANTITY, "\"20 us\"", AT(run.step_limit),
-     "largest time step; 20 us records the history at 50 kHz", .quantity = SF_TIME, POSITIVE, .high = 20e-6},
+     "largest time step; 20 us records the history at 50 kHz", .quantity = SF_TIME, .low = 1e-12, .high = 20e-6},
     {"solver", "energy_limit", SF_KEY_NUMBER, "0.05", AT(run.energy_limit),
-     "relative energy error at which the run stops", POSITIVE, .high = 1.0},
+     "relative energy error at which the run stops", .low = 1e-9, .high = 1.0},
     {"solver", "stop_after_rebound", SF_KEY_BOOL, "true", AT(run.stop_after_rebound),
      "end when the missile has left the pad upwards"},
     /* output */
     {"output", "frame_interval", SF_KEY_QUANTITY, "\"1 ms\"", AT(run.frame_interval),
-     "time between frames; there are also frames at the start and at the end", .quantity = SF_TIME, POSITIVE},
+     "time between frames; there are also frames at the start and at the end; at most 100000 of them", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},
     {"output", "times", SF_KEY_TIMES, "[]", AT(frame_time),
      "times of further frames", .quantity = SF_TIME, .count_offset = offsetof(sf_case, frame_time_count)},
     {"output", "fields", SF_KEY_FIELDS,

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { INCLUDE_DEPTH = 10 }; /* as libconfig's own limit */
+enum { INCLUDE_DEPTH = 10, LARGEST_TEXT = 1 << 24 /* bytes: a case is written by hand */ };
 
 static void print_text(FILE *file, const char *text) {
     fputc('"', file);
@@ -71,8 +71,91 @@ static char *include_name(char *line) {
     return text + 1;
 }
 
-static sf_status copy_text(const char *path, const char *from, int line, const char *folder, int depth,
-                           FILE *out, sf_error *err) {
+void sf_case_source_free(sf_case_source *source) {
+    for (int k = 0; k < source->count; k++)
+        free(source->piece[k].path);
+    free(source->piece);
+    *source = (sf_case_source){0};
+}
+
+const char *sf_case_source_find(const sf_case_source *source, int line, int *file_line) {
+    int k = source->count - 1;
+    while (k > 0 && source->piece[k].first > line)
+        k--;
+    *file_line = line - source->piece[k].first + source->piece[k].line;
+    return source->piece[k].path;
+}
+
+/* The text under construction. */
+typedef struct text_copy {
+    FILE *out;
+    int lines;
+    const char *folder;     /* of the case: includes are relative to it */
+    sf_case_source *source; /* NULL: not wanted */
+} text_copy;
+
+/* The next line of the text is line `line` of the file. */
+static sf_status begin_piece(text_copy *copy, const char *path, int line, sf_error *err) {
+    sf_case_source *source = copy->source;
+    if (!source)
+        return SF_OK;
+    if (source->count == source->capacity) {
+        int capacity = source->capacity ? 2 * source->capacity : 8;
+        sf_case_piece *grown = realloc(source->piece, (size_t)capacity * sizeof *grown);
+        if (!grown)
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+        source->piece = grown;
+        source->capacity = capacity;
+    }
+    char *name = strdup(path);
+    if (!name)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+    source->piece[source->count++] = (sf_case_piece){copy->lines + 1, line, name};
+    return SF_OK;
+}
+
+static sf_status copy_text(text_copy *copy, const char *path, const char *from, int line, int depth,
+                           sf_error *err);
+
+static sf_status copy_include(text_copy *copy, const char *name, const char *path, int line, int depth,
+                              sf_error *err) {
+    char *included = NULL;
+    if (*name == '/')
+        included = strdup(name);
+    else if (asprintf(&included, "%s/%s", copy->folder, name) < 0)
+        included = NULL;
+    if (!included)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+    fprintf(copy->out, "# from %s:\n", name);
+    copy->lines++;
+    if (copy_text(copy, included, path, line, depth + 1, err) == SF_OK)
+        begin_piece(copy, path, line + 1, err);
+    free(included);
+    return err->status;
+}
+
+static sf_status copy_line(text_copy *copy, char *text, size_t length, const char *path, int line, int depth,
+                           sf_error *err) {
+    if (strlen(text) != length)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: a zero byte: this is not a text file", path, line);
+    char *kept = strdup(text);
+    if (!kept)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+    char *name = include_name(kept);
+    if (name) {
+        copy_include(copy, name, path, line, depth, err);
+    } else {
+        fputs(text, copy->out);
+        if (text[length - 1] != '\n')
+            fputc('\n', copy->out);
+        copy->lines++;
+    }
+    free(kept);
+    return err->status;
+}
+
+static sf_status copy_text(text_copy *copy, const char *path, const char *from, int line, int depth,
+                           sf_error *err) {
     char where[SF_CASE_WHERE_SIZE] = "";
     if (from)
         snprintf(where, sizeof where, "%s:%d: ", from, line);
@@ -84,72 +167,63 @@ static sf_status copy_text(const char *path, const char *from, int line, const c
                        strerror(errno));
     if (!S_ISREG(info.st_mode))
         return SF_FAIL(err, SF_ERR_INPUT, "%sthe case file %s is not a plain file", where, path);
+    if (info.st_size > LARGEST_TEXT || ftell(copy->out) > LARGEST_TEXT) /* includes of includes multiply */
+        return SF_FAIL(err, SF_ERR_INPUT, "%sthe case file %s is larger than %d bytes, with what it includes",
+                       where, path, LARGEST_TEXT);
     FILE *in = fopen(path, "r");
     if (!in)
         return SF_FAIL(err, SF_ERR_INPUT, "%sthe case file %s cannot be read: %s", where, path,
                        strerror(errno));
-    char *text = NULL, *copy = NULL;
+    char *text = NULL;
     size_t size = 0;
     ssize_t length;
-    sf_status status = SF_OK;
-    for (int number = 1; status == SF_OK && (length = getline(&text, &size, in)) >= 0; number++) {
-        if (strlen(text) != (size_t)length) {
-            status = SF_FAIL(err, SF_ERR_INPUT, "%s%s:%d: a zero byte: this is not a text file", where, path,
-                             number);
-            break;
-        }
-        copy = strdup(text);
-        char *name = copy ? include_name(copy) : NULL;
-        char *included = NULL;
-        if (!copy || (name && asprintf(&included, "%s/%s", folder, name) < 0)) {
-            included = NULL;
-            status = SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-        } else if (name) {
-            fprintf(out, "# from %s:\n", name);
-            status = copy_text(included, path, number, folder, depth + 1, out, err);
-        } else {
-            fputs(text, out);
-            if (text[length - 1] != '\n')
-                fputc('\n', out);
-        }
-        free(included);
-        free(copy);
-    }
+    begin_piece(copy, path, 1, err);
+    for (int number = 1; err->status == SF_OK && (length = getline(&text, &size, in)) >= 0; number++)
+        copy_line(copy, text, (size_t)length, path, number, depth, err);
     free(text);
     fclose(in);
-    return status;
+    return err->status;
 }
 
 /* A file that stands in place of a group, each line as a comment. */
 static sf_status copy_as_comment(const char *path, FILE *out, sf_error *err) {
-    char *folder = sf_case_folder_of(path, err);
-    char *text = folder ? sf_case_load_text(path, folder, 0, NULL, err) : NULL, *rest = text;
+    char *text = sf_case_load_text(path, 0, NULL, NULL, err), *rest = text;
     for (char *line = strsep(&rest, "\n"); line && (rest || *line); line = strsep(&rest, "\n"))
         fprintf(out, "#     %s\n", line);
     free(text);
-    free(folder);
     return err->status;
 }
 
-char *sf_case_load_text(const char *path, const char *folder, int count, const char *const *overrides,
+/* A --set text may hold line ends, which would leave the comment. */
+static void put_override(const char *text, FILE *out) {
+    fputs("# --set ", out);
+    for (; *text; text++)
+        fputc(*text == '\n' ? ' ' : *text, out);
+    fputc('\n', out);
+}
+
+char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
                         sf_error *err) {
-    char *text = NULL;
+    char *text = NULL, *folder = sf_case_folder_of(path, err);
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = folder ? open_memstream(&text, &size) : NULL;
     if (!out) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+        free(folder);
         return NULL;
     }
-    sf_status status = copy_text(path, NULL, 0, folder, 0, out, err);
-    for (int i = 0; i < count && status == SF_OK; i++) {
+    text_copy copy = {.out = out, .folder = folder, .source = source};
+    copy_text(&copy, path, NULL, 0, 0, err);
+    for (int i = 0; i < count && err->status == SF_OK; i++) {
         const char *file = sf_case_override_file(overrides[i]);
-        fprintf(out, "# --set %s\n", overrides[i]);
+        put_override(overrides[i], out);
         if (file)
-            status = copy_as_comment(file, out, err);
+            copy_as_comment(file, out, err);
     }
-    if (fclose(out) != 0 && status == SF_OK)
-        status = SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-    if (status != SF_OK) {
+    if (fclose(out) != 0)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+    free(folder);
+    if (err->status != SF_OK) {
         free(text);
         return NULL;
     }

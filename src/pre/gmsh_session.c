@@ -2,20 +2,25 @@
 #include "pre/gmsh_session.h"
 
 #include "pre/geo_parameters.h"
+#include "pre/geometry_check.h"
+#include "pre/gmsh_size.h"
+#include "pre/memory.h"
 #include "pre/mesh_raw.h"
 
 #include <errno.h>
 #include <gmshc.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
 
-enum { NAME_SIZE = 256 };
+enum { NAME_SIZE = 256, TRIAL_SECONDS = 600 };
 
 /* A physical group of the open model. */
 typedef struct group {
@@ -148,30 +153,58 @@ static bool has_elements(int dimension) {
     return count > 0;
 }
 
-static sf_status check_readable(const char *path, sf_error *err) {
-    struct stat info;
-    if (stat(path, &info) != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "the geometry %s cannot be read: %s", path, strerror(errno));
-    if (!S_ISREG(info.st_mode))
-        return SF_FAIL(err, SF_ERR_INPUT, "the geometry %s is not a plain file", path);
-    if (access(path, R_OK) != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "the geometry %s cannot be read: %s", path, strerror(errno));
-    return SF_OK;
-}
-
-sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
+static sf_status merge_source(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
     int ierr = 0;
-    if (check_readable(source->path, err) != SF_OK || sf_geo_parameters_check(source, err) != SF_OK ||
-        restart(session, err) != SF_OK)
+    if (restart(session, err) != SF_OK)
         return err->status;
-    snprintf(session->file, sizeof session->file, "%s", source->path);
     gmshModelAdd("geometry", &ierr);
     if (merge_parameters(session, source, err) != SF_OK)
         return err->status;
     gmshMerge(source->path, &ierr);
-    if (check_log(session, ierr, "reading", err) != SF_OK)
-        return err->status;
+    return check_log(session, ierr, "reading", err);
+}
+
+/* gmsh trusts a mesh file: a damaged one can crash it or make it ask for any memory. So a process of its own
+ * reads it first, and only a file that this process survives is read in earnest. */
+static sf_status try_mesh(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
+    int status = 0;
+    fflush(NULL);
+    pid_t child = fork();
+    if (child < 0)
+        return SF_FAIL(err, SF_ERR_IO, "no process to try %s in: %s", source->path, strerror(errno));
+    if (child == 0) {
+        const struct rlimit no_core = {0, 0}, seconds = {TRIAL_SECONDS, TRIAL_SECONDS};
+        static const int fatal[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL};
+        sf_error ignored = SF_ERROR_INIT; /* met again in earnest */
+        for (size_t k = 0; k < sizeof fatal / sizeof fatal[0]; k++)
+            signal(fatal[k], SIG_DFL); /* a crash is expected: no handler of anyone shall report it */
+        if (!freopen("/dev/null", "w", stderr))
+            _exit(1);
+        setrlimit(RLIMIT_CORE, &no_core);
+        setrlimit(RLIMIT_CPU, &seconds);
+        sf_memory_limit_process();
+        merge_source(session, source, &ignored);
+        has_elements(3);
+        _exit(0);
+    }
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return SF_FAIL(err, SF_ERR_IO, "the trial of %s was lost: %s", source->path, strerror(errno));
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: gmsh fails on it (%s): the mesh is damaged, or larger than the memory", source->path,
+                   WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ends the process");
+}
+
+sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
+    int ierr = 0;
     bool is_mesh = has_suffix(source->path, ".msh");
+    if (sf_geometry_check(source->path, err) != SF_OK || sf_geo_parameters_check(source, err) != SF_OK)
+        return err->status;
+    snprintf(session->file, sizeof session->file, "%s", source->path);
+    if ((is_mesh && try_mesh(session, source, err) != SF_OK) || merge_source(session, source, err) != SF_OK)
+        return err->status;
     if (!has_elements(3) && !is_mesh) {
         /* The file may have set another number of threads, with which meshes differ from run to run. */
         gmshOptionSetNumber("General.NumThreads", 1.0, &ierr);
@@ -179,6 +212,8 @@ sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *
                                                     "Mesh.MaxNumThreads3D"};
         for (int i = 0; i < 3; i++)
             gmshOptionSetNumber(per_dimension[i], 1.0, &ierr);
+        if (sf_gmsh_check_size(source->path, err) != SF_OK)
+            return err->status;
         gmshModelMeshGenerate(3, &ierr);
         if (check_log(session, ierr, "meshing", err) != SF_OK)
             return err->status;

@@ -119,10 +119,11 @@ int main(int argc, char **argv) {
                                      .doc = "Builds the model of a drop from a case file and its geometry."};
     options o = {0};
     sf_error err = SF_ERROR_INIT;
+    sf_error_ignore_closed_pipe();
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     if (o.keys) {
         sf_case_print_keys(stdout);
-        return 0;
+        return sf_error_report(&err, "softfall-pre");
     }
     char *command = sf_command_line(argc, argv);
     build(&o, command ? command : "softfall-pre", &err);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint.h"
 
+#include "core/lanes.h"
 #include <cholmod.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,6 +13,19 @@ struct sf_constraint_block {
     int64_t rows;
     int32_t *node; /* [rows] held node */
     uint8_t *base; /* [rows] counts for the base reaction */
+
+    /* G by row, over the nodes that it touches, and by touched node. */
+    int64_t touched_count;
+    int32_t *touched;   /* [touched_count] nodes, ascending */
+    int64_t *row_ptr;   /* [rows + 1] */
+    int32_t *row_place; /* [row_ptr[rows]] in `touched` */
+    double *row_phi;    /* [row_ptr[rows]] */
+    int64_t *node_ptr;  /* [touched_count + 1] */
+    int32_t *node_row;  /* [row_ptr[rows]] */
+    double *node_phi;   /* [row_ptr[rows]] */
+    sf_vec *field;      /* [touched_count] what G is applied to */
+    sf_vec *lambda;     /* [rows] N */
+
     cholmod_factor *factor;
     cholmod_dense *rhs, *solution, *work_y, *work_e;
 };
@@ -114,6 +128,71 @@ static sf_status factorize(const sf_model *m, sf_constraint_block *b, cholmod_co
     return SF_OK;
 }
 
+/* Lists the touched nodes; `place` [n] gets their places. */
+static sf_status list_touched(const sf_model *m, sf_constraint_block *b, int32_t *place, sf_error *err) {
+    for (int64_t k = 0; k < b->row_ptr[b->rows]; k++)
+        place[b->row_place[k]] = 1;
+    for (int64_t i = 0; i < m->node_count; i++)
+        b->touched_count += place[i];
+    b->touched = sf_alloc(err, (unsigned long)b->touched_count, sizeof *b->touched, "constraint lists");
+    int64_t count = 0;
+    for (int64_t i = 0; i < m->node_count && err->status == SF_OK; i++)
+        if (place[i]) {
+            b->touched[count] = (int32_t)i;
+            place[i] = (int32_t)count++;
+        }
+    return err->status;
+}
+
+static void list_by_node(sf_constraint_block *b) {
+    for (int64_t k = 0; k < b->row_ptr[b->rows]; k++)
+        b->node_ptr[b->row_place[k] + 1]++;
+    for (int64_t t = 0; t < b->touched_count; t++)
+        b->node_ptr[t + 1] += b->node_ptr[t];
+    for (int64_t r = 0; r < b->rows; r++)
+        for (int64_t k = b->row_ptr[r]; k < b->row_ptr[r + 1]; k++) {
+            int64_t slot = b->node_ptr[b->row_place[k]]++;
+            b->node_row[slot] = (int32_t)r;
+            b->node_phi[slot] = b->row_phi[k];
+        }
+    memmove(&b->node_ptr[1], &b->node_ptr[0], (size_t)b->touched_count * sizeof *b->node_ptr);
+    b->node_ptr[0] = 0;
+}
+
+/* The lists of G, from the rows' nodes. */
+static sf_status build_lists(const sf_model *m, sf_constraint_block *b, sf_error *err) {
+    int64_t entries = 0;
+    for (int64_t r = 0; r < b->rows; r++)
+        entries += m->phi_ptr[b->node[r] + 1] - m->phi_ptr[b->node[r]];
+    unsigned long all = (unsigned long)entries, rows = (unsigned long)b->rows;
+    int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "constraint lists");
+    b->row_ptr = sf_alloc(err, rows + 1, sizeof *b->row_ptr, "constraint lists");
+    b->row_place = sf_alloc(err, all, sizeof *b->row_place, "constraint lists");
+    b->row_phi = sf_alloc(err, all, sizeof *b->row_phi, "constraint lists");
+    b->node_row = sf_alloc(err, all, sizeof *b->node_row, "constraint lists");
+    b->node_phi = sf_alloc(err, all, sizeof *b->node_phi, "constraint lists");
+    b->lambda = sf_alloc(err, rows, sizeof *b->lambda, "constraint lists");
+    entries = 0;
+    for (int64_t r = 0; r < b->rows && err->status == SF_OK; r++) {
+        for (int64_t k = m->phi_ptr[b->node[r]]; k < m->phi_ptr[b->node[r] + 1]; k++, entries++) {
+            b->row_place[entries] = m->phi_node[k];
+            b->row_phi[entries] = m->phi_value[k];
+        }
+        b->row_ptr[r + 1] = entries;
+    }
+    if (err->status == SF_OK && list_touched(m, b, place, err) == SF_OK) {
+        unsigned long count = (unsigned long)b->touched_count;
+        b->node_ptr = sf_alloc(err, count + 1, sizeof *b->node_ptr, "constraint lists");
+        b->field = sf_alloc(err, count, sizeof *b->field, "constraint lists");
+        for (int64_t k = 0; k < entries; k++)
+            b->row_place[k] = place[b->row_place[k]];
+        if (err->status == SF_OK)
+            list_by_node(b);
+    }
+    free(place);
+    return err->status;
+}
+
 static sf_status build_block(const sf_model *m, int first, sf_constraint *c, sf_error *err) {
     sf_constraint_block *b = sf_alloc(err, 1, sizeof *b, "constraint block");
     if (!b)
@@ -133,6 +212,8 @@ static sf_status build_block(const sf_model *m, int first, sf_constraint *c, sf_
             b->node[r] = m->fixed_node[k];
             b->base[r++] = m->fixed_base[k];
         }
+    if (build_lists(m, b, err) != SF_OK)
+        return err->status;
     return factorize(m, b, common_of(c), err);
 }
 
@@ -169,6 +250,15 @@ void sf_constraint_free(sf_constraint *c) {
         cholmod_l_free_dense(&b->work_e, common);
         free(b->node);
         free(b->base);
+        free(b->touched);
+        free(b->row_ptr);
+        free(b->row_place);
+        free(b->row_phi);
+        free(b->node_ptr);
+        free(b->node_row);
+        free(b->node_phi);
+        free(b->field);
+        free(b->lambda);
         free(b);
     }
     if (common)
@@ -177,44 +267,78 @@ void sf_constraint_free(sf_constraint *c) {
     memset(c, 0, sizeof *c);
 }
 
-/* G (force / mass) + G v / dt for one component. */
-static void right_side(const sf_model *m, const sf_constraint_block *b, const sf_constraint_step *step,
-                       int component, double *out) {
-    double inverse = 1 / step->dt;
-    for (int64_t r = 0; r < b->rows; r++) {
-        double sum = 0;
-        for (int64_t k = m->phi_ptr[b->node[r]]; k < m->phi_ptr[b->node[r] + 1]; k++) {
-            int64_t i = m->phi_node[k];
-            sum += m->phi_value[k] *
-                   (step->force[3 * i + component] / m->mass[i] + step->v[3 * i + component] * inverse);
+/* G field of row r. */
+static inline sf_vec apply_row(const sf_constraint_block *b, int64_t r) {
+    sf_vec sum = {0};
+    for (int64_t k = b->row_ptr[r]; k < b->row_ptr[r + 1]; k++)
+        sum += b->row_phi[k] * b->field[b->row_place[k]];
+    return sum;
+}
+
+/* G (force / mass) + G v / dt. */
+static void right_side(const sf_model *m, const sf_constraint_block *b, const sf_constraint_step *step) {
+    double *rhs = b->rhs->x, inverse = 1 / step->dt;
+#pragma omp parallel default(none) shared(m, b, step, rhs, inverse)
+    {
+#pragma omp for schedule(static)
+        for (int64_t t = 0; t < b->touched_count; t++) {
+            int64_t i = b->touched[t];
+            b->field[t] =
+                sf_vec_load(&step->force[3 * i]) * (1 / m->mass[i]) + sf_vec_load(&step->v[3 * i]) * inverse;
         }
-        out[r] = sum;
+#pragma omp for schedule(static)
+        for (int64_t r = 0; r < b->rows; r++) {
+            sf_vec sum = apply_row(b, r);
+            for (int q = 0; q < b->components; q++)
+                rhs[q * b->rows + r] = sum[b->component[q]];
+        }
     }
 }
 
-static void add_reaction(const sf_model *m, const sf_constraint_block *b, sf_constraint_step *step,
-                         int component, const double *lambda) {
+/* reaction = G^T lambda, and its resultants. */
+static void add_reaction(const sf_constraint_block *b, sf_constraint_step *step) {
+    const double *solution = b->solution->x;
     for (int64_t r = 0; r < b->rows; r++) {
-        for (int64_t k = m->phi_ptr[b->node[r]]; k < m->phi_ptr[b->node[r] + 1]; k++)
-            step->reaction[3 * (int64_t)m->phi_node[k] + component] += m->phi_value[k] * lambda[r];
-        step->all[component] -= lambda[r];
-        if (b->base[r])
-            step->base[component] -= lambda[r];
+        b->lambda[r] = (sf_vec){0};
+        for (int q = 0; q < b->components; q++) {
+            double lambda = solution[q * b->rows + r];
+            int component = b->component[q];
+            b->lambda[r][component] = lambda;
+            step->all[component] -= lambda;
+            if (b->base[r])
+                step->base[component] -= lambda;
+        }
+    }
+#pragma omp parallel for default(none) shared(b, step) schedule(static)
+    for (int64_t t = 0; t < b->touched_count; t++) {
+        sf_vec sum = {0};
+        for (int64_t k = b->node_ptr[t]; k < b->node_ptr[t + 1]; k++)
+            sum += b->node_phi[k] * b->lambda[b->node_row[k]];
+        for (int q = 0; q < b->components; q++)
+            step->reaction[3 * (int64_t)b->touched[t] + b->component[q]] = sum[b->component[q]];
     }
 }
 
 /* Largest |G v| after the step. */
-static void measure_residual(const sf_model *m, const sf_constraint_block *b, sf_constraint_step *step,
-                             int component) {
-    for (int64_t r = 0; r < b->rows; r++) {
-        double sum = 0;
-        for (int64_t k = m->phi_ptr[b->node[r]]; k < m->phi_ptr[b->node[r] + 1]; k++) {
-            int64_t i = 3 * (int64_t)m->phi_node[k] + component;
-            sum += m->phi_value[k] *
-                   (step->v[i] + step->dt * (step->force[i] - step->reaction[i]) / m->mass[m->phi_node[k]]);
+static double measure_residual(const sf_model *m, const sf_constraint_block *b,
+                               const sf_constraint_step *step) {
+    double residual = 0;
+#pragma omp parallel default(none) shared(m, b, step) reduction(max : residual)
+    {
+#pragma omp for schedule(static)
+        for (int64_t t = 0; t < b->touched_count; t++) {
+            int64_t i = b->touched[t];
+            sf_vec net = sf_vec_load(&step->force[3 * i]) - sf_vec_load(&step->reaction[3 * i]);
+            b->field[t] = sf_vec_load(&step->v[3 * i]) + net * (step->dt / m->mass[i]);
         }
-        step->residual = fmax(step->residual, fabs(sum));
+#pragma omp for schedule(static)
+        for (int64_t r = 0; r < b->rows; r++) {
+            sf_vec sum = apply_row(b, r);
+            for (int q = 0; q < b->components; q++)
+                residual = fmax(residual, fabs(sum[b->component[q]]));
+        }
     }
+    return residual;
 }
 
 sf_status sf_constraint_project(const sf_model *m, const sf_constraint *c, sf_constraint_step *step,
@@ -223,25 +347,16 @@ sf_status sf_constraint_project(const sf_model *m, const sf_constraint *c, sf_co
     memset(step->base, 0, sizeof step->base);
     memset(step->all, 0, sizeof step->all);
     step->residual = 0;
-    for (int k = 0; k < c->block_count; k++) { /* only these entries can be non-zero */
-        const sf_constraint_block *b = c->block[k];
-        for (int64_t r = 0; r < b->rows; r++)
-            for (int64_t q = m->phi_ptr[b->node[r]]; q < m->phi_ptr[b->node[r] + 1]; q++)
-                memset(&step->reaction[3 * (int64_t)m->phi_node[q]], 0, 3 * sizeof *step->reaction);
-    }
     for (int k = 0; k < c->block_count; k++) {
         sf_constraint_block *b = c->block[k];
-        for (int q = 0; q < b->components; q++)
-            right_side(m, b, step, b->component[q], (double *)b->rhs->x + q * b->rows);
+        right_side(m, b, step);
         if (!cholmod_l_solve2(CHOLMOD_A, b->factor, b->rhs, NULL, &b->solution, NULL, &b->work_y, &b->work_e,
                               common))
             return SF_FAIL(err, SF_ERR_LIBRARY, "CHOLMOD cannot solve for the constraint forces (status %d)",
                            common->status);
-        for (int q = 0; q < b->components; q++)
-            add_reaction(m, b, step, b->component[q], (double *)b->solution->x + q * b->rows);
+        add_reaction(b, step); /* no other block holds the same component */
     }
     for (int k = 0; k < c->block_count; k++)
-        for (int q = 0; q < c->block[k]->components; q++)
-            measure_residual(m, c->block[k], step, c->block[k]->component[q]);
+        step->residual = fmax(step->residual, measure_residual(m, c->block[k], step));
     return SF_OK;
 }

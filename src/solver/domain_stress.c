@@ -27,10 +27,8 @@ static inline void displacement_gradient(const sf_vec *restrict d, const uint16_
 
 /* The coefficients that group g sees, into its array. */
 static void gather_group(const sf_halo *h, int64_t g, const double *d) {
-    for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++) {
-        const double *x = &d[3 * (int64_t)h->node[q]];
-        h->work[q] = (sf_vec){x[0], x[1], x[2]};
-    }
+    for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
+        h->work[q] = sf_vec_load(&d[3 * (int64_t)h->node[q]]);
 }
 
 /* Lanes first .. first + count - 1 of a batch from the state and the gathered coefficients `d`; spare lanes
@@ -58,39 +56,66 @@ static void load_batch(const sf_model *m, const sf_operators *op, const sf_state
     memcpy(b->rate, &s->rate[block * SF_LANES], sizeof b->rate);
 }
 
+/* Bounds of the time step: effective tangents, and the smallest stable step of every domain; none for a spare
+ * lane. */
+static void bound_steps(const double stability[SF_LANES], double tightness, double dt_old,
+                        const sf_foam_batch *b, double tangent[SF_LANES], double step[SF_LANES]) {
+    double inverse = dt_old > 0 ? 2 / dt_old : 0;
+    for (int l = 0; l < SF_LANES; l++) {
+        tangent[l] = 0;
+        step[l] = INFINITY;
+    }
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double a = b->direction_tangent[i][l], eta = b->direction_viscosity[i][l];
+            tangent[l] = sf_larger(a + eta * inverse, tangent[l]);
+            step[l] = sf_smaller(sf_stability_step(stability[l] * tightness, a, eta), step[l]);
+        }
+}
+
+/* Sums and extremes of a batch, domain by domain. */
+static void add_batch(const sf_model *m, const double stability[SF_LANES], const double tangent[SF_LANES],
+                      const double step[SF_LANES], int64_t first, int count, const sf_foam_batch *b,
+                      sf_partial *sum) {
+    for (int l = 0; l < count; l++) {
+        double v = m->volume[first + l];
+        sum->stored += v * b->stored[l];
+        sum->hysteresis += v * b->lost[l];
+        sum->viscous += v * b->work[l];
+        sum->step = sf_smaller(step[l], sum->step);
+        sum->load = sf_larger(stability[l] * tangent[l], sum->load);
+        for (int i = 0; i < 3; i++)
+            sum->shortest = sf_smaller(b->stretch[i][l], sum->shortest);
+        if (!(b->jacobian[l] >= sum->jacobian) && !isnan(sum->jacobian)) { /* NaN is kept */
+            sum->jacobian = b->jacobian[l];
+            sum->jacobian_node = first + l;
+        }
+    }
+}
+
 static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, int64_t block, int count,
                         const sf_foam_batch *b, sf_partial *sum) {
     int64_t first = block * SF_LANES;
+    double stability[SF_LANES] = {0}, tangent[SF_LANES], step[SF_LANES];
+    memcpy(stability, &op->stability[first], (size_t)count * sizeof *stability);
+    bound_steps(stability, s->tightness, s->dt_old, b, tangent, step);
+    add_batch(m, stability, tangent, step, first, count, b, sum);
     memcpy(&s->maxwell[block * 6 * SF_LANES], b->maxwell, sizeof b->maxwell);
     memcpy(&s->peak[block * SF_LANES], b->peak, sizeof b->peak);
     memcpy(&s->rate[block * SF_LANES], b->rate, sizeof b->rate);
-    double inverse = s->dt_old > 0 ? 2 / s->dt_old : 0;
+    memcpy(&s->energy[first], b->energy, (size_t)count * sizeof *b->energy);
+    memcpy(&s->stiffness[first], b->stiffness, (size_t)count * sizeof *b->stiffness);
+    memcpy(&s->tangent[first], tangent, (size_t)count * sizeof *tangent);
     for (int l = 0; l < count; l++) {
         int64_t i = first + l;
-        double v = m->volume[i], c = op->stability[i] * s->tightness;
+        double v = m->volume[i];
         for (int k = 0; k < 9; k++) {
             s->f[9 * i + k] = b->f[k][l];
             s->stress[9 * i + k] = v * b->p[k][l];
         }
-        s->energy[i] = b->energy[l];
-        s->stiffness[i] = b->stiffness[l];
-        s->tangent[i] = 0;
-        for (int k = 0; k < 3; k++) {
-            double a = b->direction_tangent[k][l], eta = b->direction_viscosity[k][l];
-            s->tangent[i] = fmax(s->tangent[i], a + eta * inverse);
-            sum->step = fmin(sum->step, sf_stability_step(c, a, eta));
-        }
         for (int k = 0; k < 6 && b->directions; k++)
             s->directional[6 * i + k] = b->directional[k][l];
-        sum->stored += v * b->stored[l];
-        sum->hysteresis += v * b->lost[l];
-        sum->viscous += v * b->work[l];
-        sum->load = fmax(sum->load, op->stability[i] * s->tangent[i]);
-        sum->shortest = fmin(sum->shortest, fmin(b->stretch[0][l], fmin(b->stretch[1][l], b->stretch[2][l])));
-        if (!(b->jacobian[l] >= sum->jacobian) && !isnan(sum->jacobian)) { /* NaN is kept */
-            sum->jacobian = b->jacobian[l];
-            sum->jacobian_node = i;
-        }
     }
 }
 

@@ -291,6 +291,7 @@ static sf_status solve(const options *o, const char *command, sf_error *err) {
         prepare_output(o, &output, &model, model_file, &provenance, err) != SF_OK)
         goto done;
     sf_model_drop_mesh(&model);
+    sf_model_drop_domain_nodes(&model);
     if (!o->restart)
         unlink(output.checkpoint); /* of an earlier run, with --force */
     sf_run run = {.stop = &stop_requested,
@@ -348,6 +349,7 @@ int main(int argc, char **argv) {
     limit_spinning(argv);
     options o = {.threads = omp_get_max_threads(), .checkpoint_wall = 60, .checkpoint_time = INFINITY};
     sf_error err = SF_ERROR_INIT;
+    sf_error_ignore_closed_pipe();
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     omp_set_num_threads(o.threads);
     struct sigaction action = {.sa_handler = request_stop};

@@ -1,35 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/stabilisation.h"
 
-#include <string.h>
-
-double sf_stabilisation_node(const sf_model *m, const double *pair, const double *restrict d,
-                             const double *restrict f, const double *stiffness, int64_t i, double force[3],
-                             double couple[9]) {
-    const double *restrict xi = &m->position[3 * i], *restrict di = &d[3 * i], *restrict fi = &f[9 * i];
-    double sum = 0, out[3] = {0}, moment[9] = {0};
+double sf_stabilisation_node(const sf_model *m, const double *pair, const double *d, const double *f,
+                             const double *stiffness, int64_t i, double force[3], double couple[9]) {
+    const sf_vec xi = sf_vec_load(&m->position[3 * i]), di = sf_vec_load(&d[3 * i]);
+    sf_vec fi[3], fj[3], sum = {0}, out = {0}, moment[3] = {{0}, {0}, {0}};
+    sf_vec_columns(&f[9 * i], fi);
     for (int64_t k = m->edge_ptr[i]; k < m->edge_ptr[i + 1]; k++) {
         int64_t j = m->edge_node[k];
-        const double *restrict xj = &m->position[3 * j], *restrict dj = &d[3 * j], *restrict fj = &f[9 * j];
-        double arm[3], e[3], weight = pair[k] * (stiffness[i] + stiffness[j]);
+        double weight = pair[k] * (stiffness[i] + stiffness[j]);
+        sf_vec arm = sf_vec_load(&m->position[3 * j]) - xi, dj = sf_vec_load(&d[3 * j]);
+        sf_vec_columns(&f[9 * j], fj);
+        sf_vec half = 0.5 * arm;
+        sf_vec explained = (fi[0] + fj[0]) * half[0] + (fi[1] + fj[1]) * half[1] + (fi[2] + fj[2]) * half[2];
+        sf_vec e = arm + (dj - di) - explained, pull = weight * e;
+        sum += pair[k] * (e * e);
+        out += pull;
         for (int c = 0; c < 3; c++)
-            arm[c] = xj[c] - xi[c];
-        for (int r = 0; r < 3; r++) {
-            double explained = 0;
-            for (int c = 0; c < 3; c++)
-                explained += (fi[3 * r + c] + fj[3 * r + c]) * arm[c];
-            e[r] = arm[r] + dj[r] - di[r] - 0.5 * explained;
-        }
-        sum += pair[k] * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-        for (int r = 0; r < 3; r++) {
-            out[r] += weight * e[r];
-            for (int c = 0; c < 3; c++)
-                moment[3 * r + c] -= 0.5 * weight * e[r] * arm[c];
-        }
+            moment[c] -= pull * half[c];
     }
-    memcpy(force, out, sizeof out);
-    memcpy(couple, moment, sizeof moment);
-    return 0.5 * sum;
+    for (int r = 0; r < 3; r++) {
+        force[r] = out[r];
+        for (int c = 0; c < 3; c++)
+            couple[3 * r + c] = moment[c][r];
+    }
+    return 0.5 * (sum[0] + sum[1] + sum[2]);
 }
 
 void sf_stabilisation(const sf_model *m, const sf_operators *op, sf_state *s) {

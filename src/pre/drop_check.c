@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/drop_check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double THINNEST = 1e-6, THICKEST = 1e3; /* m, of sf_model_check */
+static const double AT_PLANE = 1e-3;                 /* of the missile's extent: on the plane */
+static const double SYMMETRIC = 1e-2; /* of the missile's extent: as far on one side as on the other */
+
+static sf_status check_thickness(const sf_model *m, sf_error *err) {
+    if (m->thickness >= THINNEST && m->thickness <= THICKEST)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "the pad is %g m thick, outside %g to %g m: is geometry.length_unit the geometry's unit?",
+                   m->thickness, THINNEST, THICKEST);
+}
+
+static sf_status check_mass(const sf_model *m, sf_error *err) {
+    double share = m->missile.mass / (double)m->symmetry_factor, heaviest = 0;
+    for (int64_t k = 0; k < m->contact_count; k++)
+        heaviest = fmax(heaviest, m->mass[m->contact_node[k]]);
+    if (m->motion_count > 0 || share > heaviest)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "missile.mass: %g kg, of which the model has 1/%lld, is not more than the heaviest node of the "
+        "contact surface (%g kg)",
+        m->missile.mass, (long long)m->symmetry_factor, heaviest);
+}
+
+/* ---- symmetry ---- */
+
+static void range(const sf_model *m, int axis, double *low, double *high) {
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (int64_t k = 0; k < m->surface_node_count; k++) {
+        *low = fmin(*low, m->surface_position[3 * k + axis]);
+        *high = fmax(*high, m->surface_position[3 * k + axis]);
+    }
+}
+
+/* The plane x or y = `place` of a held symmetry group: -1 axis if there is none of that axis. */
+static int find_plane(const sf_case *c, const sf_mesh *mesh, const sf_model *m, int axis, double *place,
+                      const char **name) {
+    for (int g = 0; g < c->symmetry_count; g++) {
+        const sf_node_set *set = sf_mesh_find_set(mesh, c->symmetry_group[g]);
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t k = 0; set && k < set->count; k++) {
+            low = fmin(low, m->position[3 * (int64_t)set->node[k] + axis]);
+            high = fmax(high, m->position[3 * (int64_t)set->node[k] + axis]);
+        }
+        if (!set || high - low > 1e-9 * m->thickness)
+            continue;
+        *place = low;
+        *name = set->name;
+        return 1;
+    }
+    return 0;
+}
+
+/* On which side of the plane the pad lies. */
+static double side_of_pad(const sf_model *m, int axis, double place) {
+    double sum = 0;
+    for (int64_t i = 0; i < m->node_count; i++)
+        sum += m->position[3 * i + axis] - place;
+    return sum < 0 ? -1 : 1;
+}
+
+/* The contact sees what stands over the modelled part of the pad: that must be half of a symmetric missile,
+ * which may be modelled as a half or as a whole. */
+static sf_status check_plane(const sf_model *m, int axis, double place, const char *name, sf_error *err) {
+    double low, high, extent;
+    range(m, axis, &low, &high);
+    extent = high - low;
+    if (m->missile.shape == SF_SHAPE_SPHERE) {
+        double off = m->missile.sphere_centre[axis] - place;
+        if (fabs(off) <= AT_PLANE * m->missile.sphere_radius)
+            return SF_OK;
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the centre of the missile's sphere lies %g mm off the symmetry plane \"%s\" (%c = %g mm): "
+            "it must lie on it",
+            1e3 * off, name, 'x' + axis, 1e3 * place);
+    }
+    double before = side_of_pad(m, axis, place) > 0 ? place - low : high - place, behind = extent - before;
+    if (fabs(before) <= AT_PLANE * extent || fabs(before - behind) <= SYMMETRIC * extent)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "the missile spans %c = %g to %g mm, neither one side of the symmetry plane \"%s\" (%c = %g mm) "
+        "from that plane on nor both sides alike",
+        'x' + axis, 1e3 * low, 1e3 * high, name, 'x' + axis, 1e3 * place);
+}
+
+typedef struct edge {
+    int32_t node[2]; /* ascending */
+} edge;
+
+static int compare_edge(const void *a, const void *b) {
+    const edge *p = a, *q = b;
+    int first = (p->node[0] > q->node[0]) - (p->node[0] < q->node[0]);
+    return first ? first : (p->node[1] > q->node[1]) - (p->node[1] < q->node[1]);
+}
+
+/* [3 triangle_count] sorted; owned by the caller. */
+static edge *list_edges(const sf_model *m, sf_error *err) {
+    int64_t count = 3 * m->surface_triangle_count;
+    edge *list = sf_alloc(err, (unsigned long)count, sizeof *list, "edges of the missile");
+    for (int64_t k = 0; list && k < count; k++) {
+        int32_t a = m->surface_triangle[k], b = m->surface_triangle[k % 3 == 2 ? k - 2 : k + 1];
+        list[k] = (edge){{a < b ? a : b, a < b ? b : a}};
+    }
+    if (list)
+        qsort(list, (size_t)count, sizeof *list, compare_edge);
+    return list;
+}
+
+/* True if a rim of the surface runs up or down in the plane x or y = `place`: the missile was cut there. A
+ * level rim is that of an open top or of a flat platen. */
+static bool is_cut(const sf_model *m, const edge *list, int axis, double place, double extent) {
+    int64_t count = 3 * m->surface_triangle_count;
+    for (int64_t k = 0; k < count; k++) {
+        bool twin = (k > 0 && compare_edge(&list[k], &list[k - 1]) == 0) ||
+                    (k + 1 < count && compare_edge(&list[k], &list[k + 1]) == 0);
+        const double *a = &m->surface_position[3 * (int64_t)list[k].node[0]],
+                     *b = &m->surface_position[3 * (int64_t)list[k].node[1]];
+        if (!twin && fabs(a[axis] - place) <= 1e-9 * extent && fabs(b[axis] - place) <= 1e-9 * extent &&
+            fabs(a[2] - b[2]) > 1e-6 * extent)
+            return true;
+    }
+    return false;
+}
+
+/* Zero for what is zero but for the rounding of the mesh. */
+static double round_off(double place, double extent) {
+    return fabs(place) > 1e-9 * extent ? place : 0;
+}
+
+/* Without a symmetry plane of this axis the missile must be whole. */
+static sf_status check_whole(const sf_model *m, const edge *list, int axis, sf_error *err) {
+    double low, high;
+    range(m, axis, &low, &high);
+    bool below = is_cut(m, list, axis, low, high - low);
+    if (!below && !is_cut(m, list, axis, high, high - low))
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: half a "
+        "missile over a whole pad",
+        'x' + axis, 1e3 * round_off(below ? low : high, high - low));
+}
+
+static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
+    edge *list = m->missile.shape == SF_SHAPE_SURFACE ? list_edges(m, err) : NULL;
+    for (int axis = 0; axis < 2 && err->status == SF_OK; axis++) {
+        double place = 0;
+        const char *name = NULL;
+        if (find_plane(c, mesh, m, axis, &place, &name))
+            check_plane(m, axis, place, name, err);
+        else if (list)
+            check_whole(m, list, axis, err);
+    }
+    free(list);
+    return err->status;
+}
+
+/* ---- what the case leaves out ---- */
+
+static bool holds(const sf_case *c, const char *name) {
+    const struct {
+        int count;
+        const char (*group)[SF_CASE_NAME_SIZE];
+    } list[] = {{c->symmetry_count, c->symmetry_group},
+                {c->fixed_count, c->fixed_group},
+                {c->sliding_count, c->sliding_group}};
+    for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
+        for (int g = 0; g < list[k].count; g++)
+            if (strcmp(list[k].group[g], name) == 0)
+                return true;
+    return false;
+}
+
+static void tell_free_planes(const sf_case *c, const sf_mesh *mesh) {
+    for (int k = 0; k < mesh->set_count; k++)
+        if (strncmp(mesh->set[k].name, "symmetry", 8) == 0 && !holds(c, mesh->set[k].name))
+            fprintf(stderr,
+                    "softfall-pre: warning: pad.symmetry leaves out the group \"%s\" of the geometry: that "
+                    "side is "
+                    "free, and what is modelled counts as the whole pad\n",
+                    mesh->set[k].name);
+}
+
+sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
+    if (check_thickness(m, err) != SF_OK || check_mass(m, err) != SF_OK ||
+        check_symmetry(c, mesh, m, err) != SF_OK)
+        return err->status;
+    tell_free_planes(c, mesh);
+    return SF_OK;
+}

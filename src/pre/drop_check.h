@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Does a model make sense as a drop? What sf_model_check cannot ask, as it sees neither the case nor the
+ * names of the geometry. */
+#ifndef SF_PRE_DROP_CHECK_H
+#define SF_PRE_DROP_CHECK_H
+
+#include "core/error.h"
+#include "core/model.h"
+#include "pre/case.h"
+#include "pre/mesh.h"
+
+/* SF_ERR_INPUT, naming the key, the value and the bound: the pad's thickness is not one of a pad; the
+ * missile's share in the model is lighter than a node; it is not symmetric to a symmetry plane, or cut open
+ * where there is none. A symmetry group of the geometry that the case does not hold is told on stderr. The
+ * model has its nodes, its sets and its missile; the mesh still has its sets. */
+sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err);
+
+#endif

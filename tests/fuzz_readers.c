@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fuzz_readers.h"
+
+#include "cfh/rig.h"
+#include "core/curve.h"
+#include "fit/compression_config.h"
+#include "fit/drop_input.h"
+#include "io/model_io.h"
+#include "post/compare.h"
+#include "post/figures.h"
+#include "post/reference.h"
+#include "post/results.h"
+#include "pre/case.h"
+#include "pre/case_curve.h"
+#include "pre/geo_parameters.h"
+#include "pre/geometry_check.h"
+#include "pre/gmsh_session.h"
+#include <ftw.h>
+#include <hdf5.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static char folder[256];
+
+static const char *in_folder(const char *name) {
+    static char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+/* ---- the readers ---- */
+
+static sf_status read_case(const char *path, sf_error *err) {
+    sf_case c;
+    if (sf_case_read(path, 0, NULL, &c, err) != SF_OK)
+        return err->status;
+    for (int64_t k = 0; k < c.foam.curve_count; k++) { /* as the solver does with every model */
+        sf_curve curve;
+        sf_error flat = SF_ERROR_INIT;
+        if (sf_curve_build(&c.foam, k, &curve, &flat) == SF_OK)
+            sf_curve_free(&curve);
+    }
+    sf_case_free(&c);
+    return SF_OK;
+}
+
+static sf_status read_curve(const char *path, sf_error *err) {
+    sf_case_curve curve;
+    if (sf_case_curve_read(path, &curve, err) == SF_OK)
+        sf_case_curve_free(&curve);
+    return err->status;
+}
+
+static sf_status read_motion(const char *path, sf_error *err) {
+    char case_path[512], override[600];
+    const char *const overrides[] = {override};
+    sf_case c;
+    snprintf(case_path, sizeof case_path, "%s", in_folder("driven.cfg"));
+    snprintf(override, sizeof override, "missile.motion=%s", path);
+    if (sf_case_read(case_path, 1, overrides, &c, err) == SF_OK)
+        sf_case_free(&c);
+    return err->status;
+}
+
+static sf_status read_reference(const char *path, sf_error *err) {
+    sf_series curve;
+    double instant;
+    if (sf_reference_read(path, &curve, err) != SF_OK)
+        return err->status;
+    sf_contact_instant(&curve, path, &instant, err);
+    sf_series_free(&curve);
+    return err->status;
+}
+
+static sf_status read_rig(const char *path, sf_error *err) {
+    sf_cfh_rig rig;
+    return sf_cfh_rig_read(path, &rig, err);
+}
+
+static sf_status read_fit(const char *path, sf_error *err) {
+    sf_fit_input input;
+    sf_fit_input_read(path, &input, err);
+    sf_fit_input_free(&input);
+    return err->status;
+}
+
+static sf_status read_compression(const char *path, sf_error *err) {
+    sf_compression_config config;
+    if (sf_compression_config_read(path, &config, err) == SF_OK)
+        sf_compression_config_free(&config);
+    return err->status;
+}
+
+static sf_status read_pressing(const char *path, sf_error *err) {
+    sf_compression_test test;
+    if (sf_compression_test_read(path, 0.1, &test, err) == SF_OK)
+        sf_compression_test_free(&test);
+    return err->status;
+}
+
+/* What is asked of a script before gmsh sees it. */
+static sf_status read_geo(const char *path, sf_error *err) {
+    char copy[512];
+    sf_geo_source source = {.path = copy, .parameter_count = 1, .parameter = {{"side", 1}}};
+    snprintf(copy, sizeof copy, "%s", path);
+    return sf_geometry_check(path, err) == SF_OK ? sf_geo_parameters_check(&source, err) : err->status;
+}
+
+static sf_status read_model(const char *path, sf_error *err) {
+    sf_model model;
+    if (sf_model_read(path, &model, NULL, err) == SF_OK)
+        sf_model_free(&model);
+    return err->status;
+}
+
+static sf_status read_results(const char *path, sf_error *err) {
+    sf_results results;
+    sf_frame frame;
+    sf_figures figures;
+    if (sf_results_open(path, &results, err) != SF_OK)
+        return err->status;
+    if (results.has_peak && sf_frame_read(&results, &results.peak, &frame, err) == SF_OK)
+        sf_frame_free(&frame);
+    for (int64_t k = 0; k < results.frame_count && err->status == SF_OK; k++)
+        if (sf_frame_read(&results, &results.frames[k], &frame, err) == SF_OK)
+            sf_frame_free(&frame);
+    if (err->status == SF_OK && sf_figures_compute(&results, 1000, &figures, err) == SF_OK)
+        sf_figures_free(&figures);
+    sf_results_close(&results);
+    return err->status;
+}
+
+static sf_status read_msh(const char *path, sf_error *err) {
+    char copy[512];
+    sf_geo_source source = {.path = copy};
+    sf_gmsh *session = NULL;
+    sf_mesh mesh = {0};
+    sf_surface surface = {0};
+    double volume;
+    snprintf(copy, sizeof copy, "%s", path);
+    if (sf_gmsh_begin(&session, err) == SF_OK && sf_gmsh_load(session, &source, err) == SF_OK &&
+        sf_gmsh_read_mesh(session, "pad", 1e-3, &mesh, err) == SF_OK &&
+        sf_gmsh_read_surface(session, "top", 1e-3, &surface, err) == SF_OK)
+        sf_mesh_check(&mesh, &volume, err);
+    sf_surface_free(&surface);
+    sf_mesh_free(&mesh);
+    sf_gmsh_end(&session);
+    return err->status;
+}
+
+static const fuzz_reader readers[] = {
+    {"case", "case.cfg", read_case},
+    {"curve", "curve.csv", read_curve},
+    {"motion", "fuzz.csv", read_motion},
+    {"reference", "reference.csv", read_reference},
+    {"rig", "rig.csv", read_rig},
+    {"fit", "fit.cfg", read_fit},
+    {"model", "model.h5", read_model},
+    {"results", "results.h5", read_results},
+    {"msh", "mesh.msh", read_msh},
+    {"geo", "script.geo", read_geo},
+    {"compression", "fit.cfg", read_compression},
+    {"pressing", "pressing.csv", read_pressing},
+};
+
+const fuzz_reader *fuzz_reader_at(int index) {
+    return index < (int)(sizeof readers / sizeof readers[0]) ? &readers[index] : NULL;
+}
+
+const fuzz_reader *fuzz_reader_find(const char *name) {
+    for (int k = 0; fuzz_reader_at(k); k++)
+        if (strcmp(readers[k].name, name) == 0)
+            return &readers[k];
+    return NULL;
+}
+
+/* ---- the scratch folder ---- */
+
+static void fail(const char *what) {
+    fprintf(stderr, "fuzz: %s: ", what);
+    perror(folder);
+    abort();
+}
+
+static void write_file(const char *name, const void *data, size_t size) {
+    FILE *file = fopen(in_folder(name), "wb");
+    if (!file || fwrite(data, 1, size, file) != size || fclose(file) != 0)
+        fail(name);
+}
+
+#define MATERIAL                                                                                             \
+    "density = \"35 kg/m3\"; E = \"0.4 MPa\"; curve = \"foam.csv\"; ED = \"1 MPa\"; BETA1 = \"5000 1/s\";\n"
+#define PRESSING                                                                                             \
+    "strain,stress_kPa\n"                                                                                    \
+    "0.04,20\n0.07,40\n0.11,60\n0.14,80\n0.18,100\n0.21,120\n0.25,140\n0.28,160\n0.32,180\n0.35,200\n0.39,"  \
+    "220\n0.42,240\n0.46,260\n0.49,280\n0.53,300\n0.56,320\n0.60,340\n0.63,360\n0.67,380\n0.70,400\n0.74,"   \
+    "420\n0.77,440\n"
+#define GEOMETRY                                                                                             \
+    "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\nsolver: { end_time = \"1 ms\"; };\n"
+
+void fuzz_begin(void) {
+    static const char *const files[][2] = {
+        {"pad.geo", "DefineConstant[ side = 1, quarter = 0 ];\n"},
+        {"foam.csv", "strain,stress_kPa\n0,0\n0.1,20\n0.5,100\n0.8,900\n"},
+        {"motion.csv", "time_ms,displacement_mm\n0,0\n50,10\n"},
+        {"measured.csv", "time_ms,acceleration_g\n0,0\n1,20\n2,80\n3,20\n4,0\n"},
+        {"pressing.csv", PRESSING},
+        {"material.cfg", MATERIAL},
+        {"good.cfg",
+         GEOMETRY "material: { " MATERIAL "};\nmissile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"},
+        {"driven.cfg", GEOMETRY "material: { " MATERIAL "};\n"},
+    };
+    const char *root = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/softfall-fuzz-XXXXXX", root && *root ? root : "/tmp");
+    if (!mkdtemp(folder))
+        fail("no scratch folder");
+    for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
+        write_file(files[k][0], files[k][1], strlen(files[k][1]));
+}
+
+static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *place) {
+    (void)info;
+    (void)kind;
+    (void)place;
+    return remove(path);
+}
+
+void fuzz_end(void) {
+    nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
+}
+
+sf_status fuzz_read(const fuzz_reader *reader, const uint8_t *data, size_t size) {
+    char path[512];
+    sf_error err = SF_ERROR_INIT;
+    write_file(reader->file, data, size);
+    snprintf(path, sizeof path, "%s", in_folder(reader->file));
+    sf_status status = reader->read(path, &err);
+    if (status != err.status || (status != SF_OK && err.text[0] == '\0') || strchr(err.text, '\n')) {
+        fprintf(stderr, "fuzz: status %d with the sentence \"%s\"\n", (int)status, err.text);
+        abort();
+    }
+    if (H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL) > 0) {
+        fprintf(stderr, "fuzz: HDF5 objects were left open\n");
+        abort();
+    }
+    return status;
+}

@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Inputs that cannot be meant, over all programs: each is refused with a code that is not 0 and one sentence
+ * that names the thing, its value and what it may be, and every file of an earlier run stays as it was. */
+#include "program_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+enum { PARTS = 3 };
+
+typedef struct nonsense {
+    const char *words;       /* of the command line */
+    const char *part[PARTS]; /* of the sentence */
+} nonsense;
+
+/* good.cfg, model.h5, results.h5 of 1 ms, out/, and files/ with what is wrong in each. */
+static int set_up(void **state) {
+    program_place *p = calloc(1, sizeof *p);
+    *state = p;
+    program_set_up(p);
+    program_result made =
+        program_shell(p, "R=\"$SF_SOURCE_DIR\" && cp -r \"$R/geo\" \"$R/examples/materials\" . && sed "
+                         "'s|\\.\\./\\.\\./geo|geo|; "
+                         "s|\\.\\./materials|materials|' \"$R/examples/eva50-v4.5/case.cfg\" > good.cfg && "
+                         "mkdir files && cd files && "
+                         "printf 'strain,stress_kPa\\n0,0\\n0.1,20\\n0.5,10\\n0.8,900\\n' > falls.csv && "
+                         "printf 'strain,stress_kPa\\n0,0\\n0.02,5\\n0.05,9\\n0.08,12\\n' > stops.csv && "
+                         "printf 'strain,stress_kPa\\n0,0\\n0.8,900\\n' > two.csv && "
+                         "printf 'strain,stress_kPa\\n0,0\\n0.1,nan\\n0.5,100\\n0.8,900\\n' > nan.csv && "
+                         "printf 'strain,stress_kPa\\n0,0\\n0.1,1e999\\n0.5,100\\n0.8,900\\n' > inf.csv && "
+                         "printf 'strain,stress_kPa\\n0,0\\n0.1,20\\n0.5,100\\n1.2,900\\n' > through.csv && "
+                         "printf 'strain,stress_kPa\\n0,7\\n0.1,20\\n0.5,100\\n0.8,900\\n' > preload.csv && "
+                         "printf 'strain,stress_kPa\\n0,0\\n0.1,0\\n0.5,0\\n0.8,0\\n' > zero.csv && "
+                         "printf 'strain,force_N\\n0,0\\n0.1,20\\n' > force.csv && "
+                         "printf 'time_ms,displacement_mm\\n0,0\\n1,900\\n' > fast.csv && "
+                         "printf 'time_ms,displacement_mm\\n0,0\\n5,1\\n4,2\\n' > back.csv && "
+                         "printf 'time_ms,displacement_mm\\n0,3\\n50,10\\n' > late.csv && "
+                         "printf 'time_ms,acceleration_g\\n0,0\\n1,5\\n' > short.csv && "
+                         "printf 'time_ms,acceleration_g\\n0,0\\n1,nan\\n2,0\\n' > hole.csv && "
+                         "printf 'time_ms,acceleration_g\\n0,0\\n2,5\\n1,0\\n' > order.csv && "
+                         "printf 'height_m,v_test_m_s\\n1,9\\n2,12\\n' > rig.csv && "
+                         "printf 'SystemCall \"touch written\";\\n' > run.geo && printf 'Save "
+                         "\"written.msh\";\\n' > save.geo && "
+                         "printf 'Printf(\"x\") > \"written\";\\n' > print.geo && printf 'SystemCall \"touch "
+                         "written\";\\n' > run.msh && "
+                         "printf 'Include StrCat(\"a\", \"b\");\\n' > include.geo && cp run.geo pad.txt && "
+                         "printf '$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n1 999999999999 1 "
+                         "999999999999\\n' > bomb.msh && "
+                         "printf 'name = \"f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
+                         "\"../good.cfg\"; %%s } );\\n' "
+                         "'a_max_g = -3.0;' > minus.cfg && "
+                         "printf 'name = \"f\"; material = \"none.cfg\"; drops = ( { case = \"../good.cfg\"; "
+                         "a_max_g = 50.0; } );\\n' > "
+                         "nomaterial.cfg && "
+                         "printf 'name = \"f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
+                         "\"../good.cfg\"; } );\\n' > "
+                         "nothing.cfg && "
+                         "printf 'name = \"../f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
+                         "\"../good.cfg\"; a_max_g = "
+                         "50.0; } );\\n' > outside.cfg");
+    if (made.code != 0)
+        fail_msg("the files cannot be made: %s", made.err);
+    program_succeed(p, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
+    program_succeed(p, "solve", "model.h5 -o results.h5 --threads 1");
+    program_succeed(p, "post", "results.h5 -o out");
+    return 0;
+}
+
+static int tear_down(void **state) {
+    program_tear_down(*state);
+    free(*state);
+    return 0;
+}
+
+static void assert_refused(const program_result *r, const char *program, const nonsense *row) {
+    char begin[64];
+    const char *end = strchr(r->err, '\n');
+    snprintf(begin, sizeof begin, "softfall-%s: ", program);
+    if (r->code <= 0 || r->code >= 128)
+        fail_msg("%s %s: exit code %d: %s", program, row->words, r->code, r->err);
+    if (!end || end[1] != '\0' || strncmp(r->err, begin, strlen(begin)) != 0)
+        fail_msg("%s %s: not one sentence of %s: %s", program, row->words, begin, r->err);
+    for (int k = 0; k < PARTS && row->part[k]; k++)
+        if (!strstr(r->err, row->part[k]))
+            fail_msg("%s %s: \"%s\" is missing in: %s", program, row->words, row->part[k], r->err);
+}
+
+/* Every row after `before`, which names the input and the output that exists already. */
+static void refuse_all(const program_place *p, const char *program, const char *before, const nonsense *rows,
+                       size_t count) {
+    static const char sum[] = "find . -type f ! -name '.std*' -exec cksum {} + | sort";
+    program_result earlier = program_shell(p, "%s", sum);
+    for (size_t k = 0; k < count; k++) {
+        program_result result = program_run(p, program, "%s %s", before, rows[k].words);
+        assert_refused(&result, program, &rows[k]);
+    }
+    program_result later = program_shell(p, "%s", sum);
+    assert_string_equal(earlier.out, later.out); /* nothing changed, nothing new */
+}
+
+#define REFUSE_ALL(p, program, before, rows)                                                                 \
+    refuse_all(p, program, before, rows, sizeof(rows) / sizeof(rows)[0])
+
+static void values_of_a_case(void **state) {
+    static const nonsense rows[] = {
+        {"--set missile.velocity='1000 m/s'", {"missile.velocity", "1000 m s-1", "at most 200 m s-1"}},
+        {"--set missile.velocity='0 m/s'", {"missile.velocity", "0 m s-1", "at least 1e-09"}},
+        {"--set missile.velocity='-3 m/s'", {"missile.velocity", "-3 m s-1", "at least 1e-09"}},
+        {"--set missile.velocity='nan m/s'", {"missile.velocity", "nan m/s", "not finite"}},
+        {"--set missile.velocity='inf m/s'", {"missile.velocity", "inf m/s", "not finite"}},
+        {"--set missile.velocity='4.5 kg'", {"missile.velocity", "4.5 kg", "expected a speed"}},
+        {"--set missile.velocity='\"4.5\"'", {"missile.velocity", "no unit", "4.5 m/s"}},
+        {"--set missile.velocity=4.5", {"missile.velocity", "a plain number", "4.5 m/s"}},
+        {"--set missile.mass='0 kg'", {"missile.mass", "0 kg", "at least 1e-09 kg"}},
+        {"--set missile.mass='-1 kg'", {"missile.mass", "-1 kg", "at least 1e-09 kg"}},
+        {"--set missile.mass='1e12 kg'", {"missile.mass", "1e+12 kg", "at most 1e+09 kg"}},
+        {"--set missile.mass='4.6 m'", {"missile.mass", "is a length", "expected a mass"}},
+        {"--set material.density='0 kg/m3'", {"material.density", "0 kg m-3", "at least 0.001"}},
+        {"--set material.density='-35 kg/m3'", {"material.density", "-35 kg m-3", "at least 0.001"}},
+        {"--set material.density='35 kg'", {"material.density", "is a mass", "expected a density"}},
+        {"--set material.density='1e9 kg/m3'", {"material.density", "1e+09", "at most 100000"}},
+        {"--set material.E='0 MPa'", {"material.E", "0 Pa", "at least 1 Pa"}},
+        {"--set material.E='-1 MPa'", {"material.E", "-1e+06 Pa", "at least 1 Pa"}},
+        {"--set material.E='0.4 N'", {"material.E", "0.4 N", "expected a pressure"}},
+        {"--set material.HU=0", {"material.HU", "0 is out of bounds", "at least 1e-06"}},
+        {"--set material.HU=1.5", {"material.HU", "1.5", "at most 1"}},
+        {"--set material.SHAPE=-1", {"material.SHAPE", "-1", "at least 0.001"}},
+        {"--set material.DAMP=-0.1", {"material.DAMP", "-0.1", "at least 0"}},
+        {"--set material.ED='-1 MPa'", {"material.ED", "-1e+06 Pa", "at least 0 Pa"}},
+        {"--set material.BETA1='0 1/s'", {"material.BETA1", "0 s-1", "at least 1e-06"}},
+        {"--set material.BETA1='5 ms'", {"material.BETA1", "is a time", "expected a rate"}},
+        {"--set material.eta='-1 Pa s'", {"material.eta", "-1 Pa s", "at least 0 Pa s"}},
+        {"--set material.tension_cutoff='0 Pa'", {"material.tension_cutoff", "0 Pa", "greater than 0 Pa"}},
+        {"--set material.densification.start=2.0", {"material.densification.start", "2 is", "at most 0.999"}},
+        {"--set material.densification.start=0.99", {"material.densification.start", "0.99", "the end of"}},
+        {"--set missile.direction='[0.0, 0.0, 1.0]'", {"missile.direction", "[0, 0, 1]", "must be negative"}},
+        {"--set missile.direction='[0.0, 0.0, 0.0]'", {"missile.direction", "[0, 0, 0]", "must be negative"}},
+        {"--set missile.direction='[0.0, -1.0]'", {"missile.direction", "three plain numbers"}},
+        {"--set missile.friction=-1", {"missile.friction", "-1", "at least 0"}},
+        {"--set missile.gravity='9.81 g'", {"missile.gravity", "9.81 g", "gram"}},
+        {"--set missile.gap='-1 mm'", {"missile.gap", "-0.001 m", "at least 0 m"}},
+        {"--set missile.gap='1 m'", {"missile.gap", "1 m away", "never reaches"}},
+        {"--set kernel.support_ratio=1.0", {"kernel.support_ratio", "1 is", "greater than 1"}},
+        {"--set kernel.support_ratio=9.0", {"kernel.support_ratio", "9 is", "at most 4"}},
+        {"--set kernel.condition_limit=1.0", {"kernel.condition_limit", "1 is", "at least 10"}},
+        {"--set kernel.stabilisation=-1.0", {"kernel.stabilisation", "-1", "at least 0"}},
+        {"--set solver.end_time='0 ms'", {"solver.end_time", "0 s", "at least 1e-09 s"}},
+        {"--set solver.end_time='10 us'", {"solver.end_time", "1e-05 s", "3 times solver.step_limit"}},
+        {"--set solver.end_time='5 mm'", {"solver.end_time", "is a length", "expected a time"}},
+        {"--set solver.step_safety=1.5", {"solver.step_safety", "1.5", "at most 1"}},
+        {"--set solver.step_limit='1 ms'", {"solver.step_limit", "0.001 s", "at most 2e-05 s"}},
+        {"--set solver.energy_limit=2.0", {"solver.energy_limit", "2 is", "at most 1"}},
+        {"--set output.frame_interval='0 ms'", {"output.frame_interval", "0 s", "at least 1e-09 s"}},
+        {"--set output.frame_interval='1 ns'", {"output.frame_interval", "4e+07 frames", "at most 100000"}},
+        {"--set output.times='[\"-1 ms\"]'", {"output.times", "-0.001 s", "at least 0 s"}},
+        {"--set output.times='[\"5 kg\"]'", {"output.times", "is a mass", "expected a time"}},
+        {"--set pad.fixed='[]'", {"pad.fixed", "at least one surface must hold the pad"}},
+        {"--set geometry.length_unit=kg", {"geometry.length_unit", "kg", "unit of length"}},
+    };
+    REFUSE_ALL(*state, "pre", "good.cfg -o model.h5 --force", rows);
+}
+
+static void curves_and_motions(void **state) {
+    static const nonsense rows[] = {
+        {"--set material.curve=files/falls.csv", {"falls.csv:4", "stress 10", "the one before it (20)"}},
+        {"--set material.curve=files/stops.csv", {"stops.csv", "0.08", "at least 0.2"}},
+        {"--set material.curve=files/two.csv", {"two.csv", "2 points", "at least 4"}},
+        {"--set material.curve=files/nan.csv", {"nan.csv:3", "\"nan\"", "not finite"}},
+        {"--set material.curve=files/inf.csv", {"inf.csv:3", "\"1e999\"", "not finite"}},
+        {"--set material.curve=files/through.csv", {"through.csv:5", "strain 1.2", "below 1"}},
+        {"--set material.curve=files/preload.csv", {"preload.csv:2", "stress 7", "(0, 0)"}},
+        {"--set material.curve=files/zero.csv", {"zero.csv", "zero everywhere"}},
+        {"--set material.curve=files/force.csv", {"force.csv:1", "stress_Pa"}},
+        {"--set material.curve=files", {"files", "not a plain file"}},
+        {"--set missile.motion=files/fast.csv", {"fast.csv:3", "900 m/s", "at most 200 m/s"}},
+        {"--set missile.motion=files/back.csv", {"back.csv:4", "time 4", "the one before it (5)"}},
+        {"--set missile.motion=files/late.csv", {"late.csv:2", "displacement 3", "(0, 0)"}},
+    };
+    REFUSE_ALL(*state, "pre", "good.cfg -o model.h5 --force", rows);
+}
+
+static void geometries(void **state) {
+    static const nonsense rows[] = {
+        {"--set geometry.parameters.thickness=0.0", {"pad.geo", "thickness", "must be positive"}},
+        {"--set geometry.parameters.thickness=-50.0", {"pad.geo", "thickness", "must be positive"}},
+        {"--set geometry.parameters.fine_spacing=0.0", {"pad.geo", "fine_spacing", "must be positive"}},
+        {"--set geometry.parameters.fine_spacing=0.1", {"pad.geo", "a spacing of 0.1", "GB are available"}},
+        {"--set geometry.length_unit=nm",
+         {"pad is 5e-08 m thick", "1e-06 to 1000 m", "geometry.length_unit"}},
+        {"--set missile.mass='1 mg'", {"missile.mass", "1e-06 kg", "the heaviest node"}},
+        {"--set geometry.parameters.quarter=0 --set missile.shape=surface",
+         {"cut open", "x = 0 mm", "whole pad"}},
+        {"--set pad.fixed='[\"floor\"]'", {"pad.fixed", "\"floor\"", "\"base\""}},
+        {"--set pad.fixed='[\"top\", \"base\"]'", {"pad.contact", "every node", "\"top\""}},
+        {"--set geometry.file=files/pad.txt --set geometry.parameters='{}'", {"pad.txt", "must end in .geo"}},
+        {"--set geometry.file=files/run.geo --set geometry.parameters='{}'", {"run.geo:1", "\"SystemCall\""}},
+        {"--set geometry.file=files/save.geo --set geometry.parameters='{}'", {"save.geo:1", "\"Save\""}},
+        {"--set geometry.file=files/print.geo --set geometry.parameters='{}'", {"print.geo:1", "\"Printf\""}},
+        {"--set geometry.file=files/include.geo --set geometry.parameters='{}'",
+         {"include.geo:1", "plain text"}},
+        {"--set geometry.file=files/run.msh --set geometry.parameters='{}'", {"run.msh", "$MeshFormat"}},
+        {"--set geometry.file=files/bomb.msh --set geometry.parameters='{}'", {"bomb.msh"}},
+    };
+    char before[512];
+    snprintf(before, sizeof before, "good.cfg -o model.h5 --force %s", program_coarse(20));
+    setenv("SOFTFALL_MEMORY_MB", "2000", 1); /* the same answers on a machine with any memory */
+    REFUSE_ALL(*state, "pre", before, rows);
+    unsetenv("SOFTFALL_MEMORY_MB");
+}
+
+static void command_lines_and_files(void **state) {
+    static const nonsense pre[] = {
+        {"good.cfg -o model.h5", {"model.h5 exists", "--force"}},
+        {"none.cfg -o new.h5", {"none.cfg", "No such file"}},
+        {"model.h5 -o new.h5", {"model.h5:", "zero byte"}},
+    };
+    static const nonsense solve[] = {
+        {"model.h5 -o results.h5", {"results.h5 exists", "--force"}},
+        {"none.h5 -o new.h5", {"none.h5", "No such file"}},
+        {"out -o new.h5", {"out is not a plain file"}},
+        {"good.cfg -o new.h5", {"good.cfg is not an HDF5 file"}},
+        {"results.h5 -o new.h5", {"results.h5 is a softfall-results file", "expected a softfall-model"}},
+        {"model.h5 -o none/below/new.h5", {"none/below/new.h5", "No such file"}},
+    };
+    static const nonsense post[] = {
+        {"results.h5 -o out", {"out already holds", "--force"}},
+        {"results.h5 -o new --filter 77", {"--filter 77", "60, 180, 600 and 1000"}},
+        {"results.h5 -o new --filter nan", {"--filter nan", "60, 180, 600 and 1000"}},
+        {"results.h5 -o new --reference files/short.csv", {"short.csv", "2 points", "at least 3"}},
+        {"results.h5 -o new --reference files/hole.csv", {"hole.csv:3", "\"nan\"", "not a number"}},
+        {"results.h5 -o new --reference files/order.csv", {"order.csv:4", "1 ms", "does not follow 2 ms"}},
+        {"results.h5 -o new --shift inf --reference files/hole.csv", {"--shift inf", "not a time"}},
+        {"model.h5 -o new", {"model.h5 is a softfall-model file", "expected a softfall-results"}},
+        {"results.h5 -o good.cfg --force", {"good.cfg exists and is not a directory"}},
+    };
+    REFUSE_ALL(*state, "pre", "", pre);
+    REFUSE_ALL(*state, "solve", "", solve);
+    REFUSE_ALL(*state, "post", "", post);
+}
+
+static void campaigns(void **state) {
+    static const nonsense cfh[] = {
+        {"--height '3 kg'", {"--height", "is a mass", "expected a length"}},
+        {"--height '-1 m'", {"--height", "-1 m", "between 1 cm and 100 m"}},
+        {"--max-height '1 km'", {"--max-height", "1 km", "between 1 cm and 100 m"}},
+        {"--limit-g nan", {"--limit-g nan", "not a positive number"}},
+        {"--limit-hic -3", {"--limit-hic -3", "not a positive number"}},
+        {"--heights '1 m'", {"--heights", "1 heights", "at least"}},
+        {"--set missile.velocity='3 m/s'", {"missile.velocity", "the drop height decides the speed"}},
+        {"--rig files/rig.csv", {"rig.csv", "9 m/s from 1 m", "faster than free fall"}},
+        {"--material files/none.cfg", {"files/none.cfg", "No such file"}},
+    };
+    static const nonsense fit[] = {
+        {"files/minus.cfg", {"minus.cfg:1", "a_max_g is -3", "0.001 to 100000"}},
+        {"files/nomaterial.cfg", {"nomaterial.cfg:1", "none.cfg", "No such file"}},
+        {"files/nothing.cfg", {"nothing.cfg:1", "no a_max_g, no HIC and no curve"}},
+        {"files/outside.cfg",
+         {"outside.cfg:1", "\"../f\"", "no slashes"}}, /* would leave the output directory */
+        {"files/absent.cfg", {"absent.cfg", "No such file"}},
+    };
+    REFUSE_ALL(*state, "cfh", "good.cfg -o new", cfh);
+    REFUSE_ALL(*state, "fit", "drop -o new", fit);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(values_of_a_case), cmocka_unit_test(curves_and_motions),
+        cmocka_unit_test(geometries),       cmocka_unit_test(command_lines_and_files),
+        cmocka_unit_test(campaigns),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

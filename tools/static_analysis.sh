@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# gcc -fanalyzer, clang-tidy (.clang-tidy) and cppcheck over src/. Prints every finding that tools/static_analysis.txt does
+# not explain, and fails if there is one.   tools/static_analysis.sh [BUILD] [TOOL...]
+# BUILD (default build) is a configured folder; TOOLs: gcc, clang-tidy, cppcheck (default: all).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+build=${1:-build}
+shift || true
+tools=("${@:-gcc clang-tidy cppcheck}")
+[ -f "$build/compile_commands.json" ] || {
+    echo "static_analysis.sh: $build is not a configured build folder" >&2
+    exit 2
+}
+raw=$(mktemp)
+trap 'rm -f "$raw"' EXIT
+
+# Findings as "tool file class", one a line, whatever the line number.
+run_gcc() {
+    local file
+    for file in src/*/*.c; do
+        # shellcheck disable=SC2046 # words are wanted
+        gcc -std=c17 -O2 -D_GNU_SOURCE -Isrc -I"$build/generated" $(pkg-config --cflags hdf5 gsl libconfig) \
+            -I/usr/include/suitesparse -fopenmp -fanalyzer -c "$file" -o /dev/null
+    done 2>&1 | sed -nE 's/^([^ :]+):[0-9]+:[0-9]+: warning: .*\[-W(analyzer-[a-z-]+)\]$/gcc \1 \2/p'
+}
+
+run_clang-tidy() {
+    clang-tidy -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option src/*/*.c 2>/dev/null |
+        sed -nE "s|^$PWD/([^ :]+):[0-9]+:[0-9]+: warning: .*\[([a-zA-Z.,-]+)\]\$|clang-tidy \1 \2|p"
+}
+
+run_cppcheck() {
+    cppcheck --std=c11 --language=c --enable=warning,performance,portability -D_GNU_SOURCE -I src -I "$build/generated" -q \
+        --template='cppcheck {file} {id}' src 2>&1 | grep '^cppcheck ' || true
+}
+
+for tool in ${tools[*]}; do
+    "run_$tool" >>"$raw"
+done
+explained=$(grep -v '^#' tools/static_analysis.txt | cut -d' ' -f1-3 | sort -u)
+unexplained=$(sort -u "$raw" | comm -23 - <(printf '%s\n' "$explained"))
+printf '%d kinds of findings, %d not explained\n' "$(sort -u "$raw" | wc -l)" "$(printf '%s' "$unexplained" | grep -c . || true)"
+[ -z "$unexplained" ] || {
+    printf '%s\n' "$unexplained"
+    exit 1
+}
