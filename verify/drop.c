@@ -2,6 +2,7 @@
 #include "drop.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,16 +63,20 @@ sf_status sf_drop_run(const char *example, const char *const *overrides, int thr
     const char *bin = getenv("SF_BIN_DIR"), *source = getenv("SF_SOURCE_DIR"), *temporary = getenv("TMPDIR");
     char folder[512], file[1024], command[8192];
     size_t length = strlen(example);
+    bool is_file = length > 4 && strcmp(example + length - 4, ".cfg") == 0;
     if (!bin || !source)
         return SF_FAIL(err, SF_ERR_INPUT, "SF_BIN_DIR and SF_SOURCE_DIR must be set");
     snprintf(folder, sizeof folder, "%s/softfall-drop-XXXXXX", temporary && *temporary ? temporary : "/tmp");
     if (!mkdtemp(folder))
         return SF_FAIL(err, SF_ERR_IO, "no temporary folder %s", folder);
-    if (length > 4 && strcmp(example + length - 4, ".cfg") == 0)
+    if (is_file)
         snprintf(file, sizeof file, "%s", example);
     else
         snprintf(file, sizeof file, "%s/examples/%s/case.cfg", source, example);
     int used = snprintf(command, sizeof command, "'%s/softfall-pre' '%s' -o '%s/m.h5'", bin, file, folder);
+    if (!is_file)
+        used += snprintf(command + used, sizeof command - (size_t)used,
+                         " --set 'material=@%s/verify/materials/eva_like.cfg'", source);
     for (int k = 0; overrides && overrides[k]; k++)
         used += snprintf(command + used, sizeof command - (size_t)used, " --set '%s'", overrides[k]);
     snprintf(command + used, sizeof command - (size_t)used, " > '%s/log' 2>&1", folder);

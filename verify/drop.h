@@ -11,7 +11,8 @@ typedef struct sf_drop {
     double constraint_residual_m_s, nodes, steps, wall_s;
 } sf_drop;
 
-/* Runs examples/<example>/case.cfg, or the case file `example` itself when it ends in ".cfg", with `overrides` (a list of
+/* Runs examples/<example>/case.cfg with the foam of verify/materials/eva_like.cfg, or the case file `example` itself when it
+ * ends in ".cfg", with `overrides` (a list of
  * "key=value" ended by NULL, or NULL) on `threads` threads. Files go to a temporary folder that is removed, except that
  * results.h5 is moved to `keep` when that is not NULL. */
 sf_status sf_drop_run(const char *example, const char *const *overrides, int threads, const char *keep, sf_drop *out,

@@ -29,7 +29,7 @@ static double depth_of(int k) {
 static double distance_from_eva(const sf_ogden *law, sf_error *err) {
     char path[1024], line[1024];
     double worst = 0, strain, stress;
-    snprintf(path, sizeof path, "%s/verify/calculix/eva_like.csv", getenv("SF_SOURCE_DIR"));
+    snprintf(path, sizeof path, "%s/verify/materials/eva_like.csv", getenv("SF_SOURCE_DIR"));
     FILE *file = fopen(path, "r");
     if (!file)
         SF_FAIL(err, SF_ERR_IO, "%s is missing", path);
@@ -75,7 +75,7 @@ static void study_law(sf_study *s, const sf_indentation *in) {
                   "stretches: CalculiX as "
                   "`*HYPERFOAM` with ν = 0, softfall as a table of its compression branch. Two terms, μ = "
                   "%.1f and %.1f kPa, "
-                  "α = %g and %g, follow the EVA-like curve of verify/calculix/eva_like.csv between 10 and "
+                  "α = %g and %g, follow the EVA-like curve of verify/materials/eva_like.csv between 10 and "
                   "85 %% strain (the knee below "
                   "is given up). "
                   "In tension softfall has the straight line E (λ − 1) with E = 2 Σ μ = %.1f kPa; the law "

@@ -93,7 +93,8 @@ int main(int argc, char **argv) {
         return sf_study_end(&study);
     }
     sf_study_text(&study,
-                  "One change at a time; the example as it stands gives a_max %.3f g, HIC %.2f, largest "
+                  "One change at a time; foam of verify/materials/eva_like.cfg. Without a change a_max %.3f "
+                  "g, HIC %.2f, largest "
                   "local strain %.4f, rebound "
                   "%.3f m/s in %.0f steps.\n\n| change | a_max (%%) | HIC (%%) | largest local strain | "
                   "rebound (%%) | steps "

@@ -101,8 +101,23 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
 
 enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE };
 
-/* What stands at a path. Links of names, soft ones and those into other files, are found but never followed:
- * a file speaks of itself only. */
+/* Does the link stand for the object of the same path in a file of the folder that belongs to this file while
+ * its run goes on (FILE.run, docs/formats.md)? */
+static bool is_own_link(const sf_h5 *file, const char *path, size_t size) {
+    char value[1024], folder[512];
+    const char *slash = strrchr(file->path, '/'), *target = NULL, *object = NULL;
+    unsigned flags;
+    int length = snprintf(folder, sizeof folder, "%s.run/", slash ? slash + 1 : file->path);
+    if (size > sizeof value || (size_t)length >= sizeof folder ||
+        H5Lget_val(file->id, path, value, sizeof value, H5P_DEFAULT) < 0 ||
+        H5Lunpack_elink_val(value, size, &flags, &target, &object) < 0)
+        return false;
+    return strncmp(target, folder, (size_t)length) == 0 && !strchr(target + length, '/') &&
+           strcmp(object, path) == 0;
+}
+
+/* What stands at a path. Soft links and those into other files are found but not followed, but for a file's
+ * own: a file speaks of itself only. */
 static int find_link(const sf_h5 *file, const char *path) {
     char part[512];
     size_t length = strlen(path);
@@ -120,8 +135,11 @@ static int find_link(const sf_h5 *file, const char *path) {
         if (H5Lexists(file->id, part, H5P_DEFAULT) <= 0 ||
             H5Lget_info(file->id, part, &info, H5P_DEFAULT) < 0)
             return LINK_NONE;
-        if (info.type != H5L_TYPE_HARD)
+        if (info.type != H5L_TYPE_HARD &&
+            !(info.type == H5L_TYPE_EXTERNAL && is_own_link(file, part, info.u.val_size)))
             return LINK_ELSEWHERE;
+        if (info.type == H5L_TYPE_EXTERNAL && H5Oexists_by_name(file->id, part, H5P_DEFAULT) <= 0)
+            return LINK_NONE;
     }
     return LINK_HARD;
 }
@@ -264,6 +282,15 @@ static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, s
     return SF_OK;
 }
 
+/* Bytes of the file that holds an open object. */
+static uint64_t size_of_file(hid_t object) {
+    hid_t owner = H5Iget_file_id(object);
+    hsize_t size = 0;
+    H5Fget_filesize(owner, &size);
+    H5Fclose(owner);
+    return size;
+}
+
 /* Rank and extents of an open dataset against what the caller expects; fills dims and the number of items.
  * A header may claim any extent: the items must be stored, and within the size of the file. */
 static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, size_t item_size, int rank,
@@ -289,11 +316,12 @@ static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, siz
         dims[k] = (int64_t)extent[k];
     }
     hsize_t stored = H5Dget_storage_size(set);
-    if (overflow || (*count > 0 && (bytes > stored || bytes > file->size)))
+    uint64_t size = size_of_file(set);
+    if (overflow || (*count > 0 && (bytes > stored || bytes > size)))
         return SF_FAIL(err, SF_ERR_IO,
                        "%s: %s claims %llu%s bytes, of which %llu are stored in a file of %llu", file->path,
                        path, (unsigned long long)bytes, overflow ? " (and more)" : "",
-                       (unsigned long long)stored, (unsigned long long)file->size);
+                       (unsigned long long)stored, (unsigned long long)size);
     return SF_OK;
 }
 
@@ -354,7 +382,8 @@ sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_e
     if (open_dataset(file, path, &set, err) != SF_OK)
         return err->status;
     hid_t type = H5Dget_type(set), space = H5Dget_space(set);
-    char *buffer = check_storage(file, path, set, err) == SF_OK ? text_buffer(type, space, file->size) : NULL;
+    char *buffer =
+        check_storage(file, path, set, err) == SF_OK ? text_buffer(type, space, size_of_file(set)) : NULL;
     if (!buffer || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0) {
         free(buffer);
         SF_FAIL(err, SF_ERR_IO, "%s: %s is not a readable text", file->path, path);
@@ -434,13 +463,51 @@ sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const c
     return err->status;
 }
 
+/* One plain dataset with its two attributes. */
+static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf_h5 *to, sf_error *err) {
+    char units[128], description[512];
+    hid_t type = H5Dget_type(set), space = H5Dget_space(set), made = -1;
+    hssize_t items = H5Sget_simple_extent_npoints(space);
+    size_t size = H5Tget_size(type);
+    void *data = NULL;
+    if (check_storage(from, path, set, err) == SF_OK &&
+        sf_h5_get_attribute(from, path, "units", units, sizeof units, err) == SF_OK &&
+        sf_h5_get_attribute(from, path, "description", description, sizeof description, err) == SF_OK &&
+        (items < 0 || size == 0 || (uint64_t)items > size_of_file(set) / size))
+        SF_FAIL(err, SF_ERR_IO, "%s: %s claims more than its file can hold", from->path, path);
+    if (err->status == SF_OK)
+        data = sf_alloc(err, (unsigned long)items, size, path);
+    if (data && items > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+        SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", from->path, path);
+    sf_h5_info info = {path, units, description};
+    if (err->status == SF_OK && create_dataset(to, &info, type, space, &made, err) == SF_OK && items > 0 &&
+        H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+        SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);
+    if (made >= 0)
+        H5Dclose(made);
+    free(data);
+    H5Sclose(space);
+    H5Tclose(type);
+    return err->status;
+}
+
+/* Not by H5Ocopy, which crashes when the disk is full (HDF5 1.10). */
 sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *err) {
-    hid_t links = make_groups();
-    herr_t result = H5Ocopy(from->id, path, to->id, path, H5P_DEFAULT, links);
-    H5Pclose(links);
-    if (result < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s of %s cannot be copied to %s", path, from->path, to->path);
-    return SF_OK;
+    int64_t members = sf_h5_group_size(from, path);
+    hid_t set = -1;
+    for (int64_t k = 0; k < members && err->status == SF_OK; k++) {
+        char name[128], member[512];
+        if (sf_h5_group_member(from, path, k, name, sizeof name, err) != SF_OK)
+            break;
+        if ((size_t)snprintf(member, sizeof member, "%s/%s", path, name) >= sizeof member)
+            return SF_FAIL(err, SF_ERR_IO, "%s: %s lies too deep", from->path, path);
+        sf_h5_copy(from, member, to, err);
+    }
+    if (members >= 0 || open_dataset(from, path, &set, err) != SF_OK)
+        return err->status;
+    copy_dataset(from, path, set, to, err);
+    H5Dclose(set);
+    return err->status;
 }
 
 sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error *err) {

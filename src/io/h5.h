@@ -28,8 +28,8 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
 /* Closes; `*file` may be NULL and is NULL afterwards. Reports a failed final write. */
 sf_status sf_h5_close(sf_h5 **file, sf_error *err);
 
-/* True if a group or dataset of this path exists in the file itself: soft and external links do not count, as
- * they are never followed. */
+/* True if a group or dataset of this path exists in the file itself, or by a link of sf_h5_link into the
+ * folder of its run (FILE.run); other soft and external links do not count and are never followed. */
 bool sf_h5_exists(const sf_h5 *file, const char *path);
 /* Number of members of a group (-1 if there is no such group, or more than its file can hold), and the name
  * of member `index` in name order.

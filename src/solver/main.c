@@ -255,7 +255,9 @@ static sf_status prepare_output(const options *o, sf_output *output, const sf_mo
                                 const sf_h5 *model_file, const sf_provenance *provenance, sf_error *err) {
     if (sf_output_open(output, o->restart != NULL, err) != SF_OK)
         return err->status;
-    return sf_output_base(output, model, model_file, provenance, err);
+    if (sf_output_base(output, model, model_file, provenance, err) != SF_OK && !o->restart)
+        sf_output_clear(output);
+    return err->status;
 }
 
 static sf_status solve(const options *o, const char *command, sf_error *err) {
@@ -321,9 +323,7 @@ int main(int argc, char **argv) {
         {"threads", 't', "N", 0, "OpenMP threads (default: all processors, or OMP_NUM_THREADS)", 0},
         {"force", 'f', 0, 0, "replace an existing results file", 0},
         {"restart", RESTART, "RESULTS", 0,
-         "go on with RESULTS from its checkpoint RESULTS.restart, to the same bits as in one run; MODEL only "
-         "if it "
-         "has been moved",
+         "go on with RESULTS from RESULTS.restart, with the bits of one run; MODEL only if it has been moved",
          0},
         {"end-time", END_TIME, "TIME", 0, "another end of the simulated time, such as \"40 ms\"", 0},
         {"checkpoint-every", CHECKPOINT_EVERY, "TIME", 0, "wall time between checkpoints (default: 60 s)", 0},
@@ -331,9 +331,8 @@ int main(int argc, char **argv) {
          0},
         {"no-checkpoint", NO_CHECKPOINT, 0, 0, "write no checkpoints, not even at the end", 0},
         {"on-failure", ON_FAILURE, "keep|remove", 0,
-         "after a numerical failure, keep the results with the frame of the failure and a checkpoint of the "
-         "last "
-         "step that held (default), or remove all",
+         "after a numerical failure, keep results and a checkpoint of the last step that held (default), or "
+         "remove all",
          0},
         {0},
     };
