@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/space_mapping.h"
 
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multifit_nlinear.h>
 #include <math.h>
@@ -162,6 +163,11 @@ static int collect_information(const sf_mapping_problem *p, const double *jacobi
     return data;
 }
 
+/* Do the residuals contradict the stated standard deviations (chi-squared, 5 %)? */
+static bool is_misfit(const sf_mapping_result *r) {
+    return r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
+}
+
 /* Covariance with the stated standard deviations of the data, or with those times the scale that the misfit
  * shows; degrees of freedom: data less trace(J C J^T). */
 static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_result *r, sf_error *err) {
@@ -175,7 +181,7 @@ static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_r
             for (size_t k = 0; k < n; k++)
                 effective += gsl_matrix_get(a, j, k) * gsl_matrix_get(c, k, j);
         r->freedom = data - effective;
-        r->scale = scaled && r->freedom > 0.5 ? fmax(1, sqrt(r->misfit / r->freedom)) : 1;
+        r->scale = scaled && is_misfit(r) ? sqrt(r->misfit / r->freedom) : 1;
         invert_information(p, a, r->scale, c);
         for (size_t j = 0; j < n; j++)
             for (size_t k = 0; k < n; k++)

@@ -46,8 +46,8 @@ typedef struct sf_mapping_result {
     double misfit;    /* sum over the data of ((y - measured) / sd)^2 */
     double objective; /* misfit and prior */
     double freedom;   /* number of data less the effective number of parameters that they determine */
-    double scale;     /* factor on the standard deviations that is in `covariance`: sqrt(misfit / freedom), at
-                         least 1 */
+    double scale;     /* factor on the data's standard deviations in `covariance`: sqrt(misfit / freedom) if
+                         chi-squared     contradicts them (5 %), else 1 */
     int iterations;
     bool converged;
 } sf_mapping_result;
