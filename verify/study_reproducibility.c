@@ -141,10 +141,10 @@ static void check_mesh_hash(sf_study *study, const char *results) {
 }
 
 int main(int argc, char **argv) {
-    static const char *const units[] = {"missile.mass=4600 g",           "missile.velocity=450 cm/s",
-                                        "material.density=0.035 g/cm3",  "material.E=413.6 kPa",
-                                        "material.ED=42.9059383111 bar", "solver.end_time=0.04 s",
-                                        "solver.step_limit=0.02 ms",     NULL};
+    static const char *const units[] = {"missile.mass=4600 g",          "missile.velocity=450 cm/s",
+                                        "material.density=0.035 g/cm3", "material.E=413.6 kPa",
+                                        "material.ED=34.3 bar",         "solver.end_time=0.04 s",
+                                        "solver.step_limit=0.02 ms",    NULL};
     sf_study study;
     sf_error err = SF_ERROR_INIT;
     sf_drop drop;
