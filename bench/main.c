@@ -2,6 +2,7 @@
 /* softfall-bench: steps of the 50 mm, 4.5 m/s drop at several spacings, without files, and how far they are
  * from what the machine can do. Writes JSON; docs/performance.md explains it. */
 #include "build_info.h"
+#include "io/model_io.h"
 #include "machine.h"
 #include "post/json.h"
 #include "pre/build.h"
@@ -12,6 +13,7 @@
 
 #include <argp.h>
 #include <malloc.h>
+#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,18 +26,18 @@ static const char *const phase_name[SF_PHASES] = {"stress",  "stabilisation", "f
                                                   "contact", "constraint",    "motion"};
 
 typedef struct options {
-    const char *source, *output;
+    const char *source, *model, *output;
     double spacing[MOST], end_time;
-    int spacings, thread[MOST], threads;
+    int spacings, thread[MOST], threads, repeats;
     bool quarter, full;
 } options;
 
-/* Times of the phases in every step. */
+/* Times of the phases in every step, of one run or the shortest of several: each repeats the same steps bit
+ * by bit, so that what differs is what else the machine did. */
 typedef struct record {
     int64_t steps, room;
     double (*phase)[SF_PHASES]; /* [room] s, owned */
-    bool *measured;             /* [room] with Lanczos products; owned */
-    double wall;                /* s */
+    double wall;                /* s, of the fastest run */
     double dt_sum;
 } record;
 
@@ -73,7 +75,7 @@ static int parse_list(const char *text, double *out) {
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
     options *o = state->input;
-    double list[MOST];
+    double list[MOST] = {0};
     switch (key) {
     case 'o':
         o->output = arg;
@@ -87,6 +89,14 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
             argp_error(state, "--threads takes up to %d numbers, not \"%s\"", MOST, arg);
         for (int k = 0; k < o->threads; k++)
             o->thread[k] = (int)list[k];
+        return 0;
+    case 'm':
+        o->model = arg;
+        return 0;
+    case 'r':
+        if (parse_list(arg, list) != 1 || list[0] < 1)
+            argp_error(state, "--repeats takes a number from 1, not \"%s\"", arg);
+        o->repeats = (int)list[0];
         return 0;
     case 'e':
         if (parse_list(arg, &o->end_time) != 1)
@@ -104,8 +114,8 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
         o->source = arg;
         return 0;
     case ARGP_KEY_END:
-        if (!o->source)
-            argp_error(state, "usage: softfall-bench SOURCE-FOLDER [-o bench.json]");
+        if (!o->source == !o->model)
+            argp_error(state, "usage: softfall-bench SOURCE-FOLDER|--model model.h5 [-o bench.json]");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -140,43 +150,36 @@ static sf_status build(const options *o, double spacing, bool full, sf_model *mo
 
 static void free_record(record *r) {
     free(r->phase);
-    free(r->measured);
     memset(r, 0, sizeof *r);
 }
 
-static sf_status keep_step(record *r, const sf_stopwatch *watch, bool measured, sf_error *err) {
+static sf_status keep_step(record *r, const sf_stopwatch *watch, sf_error *err) {
     if (r->steps == r->room) {
         int64_t room = r->room ? 2 * r->room : 1024;
         double(*phase)[SF_PHASES] = sf_alloc(err, (unsigned long)room, sizeof *phase, "times");
-        bool *flags = sf_alloc(err, (unsigned long)room, sizeof *flags, "times");
-        if (err->status == SF_OK && r->steps > 0) {
-            memcpy(phase, r->phase, (size_t)r->steps * sizeof *phase);
-            memcpy(flags, r->measured, (size_t)r->steps * sizeof *flags);
-        }
-        free(r->phase);
-        free(r->measured);
-        r->phase = phase;
-        r->measured = flags;
-        r->room = room;
-        if (err->status != SF_OK)
+        if (!phase)
             return err->status;
+        if (r->steps > 0)
+            memcpy(phase, r->phase, (size_t)r->steps * sizeof *phase);
+        free(r->phase);
+        r->phase = phase;
+        r->room = room;
     }
-    memcpy(r->phase[r->steps], watch->seconds, sizeof watch->seconds);
-    r->measured[r->steps++] = measured;
+    memcpy(r->phase[r->steps++], watch->seconds, sizeof watch->seconds);
     return SF_OK;
 }
 
-static sf_status run_steps(const sf_model *m, const sf_operators *op, sf_state *s, record *r, sf_error *err) {
+static sf_status run_steps(const sf_model *m, const sf_operators *op, double end_time, sf_state *s, record *r,
+                           sf_error *err) {
     double start = sf_clock();
     sf_stopwatch watch = {.mark = start};
     s->watch = &watch;
-    while (s->time < m->run.end_time) {
-        bool measured = sf_time_step_due(s);
+    while (s->time < end_time) {
         if (sf_step_evaluate(m, op, s, err) != SF_OK)
             return err->status;
         r->dt_sum += s->dt;
         sf_step_advance(m, s);
-        if (keep_step(r, &watch, measured, err) != SF_OK)
+        if (keep_step(r, &watch, err) != SF_OK)
             return err->status;
         memset(watch.seconds, 0, sizeof watch.seconds);
     }
@@ -184,38 +187,28 @@ static sf_status run_steps(const sf_model *m, const sf_operators *op, sf_state *
     return SF_OK;
 }
 
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+/* Keeps of every phase of every step the shorter time. */
+static void keep_shortest(record *best, const record *r) {
+    best->wall = fmin(best->wall, r->wall);
+    for (int64_t k = 0; k < best->steps; k++)
+        for (int p = 0; p < SF_PHASES; p++)
+            best->phase[k][p] = fmin(best->phase[k][p], r->phase[k][p]);
 }
 
-/* Lower quartile of a phase's time over the steps with or without Lanczos products, times their number: what
- * the run would take if nothing else ran beside it. The first step has a long measurement of its own and
- * stays out. */
-static double quiet_seconds(const record *r, int phase, double *sorted) {
+/* The first step has a long measurement of its own and stays out. */
+static double quiet_seconds(const record *r, int phase) {
     double sum = 0;
-    for (int kind = 0; kind < 2; kind++) {
-        int64_t count = 0;
-        for (int64_t k = 1; k < r->steps; k++)
-            if (r->measured[k] == kind)
-                sorted[count++] = r->phase[k][phase];
-        qsort(sorted, (size_t)count, sizeof *sorted, ascending);
-        if (count > 0)
-            sum += sorted[count / 4] * (double)count;
-    }
+    for (int64_t k = 1; k < r->steps; k++)
+        sum += r->phase[k][phase];
     return sum;
 }
 
-static void write_phases(const record *r, const bench_traffic *t, double products, double *sorted,
-                         sf_json *json) {
+static void write_phases(const record *r, const bench_traffic *t, double products, sf_json *json) {
     double steps = (double)(r->steps - 1);
     sf_json_open(json, "phases", '{');
     for (int p = 0; p < SF_PHASES; p++) {
-        double sum = 0, quiet = quiet_seconds(r, p, sorted), extra = p == SF_PHASE_TIME_STEP ? products : 0;
-        for (int64_t k = 0; k < r->steps; k++)
-            sum += r->phase[k][p];
+        double quiet = quiet_seconds(r, p), extra = p == SF_PHASE_TIME_STEP ? products : 0;
         sf_json_open(json, phase_name[p], '{');
-        sf_json_number(json, "seconds", sum);
         sf_json_number(json, "quiet_seconds", quiet);
         sf_json_number(json, "bytes_per_second", (steps * t->bytes[p] + extra * t->product_bytes) / quiet);
         sf_json_number(json, "flops_per_second", (steps * t->flops[p] + extra * t->product_flops) / quiet);
@@ -224,25 +217,20 @@ static void write_phases(const record *r, const bench_traffic *t, double product
     sf_json_close(json, '}');
 }
 
-static sf_status write_run(const sf_model *m, const sf_operators *op, const sf_state *s, const record *r,
-                           double bandwidth, double peak, double held, sf_json *json, sf_error *err) {
-    double *sorted = sf_alloc(err, (unsigned long)r->steps, sizeof *sorted, "times");
-    if (!sorted)
-        return err->status;
+static void write_run(const sf_model *m, const sf_operators *op, const record *r, int64_t all_products,
+                      double bandwidth, double peak, double held, sf_json *json) {
     bench_traffic t = bench_count(m, op);
     double n = (double)m->node_count, steps = (double)(r->steps - 1), quiet = 0, bytes = 0, flops = 0;
-    double products = 0;
-    for (int64_t k = 1; k < r->steps; k++)
-        products += r->measured[k] * SF_POWER_BASIS;
+    double products = (double)(all_products - SF_POWER_FIRST);
     for (int p = 0; p < SF_PHASES; p++) {
-        quiet += quiet_seconds(r, p, sorted);
+        quiet += quiet_seconds(r, p);
         bytes += t.bytes[p] * steps;
         flops += t.flops[p] * steps;
     }
     bytes += products * t.product_bytes;
     flops += products * t.product_flops;
     sf_json_integer(json, "steps", r->steps);
-    sf_json_integer(json, "lanczos_products", s->power_iterations);
+    sf_json_integer(json, "lanczos_products", all_products);
     sf_json_number(json, "mean_step_s", r->dt_sum / (double)r->steps);
     sf_json_number(json, "wall_s", r->wall);
     sf_json_number(json, "node_steps_per_s", n * (double)r->steps / r->wall);
@@ -256,58 +244,96 @@ static sf_status write_run(const sf_model *m, const sf_operators *op, const sf_s
     sf_json_number(json, "fraction_of_bandwidth", bytes / quiet / bandwidth);
     sf_json_number(json, "peak_flops_per_s", peak);
     sf_json_number(json, "fraction_of_peak_flops", flops / quiet / peak);
-    write_phases(r, &t, products, sorted, json);
-    free(sorted);
-    return SF_OK;
+    write_phases(r, &t, products, json);
 }
 
-static sf_status run_one(const sf_model *m, const sf_operators *op, int threads, double before, sf_json *json,
-                         sf_error *err) {
-    sf_state state = {0};
-    record r = {0};
-    double bandwidth, peak, held;
-    omp_set_num_threads(threads);
-    peak = bench_peak_flops();
-    if (sf_state_create(m, &state, err) != SF_OK)
-        return err->status;
-    held = held_bytes() - before;
-    if (run_steps(m, op, &state, &r, err) == SF_OK && bench_bandwidth(&bandwidth, err) == SF_OK) {
-        sf_json_open(json, NULL, '{');
-        sf_json_integer(json, "threads", threads);
-        write_run(m, op, &state, &r, bandwidth, peak, held, json, err);
-        sf_json_close(json, '}');
+/* The drop from its start to `end_time`, `repeats` times. */
+static sf_status repeat_steps(const sf_model *m, const sf_operators *op, const options *o, record *best,
+                              int64_t *products, sf_error *err) {
+    double end_time = fmin(m->run.end_time, 1e-3 * o->end_time);
+    for (int k = 0; k < o->repeats && err->status == SF_OK; k++) {
+        sf_state state = {0};
+        record r = {0};
+        if (sf_state_create(m, &state, err) == SF_OK &&
+            run_steps(m, op, end_time, &state, &r, err) == SF_OK) {
+            *products = state.power_iterations;
+            if (k > 0)
+                keep_shortest(best, &r);
+            else {
+                *best = r;
+                r = (record){0};
+            }
+        }
+        free_record(&r);
+        sf_state_free(&state);
     }
-    free_record(&r);
-    sf_state_free(&state);
     return err->status;
 }
 
-static sf_status run_model(const options *o, double spacing, bool full, sf_json *json, sf_error *err) {
-    sf_model model = {0};
+static sf_status run_one(const sf_model *m, const sf_operators *op, const options *o, int threads,
+                         double held, sf_json *json, sf_error *err) {
+    record r = {0};
+    double bandwidth;
+    int64_t products = 0;
+    omp_set_num_threads(threads);
+    if (repeat_steps(m, op, o, &r, &products, err) == SF_OK && bench_bandwidth(&bandwidth, err) == SF_OK) {
+        sf_json_open(json, NULL, '{');
+        sf_json_integer(json, "threads", threads);
+        write_run(m, op, &r, products, bandwidth, bench_peak_flops(), held, json);
+        sf_json_close(json, '}');
+    }
+    free_record(&r);
+    return err->status;
+}
+
+/* Bytes of the state. */
+static double state_bytes(const sf_model *m) {
+    size_t count;
+    const sf_state_array *array = sf_state_arrays(&count);
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += array[k].bytes * (double)sf_state_rows(m, array[k].rows);
+    return sum;
+}
+
+/* Runs `model`, which it frees. */
+static sf_status run_model(const options *o, sf_model *model, double spacing, const char *part, sf_json *json,
+                           sf_error *err) {
     sf_operators operators = {0};
     struct rusage usage;
-    double before;
-    if (build(o, spacing, full, &model, err) != SF_OK)
-        return err->status;
-    sf_model_drop_mesh(&model);
-    before = held_bytes() - model_bytes(&model);
-    if (sf_operators_build(&model, &operators, err) == SF_OK) {
-        sf_model_drop_domain_nodes(&model);
+    sf_model_drop_mesh(model);
+    double before = held_bytes() - model_bytes(model);
+    if (sf_operators_build(model, &operators, err) == SF_OK) {
+        sf_model_drop_domain_nodes(model);
+        double held = held_bytes() - before + state_bytes(model);
         sf_json_open(json, NULL, '{');
         sf_json_number(json, "core_spacing_mm", spacing);
-        sf_json_text(json, "part", full ? "full" : "quarter");
-        sf_json_integer(json, "nodes", model.node_count);
-        sf_json_integer(json, "interactions", model.domain_nnz);
+        sf_json_text(json, "part", part);
+        sf_json_integer(json, "nodes", model->node_count);
+        sf_json_integer(json, "interactions", model->domain_nnz);
         sf_json_open(json, "runs", '[');
         for (int k = 0; k < o->threads && err->status == SF_OK; k++)
-            run_one(&model, &operators, o->thread[k], before, json, err);
+            run_one(model, &operators, o, o->thread[k], held, json, err);
         sf_json_close(json, ']');
         getrusage(RUSAGE_SELF, &usage); /* so far, with the meshing, the building and the triad */
         sf_json_number(json, "peak_memory_of_the_program_bytes", 1024.0 * (double)usage.ru_maxrss);
         sf_json_close(json, '}');
     }
     sf_operators_free(&operators);
-    sf_model_free(&model);
+    sf_model_free(model);
+    return err->status;
+}
+
+static sf_status run_models(const options *o, sf_json *json, sf_error *err) {
+    sf_model model = {0};
+    if (o->model)
+        return sf_model_read(o->model, &model, NULL, err) == SF_OK
+                   ? run_model(o, &model, NAN, "of the file", json, err)
+                   : err->status;
+    for (int k = 0; k < o->spacings; k++)
+        for (int full = o->quarter ? 0 : 1; full <= (o->full ? 1 : 0) && err->status == SF_OK; full++)
+            if (build(o, o->spacing[k], full, &model, err) == SF_OK)
+                run_model(o, &model, o->spacing[k], full ? "full" : "quarter", json, err);
     return err->status;
 }
 
@@ -321,9 +347,7 @@ static sf_status run_all(const options *o, sf_error *err) {
     sf_json_text(&json, "compiler", SF_COMPILER " " SF_COMPILER_FLAGS);
     sf_json_number(&json, "end_time_ms", o->end_time);
     sf_json_open(&json, "models", '[');
-    for (int k = 0; k < o->spacings; k++)
-        for (int full = o->quarter ? 0 : 1; full <= (o->full ? 1 : 0) && err->status == SF_OK; full++)
-            run_model(o, o->spacing[k], full, &json, err);
+    run_models(o, &json, err);
     sf_json_close(&json, ']');
     sf_json_close(&json, '}');
     fputc('\n', file);
@@ -338,13 +362,15 @@ int main(int argc, char **argv) {
         {"spacings", 's', "MM,...", 0, "core spacings in mm (default: 10,5,2.5)", 0},
         {"threads", 't', "N,...", 0, "numbers of threads (default: 1,2)", 0},
         {"end-time", 'e', "MS", 0, "end of every drop in ms (default: 6)", 0},
+        {"repeats", 'r', "N", 0, "times that every run is repeated (default: 3)", 0},
+        {"model", 'm', "FILE", 0, "this model instead of the 50 mm pad's", 0},
         {"quarter", 'q', 0, 0, "quarter models only", 0},
         {"full", 'f', 0, 0, "full models only", 0},
         {0},
     };
     static const struct argp argp = {.options = list,
                                      .parser = parse,
-                                     .args_doc = "SOURCE-FOLDER",
+                                     .args_doc = "[SOURCE-FOLDER]",
                                      .doc = "Times the steps of the 50 mm, 4.5 m/s drop and compares them "
                                             "with the machine's bandwidth and peak."};
     options o = {.spacing = {10, 5, 2.5},
@@ -352,6 +378,7 @@ int main(int argc, char **argv) {
                  .thread = {1, 2},
                  .threads = 2,
                  .end_time = 6,
+                 .repeats = 3,
                  .quarter = true,
                  .full = true};
     sf_error err = SF_ERROR_INIT;

@@ -21,13 +21,13 @@ typedef struct projection {
     double *force, *v, *reaction;
     double force_size, velocity_size;
     sf_constraint_step step;
+    double residual; /* m s-1, what the solver measures */
 } projection;
 
 static projection project(const fixture *f, uint64_t seed) {
     size_t n = 3 * (size_t)f->model.node_count;
-    sf_error err = SF_ERROR_INIT;
     projection p = {
-        calloc(n, sizeof(double)), calloc(n, sizeof(double)), calloc(n, sizeof(double)), 0, 0, {0}};
+        calloc(n, sizeof(double)), calloc(n, sizeof(double)), calloc(n, sizeof(double)), 0, 0, {0}, 0};
     assert_true(p.force && p.v && p.reaction);
     for (size_t k = 0; k < n; k++) {
         p.force[k] = f->model.mass[k / 3] * 1e5 * fixture_random(&seed);
@@ -36,8 +36,8 @@ static projection project(const fixture *f, uint64_t seed) {
         p.velocity_size = fmax(p.velocity_size, fabs(p.v[k]));
     }
     p.step = (sf_constraint_step){.force = p.force, .v = p.v, .dt = DT, .reaction = p.reaction};
-    if (sf_constraint_project(&f->model, &f->operators.constraint, &p.step, &err) != SF_OK)
-        fail_msg("%s", err.text);
+    sf_constraint_project(&f->model, &f->operators.constraint, &p.step);
+    p.residual = sf_constraint_residual(&f->model, &f->operators.constraint, &p.step);
     return p;
 }
 
@@ -118,8 +118,7 @@ static void held_velocity_is_zero_after_a_step_from_any_motion(void **state) {
     double residual = held_velocity(&f->model, p.v, &rows);
     assert_close(residual / p.velocity_size, 0, 1e-12);
     assert_true(rows > 500);
-    assert_close(p.step.residual / p.velocity_size, 0,
-                 1e-12); /* what the solver reports is of that size too */
+    assert_close(p.residual / p.velocity_size, 0, 1e-12); /* what the solver reports is of that size too */
     projection_free(&p);
 }
 
@@ -137,8 +136,8 @@ static void reported_residual_is_the_largest_held_velocity(void **state) {
         heavier.model.mass[i] = f->model.mass[i] * (2 + fixture_random(&seed));
     projection p = project(&heavier, 2);
     advance(&heavier, &p);
-    assert_true(p.step.residual > 1e-3 * p.velocity_size);
-    assert_relative(held_velocity(&f->model, p.v, &rows), p.step.residual, 1e-12);
+    assert_true(p.residual > 1e-3 * p.velocity_size);
+    assert_relative(held_velocity(&f->model, p.v, &rows), p.residual, 1e-12);
     projection_free(&p);
     free(heavier.model.mass);
 }
@@ -178,14 +177,13 @@ static void reactions_do_no_work_on_admissible_motion(void **state) {
 
 static void projecting_an_admissible_motion_again_changes_nothing(void **state) {
     const fixture *f = *state;
-    sf_error err = SF_ERROR_INIT;
     projection p = project(f, 6);
     double first = 0, second = 0;
     for (int64_t k = 0; k < 3 * f->model.node_count; k++)
         first = fmax(first, fabs(p.reaction[k]));
     advance(f, &p);
     memset(p.force, 0, 3 * (size_t)f->model.node_count * sizeof *p.force);
-    assert_int_equal(sf_constraint_project(&f->model, &f->operators.constraint, &p.step, &err), SF_OK);
+    sf_constraint_project(&f->model, &f->operators.constraint, &p.step);
     for (int64_t k = 0; k < 3 * f->model.node_count; k++)
         second = fmax(second, fabs(p.reaction[k]));
     assert_close(second / first, 0, 1e-12);

@@ -106,11 +106,9 @@ static void affine_field_gives_its_value_at_every_node(void **state) {
 static double relative_acceleration(fixture *f, const sf_constraint *constraint) {
     const sf_model *m = &f->model;
     sf_state *s = &f->state;
-    sf_error err = SF_ERROR_INIT;
     sf_constraint_step step = {.force = s->force, .v = s->v, .dt = 1e-5, .reaction = s->reaction};
     double free_motion = 0, held_motion = 0;
-    if (sf_constraint_project(m, constraint, &step, &err) != SF_OK)
-        fail_msg("%s", err.text);
+    sf_constraint_project(m, constraint, &step);
     for (int64_t k = 0; k < 3 * m->node_count; k++) {
         free_motion = fmax(free_motion, fabs(s->force[k]) / m->mass[k / 3]);
         held_motion = fmax(held_motion, fabs(s->force[k] - s->reaction[k]) / m->mass[k / 3]);

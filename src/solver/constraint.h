@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Essential boundary conditions on u_h by the transformation method, as an exact projection (Chen, Pan, Wu,
  * Liu 1996; theory, section "Constraints"): with G the rows phi(X_c) of the held nodes, (G M^-1 G^T) lambda =
- * G a* + (G v) / dt,    a = a* - M^-1 G^T lambda. Components held at the same nodes share one factor; the
- * factors are sparse LDL^T of CHOLMOD, made once. */
+ * G a* + (G v) / dt,    a = a* - M^-1 G^T lambda. Components held at the same nodes share one factor
+ * (solver/ldl.h), made once. */
 #ifndef SF_SOLVER_CONSTRAINT_H
 #define SF_SOLVER_CONSTRAINT_H
 
@@ -14,7 +14,6 @@ typedef struct sf_constraint_block sf_constraint_block;
 typedef struct sf_constraint {
     int block_count;
     sf_constraint_block *block[3]; /* owned */
-    void *common;                  /* cholmod_common, owned */
 } sf_constraint;
 
 sf_status sf_constraint_build(const sf_model *model, sf_constraint *constraint, sf_error *err);
@@ -28,10 +27,12 @@ typedef struct sf_constraint_step {
     double *reaction;    /* [n][3] N, out: G^T lambda; the acceleration is (force - reaction) / mass */
     double base[3];      /* N, out: force of the base on the pad */
     double all[3];       /* N, out: force of all constraints on the pad */
-    double residual;     /* m s-1, out: largest |G v| at the next half step */
 } sf_constraint_step;
 
-sf_status sf_constraint_project(const sf_model *model, const sf_constraint *constraint,
-                                sf_constraint_step *step, sf_error *err);
+void sf_constraint_project(const sf_model *model, const sf_constraint *constraint, sf_constraint_step *step);
+
+/* Largest |G v| at the next half step, m s-1, after a projection: only rounding errors are left. */
+double sf_constraint_residual(const sf_model *model, const sf_constraint *constraint,
+                              const sf_constraint_step *step);
 
 #endif

@@ -107,7 +107,7 @@ typedef struct sf_state {
     sf_missile missile;
     sf_ledger ledger;
     double base_reaction[3];    /* N, of the base on the pad */
-    double constraint_residual; /* m s-1, largest |G v| */
+    double constraint_residual; /* m s-1, largest |G v|, when last measured */
     double largest_compression; /* - */
     double smallest_jacobian;   /* - */
     int64_t jacobian_node;

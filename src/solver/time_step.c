@@ -7,7 +7,6 @@
 enum {
     POWER_INTERVAL = 25,         /* steps between measurements at most */
     POWER_PAUSE = 5,             /* and at least, when the bound moves */
-    POWER_FIRST = 80,            /* products of the first measurement */
     POWER_WARM = SF_POWER_BASIS, /* of the later ones */
 };
 static const double POWER_CHANGE =
@@ -201,7 +200,7 @@ void sf_time_step_choose(const sf_model *m, const sf_operators *op, sf_state *s)
     merge_bounds(s);
     if (due) {
         seed_mode(m, op, s);
-        double power = sf_time_step_power(m, op, s, s->step == 0 ? POWER_FIRST : POWER_WARM);
+        double power = sf_time_step_power(m, op, s, s->step == 0 ? SF_POWER_FIRST : POWER_WARM);
         double tightness = ceil(POWER_ROUNDING * POWER_MARGIN * power / s->bound_load) / POWER_ROUNDING;
         double change = s->tightness / tightness;
         s->tightness = tightness;

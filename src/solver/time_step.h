@@ -9,6 +9,8 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
+enum { SF_POWER_FIRST = 80 }; /* products of the first measurement; SF_POWER_BASIS of every later one */
+
 /* Is the frequency measured in this step? That needs state->directional. */
 bool sf_time_step_due(const sf_state *state);
 
