@@ -18,16 +18,48 @@ typedef struct contact_solve {
     double along;     /* N, sum of q . e over all points */
 } contact_solve;
 
+/* The list of near points is made of those within NEAR spacings of the missile, and made anew when half of
+ * that is used up: what is left is more than anything moves in one step. */
+static const double NEAR = 2;
+
 /* What drives the missile is as heavy as it needs to be. */
 static double mobility_of(const sf_model *m) {
     return m->motion_count > 0 ? 0 : (double)m->symmetry_factor / m->missile.mass;
 }
 
+/* Takes the last step's travel from the room of the list. Once too little is left, all points are looked at;
+ * returns whether they are. */
+static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
+    double speed = op->gram.spread * s->fastest + fabs(s->missile.velocity);
+    s->contact_room -= s->dt_old * speed;
+    if (s->step > 0 && s->contact_room > 0.5 * NEAR * op->gram.spacing)
+        return false;
+    for (int64_t c = 0; c < m->contact_count; c++)
+        s->contact_near[c] = (int32_t)c;
+    s->contact_near_count = m->contact_count;
+    return true;
+}
+
+/* Of all points, the near ones. */
+static void list_near(const sf_operators *op, const double direction[3], sf_state *s) {
+    int64_t count = 0;
+    s->contact_room = NEAR * op->gram.spacing;
+    for (int64_t k = 0; k < s->contact_near_count; k++) {
+        int64_t c = s->contact_near[k];
+        double now[3];
+        for (int r = 0; r < 3; r++)
+            now[r] = s->contact_position[3 * c + r] - s->missile.displacement * direction[r];
+        if (sf_missile_surface_near(&op->surface, now, s->contact_room))
+            s->contact_near[count++] = (int32_t)c;
+    }
+    s->contact_near_count = count;
+}
+
 /* Positions now and predicted without contact forces, by u_h. */
 static void predict_points(const sf_model *m, sf_state *s, double dt_v) {
 #pragma omp parallel for default(none) shared(m, s, dt_v) schedule(static)
-    for (int64_t c = 0; c < m->contact_count; c++) {
-        int64_t node = m->contact_node[c];
+    for (int64_t near = 0; near < s->contact_near_count; near++) {
+        int64_t c = s->contact_near[near], node = m->contact_node[c];
         double now[3] = {0}, step[3] = {0};
         for (int64_t k = m->phi_ptr[node]; k < m->phi_ptr[node + 1]; k++) {
             int64_t i = m->phi_node[k];
@@ -60,7 +92,8 @@ static void book_drive(const sf_model *m, sf_state *s, const double mean[3], con
 static void book_work(const sf_model *m, sf_state *s) {
     const double *e = m->missile.direction;
     double travel = s->missile.displacement - s->missile_old;
-    for (int64_t c = 0; c < m->contact_count; c++) {
+    for (int64_t k = 0; k < s->contact_near_count; k++) {
+        int64_t c = s->contact_near[k];
         const double *q = &s->contact_force[3 * c], *old = &s->contact_old[3 * c],
                      *n = &s->contact_normal[3 * c];
         if (sf_dot3(q, q) == 0 && sf_dot3(old, old) == 0)
@@ -94,7 +127,8 @@ static int64_t find_active(const sf_model *m, const sf_operators *op, sf_state *
     const double *e = m->missile.direction;
     int64_t active = 0;
     s->penetration = 0;
-    for (int64_t c = 0; c < m->contact_count; c++) {
+    for (int64_t k = 0; k < s->contact_near_count; k++) {
+        int64_t c = s->contact_near[k];
         double now[3], next[3], gap, normal[3];
         for (int r = 0; r < 3; r++) {
             now[r] = s->contact_position[3 * c + r] - s->missile.displacement * e[r];
@@ -217,7 +251,10 @@ void sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s) {
     contact_solve w = {.mobility = mobility_of(m), .shift = s->dt * dt_v};
     w.free_step = m->motion_count > 0 ? sf_motion_displacement(m, s->time + s->dt) - s->missile.displacement
                                       : s->dt * (s->missile.velocity + dt_v * pull);
+    bool all = use_room(m, op, s);
     predict_points(m, s, dt_v);
+    if (all)
+        list_near(op, e, s);
     int64_t active = find_active(m, op, s, w.free_step);
     start_forces(m, s, active, &w);
     relax(m, op, s, active, &w);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact_gram.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,10 +61,22 @@ static int64_t gram_row(const sf_model *m, const transposed *t, int64_t c, doubl
     return used;
 }
 
+static void measure_points(const sf_model *m, sf_contact_gram *gram) {
+    gram->spacing = INFINITY;
+    for (int64_t c = 0; c < m->contact_count; c++) {
+        double sum = 0;
+        for (int64_t k = m->phi_ptr[m->contact_node[c]]; k < m->phi_ptr[m->contact_node[c] + 1]; k++)
+            sum += fabs(m->phi_value[k]);
+        gram->spread = fmax(gram->spread, sum);
+        gram->spacing = fmin(gram->spacing, m->spacing[m->contact_node[c]]);
+    }
+}
+
 sf_status sf_contact_gram_build(const sf_model *m, sf_contact_gram *gram, sf_error *err) {
     unsigned long count = (unsigned long)m->contact_count;
     transposed t = {0};
     memset(gram, 0, sizeof *gram);
+    measure_points(m, gram);
     double *dense = sf_alloc(err, count, sizeof *dense, "contact matrix");
     int32_t *list = sf_alloc(err, count, sizeof *list, "contact matrix");
     uint8_t *seen = sf_alloc(err, count, 1, "contact matrix");

@@ -12,6 +12,9 @@ typedef struct sf_contact_gram {
     int32_t *index;   /* [..] contact point, ascending within a row */
     double *value;    /* [..] kg-1 */
     double *diagonal; /* [contacts] kg-1 */
+    double spread;    /* -, largest sum |phi| of a contact point: no point is faster than this times the
+                         fastest coefficient */
+    double spacing;   /* m, smallest of the contact points */
 } sf_contact_gram;
 
 sf_status sf_contact_gram_build(const sf_model *model, sf_contact_gram *gram, sf_error *err);

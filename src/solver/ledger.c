@@ -43,7 +43,7 @@ static void balance_driven(const sf_model *m, sf_state *s, double held, double c
 void sf_ledger_close(const sf_model *m, sf_state *s, const double constraint_force[3], double dt_v) {
     sf_ledger *l = &s->ledger;
     const double *e = m->missile.direction;
-    double potential = 0, drift = 0, momentum[3] = {0};
+    double potential = 0, drift = 0, momentum[3] = {0}, fastest = 0;
     s->smallest_jacobian = INFINITY;
     double shortest = INFINITY;
     l->stored = l->hysteresis = l->kinetic_pad = 0;
@@ -56,6 +56,7 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const double constraint_for
         potential += p->stabilisation;
         drift += p->stabilisation_drift;
         shortest = fmin(shortest, p->shortest);
+        fastest = fmax(fastest, p->fastest);
         if (p->jacobian < s->smallest_jacobian) {
             s->smallest_jacobian = p->jacobian;
             s->jacobian_node = p->jacobian_node;
@@ -64,6 +65,7 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const double constraint_for
             momentum[c] += p->momentum[c];
     }
     s->largest_compression = 1 - shortest;
+    s->fastest = sqrt(fastest);
     l->stabilisation_drift += drift;
     l->stabilisation = potential - l->stabilisation_drift;
 

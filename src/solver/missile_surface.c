@@ -99,15 +99,17 @@ static int64_t clamp_bin(const sf_missile_surface *s, int axis, double x) {
 
 /* Bins of width `reach` over the plan; each triangle goes to every bin its grown box meets. */
 static sf_status build_bins(sf_missile_surface *s, int64_t nodes, int64_t triangles, sf_error *err) {
-    double high[2] = {-INFINITY, -INFINITY};
-    s->low[0] = s->low[1] = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        s->low[a] = INFINITY;
+        s->high[a] = -INFINITY;
+    }
     for (int64_t i = 0; i < nodes; i++)
-        for (int a = 0; a < 2; a++) {
+        for (int a = 0; a < 3; a++) {
             s->low[a] = fmin(s->low[a], s->position[3 * i + a]);
-            high[a] = fmax(high[a], s->position[3 * i + a]);
+            s->high[a] = fmax(s->high[a], s->position[3 * i + a]);
         }
     for (int a = 0; a < 2; a++)
-        s->bins[a] = (int64_t)((high[a] - s->low[a]) / s->reach) + 1;
+        s->bins[a] = (int64_t)((s->high[a] - s->low[a]) / s->reach) + 1;
     int64_t bins = s->bins[0] * s->bins[1];
     s->start = sf_alloc(err, (unsigned long)bins + 2, sizeof *s->start, "missile bins");
     for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
@@ -277,6 +279,19 @@ static bool triangles_gap(const sf_missile_surface *s, const double x[3], double
     for (int k = 0; k < 3; k++)
         normal[k] = near ? outward[k] : side * ray[k];
     normalise(normal);
+    return true;
+}
+
+bool sf_missile_surface_near(const sf_missile_surface *s, const double x[3], double margin) {
+    double r[3];
+    if (s->shape == SF_SHAPE_SPHERE) {
+        subtract(x, s->centre, r);
+        return sf_dot3(r, r) <= (s->radius + margin) * (s->radius + margin);
+    }
+    margin += s->reach; /* as deep behind an open surface a point can be */
+    for (int a = 0; a < 3; a++)
+        if (x[a] < s->low[a] - margin || x[a] > s->high[a] + margin)
+            return false;
     return true;
 }
 

@@ -19,10 +19,10 @@ typedef struct sf_missile_surface {
     double *vertex_normal;   /* [nodes][3] angle-weighted pseudo-normal (Baerentzen, Aanaes 2005) */
     double
         *edge_normal; /* [triangles][3 edges][3] sum of the two faces' normals, edge k from vertex k to k+1 */
-    uint8_t *rim_edge;   /* [triangles][3 edges] 1 = no second face */
-    uint8_t *rim_vertex; /* [nodes] 1 = end of such an edge */
-    double reach;        /* m, gaps beyond this are not looked for */
-    double low[2];
+    uint8_t *rim_edge;      /* [triangles][3 edges] 1 = no second face */
+    uint8_t *rim_vertex;    /* [nodes] 1 = end of such an edge */
+    double reach;           /* m, gaps beyond this are not looked for */
+    double low[3], high[3]; /* of all nodes */
     int64_t bins[2];
     int64_t *start;  /* [bins + 1] */
     int32_t *member; /* triangles whose box, grown by reach, meets the bin */
@@ -30,6 +30,9 @@ typedef struct sf_missile_surface {
 
 sf_status sf_missile_surface_build(const sf_model *model, sf_missile_surface *surface, sf_error *err);
 void sf_missile_surface_free(sf_missile_surface *surface);
+
+/* Can sf_missile_surface_gap be less than `margin` (m, from 0) at `x`? False is certain. */
+bool sf_missile_surface_near(const sf_missile_surface *surface, const double x[3], double margin);
 
 /* Signed distance of `x` (negative inside the missile) and outward normal at the nearest surface point.
  * Returns false when the surface is farther than its reach, when the nearest point lies beyond the sphere

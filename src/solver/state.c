@@ -43,6 +43,7 @@ static const sf_state_array arrays[] = {
     KEPT(contact_gap, 'c', 1),
     KEPT(contact_normal, 'c', 3),
     SCRATCH(contact_active, 'c', sizeof(int32_t)),
+    SCRATCH(contact_near, 'c', sizeof(int32_t)),
     SCRATCH(partial, 'k', sizeof(sf_partial)),
 #undef KEPT
 #undef SCRATCH

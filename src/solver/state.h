@@ -20,6 +20,7 @@ typedef struct sf_partial {
     double stored, hysteresis, viscous; /* J; viscous: of this step */
     double kinetic;                     /* J, 1/2 m v(n-1/2) . v(n+1/2) */
     double momentum[3];                 /* kg m s-1 */
+    double fastest;                     /* m2 s-2, largest v . v */
     double stabilisation;               /* J, potential */
     double stabilisation_drift;         /* J, change of the potential by the change of its stiffness */
     double step;                        /* s, smallest stable step */
@@ -91,14 +92,20 @@ typedef struct sf_state {
     double *power_out;    /* [n] the product */
 
     /* Contact points. */
-    double *contact_position;  /* [contacts][3] m, physical, now */
-    double *contact_motion;    /* [contacts][3] m, its last step */
-    double *contact_step;      /* [contacts][3] m, its next step without contact forces */
-    double *contact_force;     /* [contacts][3] N, on the pad */
-    double *contact_old;       /* [contacts][3] N, of the last step */
-    double *contact_gap;       /* [contacts] m, predicted */
-    double *contact_normal;    /* [contacts][3] outward from the missile */
-    int32_t *contact_active;   /* [contacts] list */
+    double *contact_position; /* [contacts][3] m, physical, now */
+    double *contact_motion;   /* [contacts][3] m, its last step */
+    double *contact_step;     /* [contacts][3] m, its next step without contact forces */
+    double *contact_force;    /* [contacts][3] N, on the pad */
+    double *contact_old;      /* [contacts][3] N, of the last step */
+    double *contact_gap;      /* [contacts] m, predicted */
+    double *contact_normal;   /* [contacts][3] outward from the missile */
+    int32_t *contact_active;  /* [contacts] list */
+    int32_t *contact_near;    /* [contacts] list of the points that can touch before contact_room is used up:
+                                 the others' arrays are not kept up to date */
+    int64_t contact_near_count;
+    double contact_room;       /* m, what points and missile may approach each other until the list is made
+                                  anew */
+    double fastest;            /* m s-1, of the coefficients at the half step */
     double missile_old;        /* m, displacement one step ago */
     int64_t contact_count;     /* points with a force */
     double penetration;        /* m, deepest now */

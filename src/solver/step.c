@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/step.h"
 
+#include "core/lanes.h"
 #include "core/motion.h"
 #include "solver/contact.h"
 #include "solver/domain_stress.h"
@@ -115,22 +116,26 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
         x[0], x[1], x[2], speed);
 }
 
-/* v += dt_v (force - reaction) / m, with the kinetic energy at the present time and the momentum after it. */
+/* v += dt_v (force - reaction) / m, with the kinetic energy at the present time, and momentum and largest
+ * speed after it. */
 static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
 #pragma omp parallel for default(none) shared(m, s, dt_v) schedule(static)
     for (int64_t chunk = 0; chunk < s->chunk_count; chunk++) {
-        double kinetic = 0, momentum[3] = {0};
+        double kinetic = 0, momentum[3] = {0}, fastest = 0;
         for (int64_t i = chunk * SF_CHUNK; i < (chunk + 1) * SF_CHUNK && i < m->node_count; i++) {
-            double mass = m->mass[i], factor = dt_v / mass;
+            double mass = m->mass[i], factor = dt_v / mass, square = 0;
             for (int c = 0; c < 3; c++) {
                 double old = s->v[3 * i + c];
                 double v = old + factor * (s->force[3 * i + c] - s->reaction[3 * i + c]);
                 s->v[3 * i + c] = v;
                 kinetic += 0.5 * mass * old * v;
                 momentum[c] += mass * v;
+                square += v * v;
             }
+            fastest = sf_larger(square, fastest);
         }
         s->partial[chunk].kinetic = kinetic;
+        s->partial[chunk].fastest = fastest;
         memcpy(s->partial[chunk].momentum, momentum, sizeof momentum);
     }
 }
