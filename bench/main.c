@@ -39,6 +39,7 @@ typedef struct record {
     double (*phase)[SF_PHASES]; /* [room] s, owned */
     double wall;                /* s, of the fastest run */
     double dt_sum;
+    int64_t first_products, products; /* Lanczos products of the first step, and of all */
 } record;
 
 /* Bytes that the program holds now. */
@@ -178,6 +179,9 @@ static sf_status run_steps(const sf_model *m, const sf_operators *op, double end
         if (sf_step_evaluate(m, op, s, err) != SF_OK)
             return err->status;
         r->dt_sum += s->dt;
+        r->products = s->power_iterations;
+        if (s->step == 0)
+            r->first_products = s->power_iterations;
         sf_step_advance(m, s);
         if (keep_step(r, &watch, err) != SF_OK)
             return err->status;
@@ -217,11 +221,11 @@ static void write_phases(const record *r, const bench_traffic *t, double product
     sf_json_close(json, '}');
 }
 
-static void write_run(const sf_model *m, const sf_operators *op, const record *r, int64_t all_products,
-                      double bandwidth, double peak, double held, sf_json *json) {
+static void write_run(const sf_model *m, const sf_operators *op, const record *r, double bandwidth,
+                      double peak, double held, sf_json *json) {
     bench_traffic t = bench_count(m, op);
     double n = (double)m->node_count, steps = (double)(r->steps - 1), quiet = 0, bytes = 0, flops = 0;
-    double products = (double)(all_products - SF_POWER_FIRST);
+    double products = (double)(r->products - r->first_products);
     for (int p = 0; p < SF_PHASES; p++) {
         quiet += quiet_seconds(r, p);
         bytes += t.bytes[p] * steps;
@@ -230,7 +234,7 @@ static void write_run(const sf_model *m, const sf_operators *op, const record *r
     bytes += products * t.product_bytes;
     flops += products * t.product_flops;
     sf_json_integer(json, "steps", r->steps);
-    sf_json_integer(json, "lanczos_products", all_products);
+    sf_json_integer(json, "lanczos_products", r->products);
     sf_json_number(json, "mean_step_s", r->dt_sum / (double)r->steps);
     sf_json_number(json, "wall_s", r->wall);
     sf_json_number(json, "node_steps_per_s", n * (double)r->steps / r->wall);
@@ -249,14 +253,13 @@ static void write_run(const sf_model *m, const sf_operators *op, const record *r
 
 /* The drop from its start to `end_time`, `repeats` times. */
 static sf_status repeat_steps(const sf_model *m, const sf_operators *op, const options *o, record *best,
-                              int64_t *products, sf_error *err) {
+                              sf_error *err) {
     double end_time = fmin(m->run.end_time, 1e-3 * o->end_time);
     for (int k = 0; k < o->repeats && err->status == SF_OK; k++) {
         sf_state state = {0};
         record r = {0};
         if (sf_state_create(m, &state, err) == SF_OK &&
             run_steps(m, op, end_time, &state, &r, err) == SF_OK) {
-            *products = state.power_iterations;
             if (k > 0)
                 keep_shortest(best, &r);
             else {
@@ -274,12 +277,11 @@ static sf_status run_one(const sf_model *m, const sf_operators *op, const option
                          double held, sf_json *json, sf_error *err) {
     record r = {0};
     double bandwidth;
-    int64_t products = 0;
     omp_set_num_threads(threads);
-    if (repeat_steps(m, op, o, &r, &products, err) == SF_OK && bench_bandwidth(&bandwidth, err) == SF_OK) {
+    if (repeat_steps(m, op, o, &r, err) == SF_OK && bench_bandwidth(&bandwidth, err) == SF_OK) {
         sf_json_open(json, NULL, '{');
         sf_json_integer(json, "threads", threads);
-        write_run(m, op, &r, products, bandwidth, bench_peak_flops(), held, json);
+        write_run(m, op, &r, bandwidth, bench_peak_flops(), held, json);
         sf_json_close(json, '}');
     }
     free_record(&r);

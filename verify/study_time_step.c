@@ -493,8 +493,9 @@ static void power_iteration(sf_study *s) {
     while (st->time < 20e-3 && sf_step_evaluate(&f.model, &f.operators, st, &err) == SF_OK) {
         if (st->measured_at == st->step) {
             double used = st->tightness * st->bound_load, *mode = copy(st->mode, n);
-            products += st->step > 0 ? SF_POWER_BASIS : 80;
-            double ratio = used / sf_time_step_power(&f.model, &f.operators, st, 240);
+            products = st->power_iterations;
+            double ratio = used / sf_time_step_power(&f.model, &f.operators, st, 240, 0);
+            st->power_iterations = products;
             memcpy(st->mode, mode, n * sizeof *mode);
             free(mode);
             low = fmin(low, ratio);

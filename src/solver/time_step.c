@@ -7,8 +7,12 @@
 enum {
     POWER_INTERVAL = 25,         /* steps between measurements at most */
     POWER_PAUSE = 5,             /* and at least, when the bound moves */
+    POWER_FIRST = 80,            /* products of the first measurement at most */
     POWER_WARM = SF_POWER_BASIS, /* of the later ones */
+    POWER_LEAST = 4,             /* of a cycle, before it may count as settled */
 };
+/* What the last product or cycle may still add to the frequency squared, as a share of it. */
+static const double SETTLED = 1e-4;
 static const double POWER_CHANGE =
     0.1; /* of the bound on the frequency squared, that calls for a measurement */
 /* The iteration converges from below; its estimate of the frequency squared is raised by this factor. */
@@ -121,11 +125,13 @@ static double tridiagonal_top(int size, const double *alpha, const double *beta,
 }
 
 /* Up to `products` <= SF_POWER_BASIS Lanczos steps from the mode, in the inner product of the masses; the
- * mode becomes the Ritz vector of the largest Ritz value, which is returned. */
-static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state *s, int products) {
+ * mode becomes the Ritz vector of the largest Ritz value, which is returned. Ends early when a product adds
+ * `settled` of the value or less. */
+static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state *s, int products,
+                            double settled) {
     int64_t n = m->node_count;
     double alpha[SF_POWER_BASIS], beta[SF_POWER_BASIS] = {0}, z[SF_POWER_BASIS], *out = s->power_out,
-                                  norm = 0;
+                                  norm = 0, value = 0, before_last;
     int size = 0;
     for (int64_t i = 0; i < n; i++)
         norm += m->mass[i] * s->mode[i] * s->mode[i];
@@ -145,10 +151,13 @@ static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state 
             norm += m->mass[i] * r * r;
         }
         beta[size++] = sqrt(norm);
-        if (!(beta[size - 1] > 1e-7 * fabs(alpha[size - 1]))) /* converged */
+        before_last = value;
+        value = tridiagonal_top(size, alpha, beta, z);
+        if (!(beta[size - 1] > 1e-7 * fabs(alpha[size - 1])) || /* an exact vector */
+            (size >= POWER_LEAST && value - before_last <= settled * value))
             break;
     }
-    double value = tridiagonal_top(size, alpha, beta, z);
+    s->power_iterations += size;
     for (int64_t i = 0; i < n; i++) {
         s->mode[i] = 0;
         for (int j = 0; j < size; j++)
@@ -157,11 +166,16 @@ static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state 
     return value;
 }
 
-double sf_time_step_power(const sf_model *m, const sf_operators *op, sf_state *s, int iterations) {
+double sf_time_step_power(const sf_model *m, const sf_operators *op, sf_state *s, int products,
+                          double settled) {
     double estimate = 0;
-    for (int left = iterations; left > 0; left -= SF_POWER_BASIS)
-        estimate = fmax(estimate, lanczos_cycle(m, op, s, left < SF_POWER_BASIS ? left : SF_POWER_BASIS));
-    s->power_iterations += iterations;
+    for (int left = products; left > 0; left -= SF_POWER_BASIS) {
+        double before = estimate;
+        estimate =
+            fmax(before, lanczos_cycle(m, op, s, left < SF_POWER_BASIS ? left : SF_POWER_BASIS, settled));
+        if (estimate - before < settled * estimate)
+            break;
+    }
     return estimate;
 }
 
@@ -200,7 +214,7 @@ void sf_time_step_choose(const sf_model *m, const sf_operators *op, sf_state *s)
     merge_bounds(s);
     if (due) {
         seed_mode(m, op, s);
-        double power = sf_time_step_power(m, op, s, s->step == 0 ? SF_POWER_FIRST : POWER_WARM);
+        double power = sf_time_step_power(m, op, s, s->step == 0 ? POWER_FIRST : POWER_WARM, SETTLED);
         double tightness = ceil(POWER_ROUNDING * POWER_MARGIN * power / s->bound_load) / POWER_ROUNDING;
         double change = s->tightness / tightness;
         s->tightness = tightness;

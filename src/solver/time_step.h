@@ -9,8 +9,6 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-enum { SF_POWER_FIRST = 80 }; /* products of the first measurement; SF_POWER_BASIS of every later one */
-
 /* Is the frequency measured in this step? That needs state->directional. */
 bool sf_time_step_due(const sf_state *state);
 
@@ -20,9 +18,10 @@ bool sf_time_step_due(const sf_state *state);
 void sf_time_step_choose(const sf_model *model, const sf_operators *operators, sf_state *state);
 
 /* Highest eigenvalue (s-2) of M^-1 K for the scalar operator K = sum V B^T A B plus the stabilisation, with A
- * = state->directional, by Lanczos cycles from state->mode with `iterations` products in all; a Ritz value,
- * which converges from below. */
-double sf_time_step_power(const sf_model *model, const sf_operators *operators, sf_state *state,
-                          int iterations);
+ * = state->directional, by Lanczos cycles from state->mode with at most `products` products in all; a Ritz
+ * value, which converges from below. Ends early when a cycle, or a product within it, adds less than
+ * `settled` of the value; 0: never. */
+double sf_time_step_power(const sf_model *model, const sf_operators *operators, sf_state *state, int products,
+                          double settled);
 
 #endif
