@@ -507,7 +507,7 @@ static void power_iteration(sf_study *s) {
         sf_study_fail(s, &err);
     sf_study_text(s,
                   "The same drop with %lld nodes, in every measurement: the square of the frequency in use "
-                  "(from 80 products at first, then 8 each "
+                  "(from up to 80 products at first, then 4 to 8 each "
                   "time, with a margin of 8 %%) against 240 more products. %lld products in %lld steps.\n\n",
                   (long long)n, (long long)products, (long long)st->step);
     sf_study_check(s, low, 1, INFINITY, "smallest square of the frequency in use / converged");

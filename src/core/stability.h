@@ -16,11 +16,16 @@
 /* Fills c [node_count], m kg-1, with shares theta_IL proportional to V_L |B_I^L|. */
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err);
 
-/* Largest stable step of a domain with c (m/kg), a (Pa), eta (Pa s); s. */
-static inline double sf_stability_step(double c, double a, double eta) {
-    /* The positive root of c a dt^2 + 2 c eta dt - 4 = 0, without cancellation. */
+/* 4 / (largest stable step of a domain with c (m/kg), a (Pa), eta (Pa s)); s-1. From the positive root of c a
+ * dt^2 + 2 c eta dt - 4 = 0, without cancellation. */
+static inline double sf_stability_slowness(double c, double a, double eta) {
     double damping = c * eta;
-    return 4 / (damping + sqrt(damping * damping + 4 * c * a));
+    return damping + sqrt(damping * damping + 4 * c * a);
+}
+
+/* Largest stable step itself; s. */
+static inline double sf_stability_step(double c, double a, double eta) {
+    return 4 / sf_stability_slowness(c, a, eta);
 }
 
 #endif

@@ -56,51 +56,81 @@ static void load_batch(const sf_model *m, const sf_operators *op, const sf_state
     memcpy(b->rate, &s->rate[block * SF_LANES], sizeof b->rate);
 }
 
-/* Bounds of the time step: effective tangents, and the smallest stable step of every domain; none for a spare
- * lane. */
-static void bound_steps(const double stability[SF_LANES], double tightness, double dt_old,
-                        const sf_foam_batch *b, double tangent[SF_LANES], double step[SF_LANES]) {
+/* Sums and extremes of a chunk, lane by lane, so that one batch does not wait for the one before. */
+typedef struct lane_sums {
+    double stored[SF_LANES], hysteresis[SF_LANES], viscous[SF_LANES];
+    double slowness[SF_LANES]; /* s-1, largest inverse of a stable step, times 4 */
+    double load[SF_LANES], shortest[SF_LANES];
+    double jacobian[SF_LANES], block[SF_LANES]; /* smallest, and in which block of the chunk; a NaN is kept */
+} lane_sums;
+
+/* What a spare lane must not say: it weighs nothing and is neither stiff nor short. */
+typedef struct lane_weights {
+    double volume[SF_LANES], stability[SF_LANES];
+} lane_weights;
+
+/* Bounds of the time step (core/stability.h) and effective tangents. */
+static void bound_steps(const lane_weights *w, double tightness, double dt_old, const sf_foam_batch *b,
+                        double tangent[SF_LANES], lane_sums *sum) {
     double inverse = dt_old > 0 ? 2 / dt_old : 0;
-    for (int l = 0; l < SF_LANES; l++) {
+    for (int l = 0; l < SF_LANES; l++)
         tangent[l] = 0;
-        step[l] = INFINITY;
-    }
     for (int i = 0; i < 3; i++)
 #pragma omp simd
         for (int l = 0; l < SF_LANES; l++) {
             double a = b->direction_tangent[i][l], eta = b->direction_viscosity[i][l];
             tangent[l] = sf_larger(a + eta * inverse, tangent[l]);
-            step[l] = sf_smaller(sf_stability_step(stability[l] * tightness, a, eta), step[l]);
+            sum->slowness[l] =
+                sf_larger(sf_stability_slowness(w->stability[l] * tightness, a, eta), sum->slowness[l]);
         }
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        sum->load[l] = sf_larger(w->stability[l] * tangent[l], sum->load[l]);
 }
 
-/* Sums and extremes of a batch, domain by domain. */
-static void add_batch(const sf_model *m, const double stability[SF_LANES], const double tangent[SF_LANES],
-                      const double step[SF_LANES], int64_t first, int count, const sf_foam_batch *b,
-                      sf_partial *sum) {
-    for (int l = 0; l < count; l++) {
-        double v = m->volume[first + l];
-        sum->stored += v * b->stored[l];
-        sum->hysteresis += v * b->lost[l];
-        sum->viscous += v * b->work[l];
-        sum->step = sf_smaller(step[l], sum->step);
-        sum->load = sf_larger(stability[l] * tangent[l], sum->load);
-        for (int i = 0; i < 3; i++)
-            sum->shortest = sf_smaller(b->stretch[i][l], sum->shortest);
-        if (!(b->jacobian[l] >= sum->jacobian) && !isnan(sum->jacobian)) { /* NaN is kept */
-            sum->jacobian = b->jacobian[l];
-            sum->jacobian_node = first + l;
-        }
+static void add_batch(const lane_weights *w, double block, const sf_foam_batch *b, lane_sums *sum) {
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double v = w->volume[l], shorter = sf_smaller(b->stretch[0][l], sum->shortest[l]);
+        shorter = sf_smaller(b->stretch[1][l], shorter);
+        sum->shortest[l] = sf_smaller(b->stretch[2][l], shorter);
+        sum->stored[l] += v * b->stored[l];
+        sum->hysteresis[l] += v * b->lost[l];
+        sum->viscous[l] += v * b->work[l];
+        bool kept = (b->jacobian[l] >= sum->jacobian[l]) | (sum->jacobian[l] != sum->jacobian[l]);
+        sum->jacobian[l] = kept ? sum->jacobian[l] : b->jacobian[l];
+        sum->block[l] = kept ? sum->block[l] : block;
     }
 }
 
+/* Lanes of the chunk into its sums. */
+static void merge_lanes(const lane_sums *lane, int64_t first, sf_partial *sum) {
+    double slowness = 0;
+    *sum = (sf_partial){.jacobian = INFINITY, .shortest = INFINITY};
+    for (int l = 0; l < SF_LANES; l++) {
+        sum->stored += lane->stored[l];
+        sum->hysteresis += lane->hysteresis[l];
+        sum->viscous += lane->viscous[l];
+        slowness = sf_larger(lane->slowness[l], slowness);
+        sum->load = sf_larger(lane->load[l], sum->load);
+        sum->shortest = sf_smaller(lane->shortest[l], sum->shortest);
+        if (!(lane->jacobian[l] >= sum->jacobian) && !isnan(sum->jacobian)) {
+            sum->jacobian = lane->jacobian[l];
+            sum->jacobian_node = first + (int64_t)lane->block[l] * SF_LANES + l;
+        }
+    }
+    sum->step = 4 / slowness;
+}
+
 static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, int64_t block, int count,
-                        const sf_foam_batch *b, sf_partial *sum) {
+                        const sf_foam_batch *b, lane_sums *sum) {
     int64_t first = block * SF_LANES;
-    double stability[SF_LANES] = {0}, tangent[SF_LANES], step[SF_LANES];
-    memcpy(stability, &op->stability[first], (size_t)count * sizeof *stability);
-    bound_steps(stability, s->tightness, s->dt_old, b, tangent, step);
-    add_batch(m, stability, tangent, step, first, count, b, sum);
+    double tangent[SF_LANES];
+    lane_weights w = {{0}, {0}};
+    memcpy(w.volume, &m->volume[first], (size_t)count * sizeof *w.volume);
+    memcpy(w.stability, &op->stability[first], (size_t)count * sizeof *w.stability);
+    bound_steps(&w, s->tightness, s->dt_old, b, tangent, sum);
+    add_batch(&w, (double)(block % (SF_CHUNK / SF_LANES)), b, sum);
     memcpy(&s->maxwell[block * 6 * SF_LANES], b->maxwell, sizeof b->maxwell);
     memcpy(&s->peak[block * SF_LANES], b->peak, sizeof b->peak);
     memcpy(&s->rate[block * SF_LANES], b->rate, sizeof b->rate);
@@ -121,8 +151,9 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
 
 static void update_chunk(const sf_model *m, const sf_operators *op, sf_state *s, const sf_vec *d,
                          int64_t chunk) {
-    sf_partial *sum = &s->partial[chunk];
-    *sum = (sf_partial){.step = INFINITY, .jacobian = INFINITY, .shortest = INFINITY};
+    lane_sums sum = {.stored = {0}};
+    for (int l = 0; l < SF_LANES; l++)
+        sum.jacobian[l] = sum.shortest[l] = INFINITY;
     for (int64_t block = chunk * (SF_CHUNK / SF_LANES);
          block < (chunk + 1) * (SF_CHUNK / SF_LANES) && block * SF_LANES < m->node_count; block++) {
         sf_foam_batch batch;
@@ -131,8 +162,9 @@ static void update_chunk(const sf_model *m, const sf_operators *op, sf_state *s,
         batch.directions = sf_time_step_due(s);
         load_batch(m, op, s, d, block, count, &batch);
         sf_foam_update(&op->foam, s->dt_old, &batch);
-        store_batch(m, op, s, block, count, &batch, sum);
+        store_batch(m, op, s, block, count, &batch, &sum);
     }
+    merge_lanes(&sum, chunk * SF_CHUNK, &s->partial[chunk]);
 }
 
 void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {
