@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Language level, warnings, optimisation and sanitizers, carried by the interface target softfall_options.
 option(SOFTFALL_TESTS "Build the tests" ON)
-option(SOFTFALL_NATIVE "Compile for the processor of this machine" ON)
+option(SOFTFALL_NATIVE "Compile for the processor of this machine alone" OFF)
 option(SOFTFALL_WERROR "Treat warnings as errors" OFF)
 set(SOFTFALL_SANITIZE "" CACHE STRING "Comma list for -fsanitize=, e.g. address,undefined")
 
@@ -29,8 +29,12 @@ target_compile_options(softfall_options INTERFACE
 if(SOFTFALL_WERROR)
     target_compile_options(softfall_options INTERFACE -Werror)
 endif()
+# Kernels for several processors in one program (core/lanes.h); instrumented and plain builds do without.
 if(SOFTFALL_NATIVE)
     target_compile_options(softfall_options INTERFACE -march=native)
+elseif(CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64 AND NOT SOFTFALL_SANITIZE
+       AND CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo)$")
+    target_compile_definitions(softfall_options INTERFACE SF_DISPATCH)
 endif()
 if(SOFTFALL_SANITIZE)
     target_compile_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE} -fno-omit-frame-pointer

@@ -159,8 +159,9 @@ void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, dou
     *energy = p->energy + t * (p->c[0] + t * (p->c[1] / 2 + t * (p->c[2] / 3 + t * p->c[3] / 4)));
 }
 
-void sf_curve_evaluate_lanes(const sf_curve *curve, const double strain[SF_LANES], double stress[SF_LANES],
-                             double slope[SF_LANES], double energy[SF_LANES]) {
+SF_KERNEL void sf_curve_evaluate_lanes(const sf_curve *curve, const double strain[SF_LANES],
+                                       double stress[SF_LANES], double slope[SF_LANES],
+                                       double energy[SF_LANES]) {
     const sf_curve_piece *piece = curve->piece;
     double step = curve->step, start = curve->start, inverse = 1 / step;
     int dense = 0;

@@ -7,7 +7,18 @@
 
 #include <string.h>
 
-enum { SF_LANES = 8 };
+enum { SF_LANES = 16 };
+
+/* A kernel is compiled for three levels of the processor, with all that it calls within its file; the program
+ * takes the best level that it finds when it starts. The levels differ in the width of the vectors only:
+ * nothing is fused or reordered, so that all give the same bits. Arguments and results of kernels are
+ * pointers and scalars, since vectors are passed differently at different levels. SF_DISPATCH: set by the
+ * build. */
+#ifdef SF_DISPATCH
+#define SF_KERNEL __attribute__((flatten, target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define SF_KERNEL
+#endif
 
 /* A vector of three components in one register; the fourth is spare. */
 typedef double sf_vec __attribute__((vector_size(32)));

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { BATCH = 64 }; /* rows or nodes of one call of a kernel */
+
 struct sf_constraint_block {
     uint8_t held[3]; /* are x, y, z held at these nodes? */
     sf_vec mask;     /* the same as factors */
@@ -225,12 +227,26 @@ void sf_constraint_free(sf_constraint *c) {
     memset(c, 0, sizeof *c);
 }
 
-/* G field of row r. */
-static inline sf_vec apply_row(const sf_constraint_block *b, int64_t r) {
-    sf_vec sum = {0};
-    for (int64_t k = b->row_ptr[r]; k < b->row_ptr[r + 1]; k++)
-        sum += b->row_phi[k] * b->field[b->row_place[k]];
-    return sum * b->mask;
+/* lambda = G field in a batch of rows from `first`. */
+static SF_KERNEL void apply_rows(const sf_constraint_block *b, int64_t first) {
+    for (int64_t r = first; r < first + BATCH && r < b->rows; r++) {
+        sf_vec sum = {0};
+        for (int64_t k = b->row_ptr[r]; k < b->row_ptr[r + 1]; k++)
+            sum += b->row_phi[k] * b->field[b->row_place[k]];
+        b->lambda[r] = sum * b->mask;
+    }
+}
+
+/* reaction = G^T lambda at a batch of touched nodes from `first`; no other block holds the same component. */
+static SF_KERNEL void set_reactions(const sf_constraint_block *b, int64_t first, double *reaction) {
+    for (int64_t t = first; t < first + BATCH && t < b->touched_count; t++) {
+        sf_vec sum = {0};
+        for (int64_t k = b->node_ptr[t]; k < b->node_ptr[t + 1]; k++)
+            sum += b->node_phi[k] * b->lambda[b->node_row[k]];
+        for (int r = 0; r < 3; r++)
+            if (b->held[r])
+                reaction[3 * (int64_t)b->touched[t] + r] = sum[r];
+    }
 }
 
 /* lambda = G (force / mass) + G v / dt. The loops of different blocks do not wait for each other; all are for
@@ -250,8 +266,8 @@ static void right_sides(const sf_model *m, const sf_constraint *c, const sf_cons
     for (int k = 0; k < c->block_count; k++) {
         const sf_constraint_block *b = c->block[k];
 #pragma omp for schedule(static) nowait
-        for (int64_t r = 0; r < b->rows; r++)
-            b->lambda[r] = apply_row(b, r);
+        for (int64_t r = 0; r < b->rows; r += BATCH)
+            apply_rows(b, r);
     }
 #pragma omp barrier
 }
@@ -270,22 +286,6 @@ static void solve(const sf_constraint *c) {
     for (int q = 0; q < branches; q++) {
         const sf_constraint_block *b = c->block[q / SF_LDL_BRANCHES];
         sf_ldl_backward(&b->factor, q % SF_LDL_BRANCHES, b->lambda);
-    }
-}
-
-/* reaction = G^T lambda. */
-static void set_reactions(const sf_constraint *c, const sf_constraint_step *step) {
-    for (int k = 0; k < c->block_count; k++) {
-        const sf_constraint_block *b = c->block[k];
-#pragma omp for schedule(static) nowait
-        for (int64_t t = 0; t < b->touched_count; t++) {
-            sf_vec sum = {0};
-            for (int64_t q = b->node_ptr[t]; q < b->node_ptr[t + 1]; q++)
-                sum += b->node_phi[q] * b->lambda[b->node_row[q]];
-            for (int r = 0; r < 3; r++) /* no other block holds the same component */
-                if (b->held[r])
-                    step->reaction[3 * (int64_t)b->touched[t] + r] = sum[r];
-        }
     }
 }
 
@@ -310,7 +310,12 @@ void sf_constraint_project(const sf_model *m, const sf_constraint *c, sf_constra
     {
         right_sides(m, c, step);
         solve(c);
-        set_reactions(c, step);
+        for (int k = 0; k < c->block_count; k++) {
+            const sf_constraint_block *b = c->block[k];
+#pragma omp for schedule(static) nowait
+            for (int64_t t = 0; t < b->touched_count; t += BATCH)
+                set_reactions(b, t, step->reaction);
+        }
     }
     add_resultants(c, step);
 }
@@ -328,11 +333,12 @@ double sf_constraint_residual(const sf_model *m, const sf_constraint *c, const s
                 b->field[t] = sf_vec_load(&step->v[3 * i]) + net * (step->dt / m->mass[i]);
             }
 #pragma omp for schedule(static)
-            for (int64_t r = 0; r < b->rows; r++) {
-                sf_vec sum = apply_row(b, r);
+            for (int64_t r = 0; r < b->rows; r += BATCH)
+                apply_rows(b, r);
+#pragma omp for schedule(static)
+            for (int64_t r = 0; r < b->rows; r++)
                 for (int q = 0; q < 3; q++)
-                    residual = fmax(residual, fabs(sum[q]));
-            }
+                    residual = fmax(residual, fabs(b->lambda[r][q]));
         }
     }
     return residual;

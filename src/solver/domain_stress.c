@@ -26,7 +26,7 @@ static inline void displacement_gradient(const sf_vec *restrict d, const uint16_
 }
 
 /* The coefficients that group g sees, into its array. */
-static void gather_group(const sf_halo *h, int64_t g, const double *d) {
+static SF_KERNEL void gather_group(const sf_halo *h, int64_t g, const double *d) {
     for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
         h->work[q] = sf_vec_load(&d[3 * (int64_t)h->node[q]]);
 }
@@ -149,8 +149,8 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
     }
 }
 
-static void update_chunk(const sf_model *m, const sf_operators *op, sf_state *s, const sf_vec *d,
-                         int64_t chunk) {
+static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf_state *s, const sf_vec *d,
+                                   int64_t chunk) {
     lane_sums sum = {.stored = {0}};
     for (int l = 0; l < SF_LANES; l++)
         sum.jacobian[l] = sum.shortest[l] = INFINITY;

@@ -339,7 +339,7 @@ static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF
             }
 }
 
-void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *b) {
+SF_KERNEL void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *b) {
     double c[6][SF_LANES], old[6][SF_LANES], rate_of_e[6][SF_LANES] = {{0}}, s[6][SF_LANES], a[9][SF_LANES],
                                              eta[SF_LANES];
     right_cauchy_green(b->f, c);

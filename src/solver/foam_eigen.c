@@ -39,7 +39,7 @@ static inline void rotate(double *restrict app, double *restrict aqq, double *re
     }
 }
 
-void sf_foam_eigen(double a[6][SF_LANES], double v[9][SF_LANES]) {
+SF_KERNEL void sf_foam_eigen(double a[6][SF_LANES], double v[9][SF_LANES]) {
     for (int k = 0; k < 9; k++)
         for (int l = 0; l < SF_LANES; l++)
             v[k][l] = k % 4 == 0;

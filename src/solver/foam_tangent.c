@@ -23,7 +23,7 @@ static inline void cover_pair(double *ai, double *aj, double p, double o, double
     *aj = turned ? low : high;
 }
 
-void sf_foam_tangent_elastic(const sf_foam_principal *law, double maxwell, double a[3][SF_LANES]) {
+SF_KERNEL void sf_foam_tangent_elastic(const sf_foam_principal *law, double maxwell, double a[3][SF_LANES]) {
     double half = 0.5 * maxwell, size[SF_LANES];
     const double *factor = law->factor, *softening = law->softening;
 #pragma omp simd
@@ -72,8 +72,8 @@ static void kelvin_bounds(double stretch[3][SF_LANES], double kelvin, double eta
     }
 }
 
-void sf_foam_tangent_viscous(double stretch[3][SF_LANES], double kelvin, const double damp[SF_LANES],
-                             double eta[3][SF_LANES]) {
+SF_KERNEL void sf_foam_tangent_viscous(double stretch[3][SF_LANES], double kelvin,
+                                       const double damp[SF_LANES], double eta[3][SF_LANES]) {
     if (kelvin > 0)
         kelvin_bounds(stretch, kelvin, eta);
     else

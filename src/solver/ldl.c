@@ -208,7 +208,7 @@ void sf_ldl_free(sf_ldl *f) {
     memset(f, 0, sizeof *f);
 }
 
-void sf_ldl_forward(const sf_ldl *f, int branch, sf_vec *x) {
+SF_KERNEL void sf_ldl_forward(const sf_ldl *f, int branch, sf_vec *x) {
     int64_t trunk = f->branch[SF_LDL_BRANCHES], size = f->rows - trunk;
     sf_vec *carried = &f->carried[branch * size];
     memset(carried, 0, (size_t)size * sizeof *carried);
@@ -235,7 +235,7 @@ static inline void solve_row(const sf_ldl *f, int64_t j, sf_vec *x) {
     x[j] = f->inverse[j] * x[j] - (even + odd);
 }
 
-void sf_ldl_trunk(const sf_ldl *f, sf_vec *x) {
+SF_KERNEL void sf_ldl_trunk(const sf_ldl *f, sf_vec *x) {
     int64_t trunk = f->branch[SF_LDL_BRANCHES], size = f->rows - trunk;
     for (int64_t j = trunk; j < f->rows; j++) {
         for (int b = 0; b < SF_LDL_BRANCHES; b++)
@@ -248,7 +248,7 @@ void sf_ldl_trunk(const sf_ldl *f, sf_vec *x) {
         solve_row(f, j, x);
 }
 
-void sf_ldl_backward(const sf_ldl *f, int branch, sf_vec *x) {
+SF_KERNEL void sf_ldl_backward(const sf_ldl *f, int branch, sf_vec *x) {
     for (int64_t j = f->branch[branch + 1] - 1; j >= f->branch[branch]; j--)
         solve_row(f, j, x);
 }

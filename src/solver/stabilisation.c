@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/stabilisation.h"
 
-double sf_stabilisation_node(const sf_model *m, const double *pair, const double *d, const double *f,
-                             const double *stiffness, int64_t i, double force[3], double couple[9]) {
+SF_KERNEL double sf_stabilisation_node(const sf_model *m, const double *pair, const double *d,
+                                       const double *f, const double *stiffness, int64_t i, double force[3],
+                                       double couple[9]) {
     const sf_vec xi = sf_vec_load(&m->position[3 * i]), di = sf_vec_load(&d[3 * i]);
     sf_vec fi[3], fj[3], sum = {0}, out = {0}, moment[3] = {{0}, {0}, {0}};
     sf_vec_columns(&f[9 * i], fi);

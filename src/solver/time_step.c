@@ -23,19 +23,16 @@ static const double POWER_ROUNDING = 16384;
 static const double GROWTH = 1.02;
 
 /* mode_work: gradient of the mode in every domain. */
-static void mode_gradients(const sf_model *m, const sf_halo *h, sf_state *s) {
-#pragma omp parallel for default(none) shared(m, h, s) schedule(static)
-    for (int64_t group = 0; group < h->group_count; group++) {
-        double *mode = (double *)h->work + h->ptr[group];
-        for (int64_t q = h->ptr[group]; q < h->ptr[group + 1]; q++)
-            mode[q - h->ptr[group]] = s->mode[h->node[q]];
-        for (int64_t l = group * SF_GROUP; l < sf_halo_end(m, group); l++) {
-            double g[3] = {0};
-            for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++)
-                for (int c = 0; c < 3; c++)
-                    g[c] += mode[h->local[k]] * m->domain_b[3 * k + c];
-            memcpy(&s->mode_work[3 * l], g, sizeof g);
-        }
+static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, sf_state *s, int64_t group) {
+    double *mode = (double *)h->work + h->ptr[group];
+    for (int64_t q = h->ptr[group]; q < h->ptr[group + 1]; q++)
+        mode[q - h->ptr[group]] = s->mode[h->node[q]];
+    for (int64_t l = group * SF_GROUP; l < sf_halo_end(m, group); l++) {
+        double g[3] = {0};
+        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++)
+            for (int c = 0; c < 3; c++)
+                g[c] += mode[h->local[k]] * m->domain_b[3 * k + c];
+        memcpy(&s->mode_work[3 * l], g, sizeof g);
     }
 }
 
@@ -60,9 +57,8 @@ static double mode_pairs(const sf_model *m, const sf_operators *op, const sf_sta
 }
 
 /* Pair forces into power_out, and in power_couple what every domain exerts. */
-static void mode_fluxes(const sf_model *m, const sf_operators *op, sf_state *s) {
-#pragma omp parallel for default(none) shared(m, op, s) schedule(static)
-    for (int64_t i = 0; i < m->node_count; i++) {
+static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, sf_state *s, int64_t group) {
+    for (int64_t i = group * SF_GROUP; i < sf_halo_end(m, group); i++) {
         double couple[3], flux[3];
         const double *a = &s->directional[6 * i], *g = &s->mode_work[3 * i];
         s->power_out[i] = mode_pairs(m, op, s, i, couple);
@@ -74,27 +70,37 @@ static void mode_fluxes(const sf_model *m, const sf_operators *op, sf_state *s) 
     }
 }
 
+static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_halo *h, const sf_state *s, int64_t group) {
+    double *sum = (double *)h->work + h->ptr[group];
+    memset(sum, 0, (size_t)(h->ptr[group + 1] - h->ptr[group]) * sizeof *sum);
+    for (int64_t l = group * SF_GROUP; l < sf_halo_end(m, group); l++) {
+        const double *q = &s->power_couple[3 * l];
+        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
+            const double *b = &m->domain_b[3 * k];
+            sum[h->local[k]] += q[0] * b[0] + q[1] * b[1] + q[2] * b[2];
+        }
+    }
+}
+
 /* The product K mode, into power_out: the same sums as in the step itself. */
 static void apply_operator(const sf_model *m, const sf_operators *op, sf_state *s) {
     const sf_halo *h = &op->halo;
-    mode_gradients(m, h, s);
-    mode_fluxes(m, op, s);
-#pragma omp parallel for default(none) shared(m, h, s) schedule(static)
-    for (int64_t g = 0; g < h->group_count; g++) {
-        double *sum = (double *)h->work + h->ptr[g];
-        memset(sum, 0, (size_t)(h->ptr[g + 1] - h->ptr[g]) * sizeof *sum);
-        for (int64_t l = g * SF_GROUP; l < sf_halo_end(m, g); l++) {
-            const double *q = &s->power_couple[3 * l];
-            for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
-                const double *b = &m->domain_b[3 * k];
-                sum[h->local[k]] += q[0] * b[0] + q[1] * b[1] + q[2] * b[2];
-            }
-        }
+#pragma omp parallel default(none) shared(m, h, op, s)
+    {
+#pragma omp for schedule(static)
+        for (int64_t g = 0; g < h->group_count; g++)
+            mode_gradients(m, h, s, g);
+#pragma omp for schedule(static)
+        for (int64_t g = 0; g < h->group_count; g++)
+            mode_fluxes(m, op, s, g);
+#pragma omp for schedule(static)
+        for (int64_t g = 0; g < h->group_count; g++)
+            collect_fluxes(m, h, s, g);
+#pragma omp for schedule(static)
+        for (int64_t i = 0; i < m->node_count; i++)
+            for (int64_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
+                s->power_out[i] += ((const double *)h->work)[h->slot[q]];
     }
-#pragma omp parallel for default(none) shared(m, h, s) schedule(static)
-    for (int64_t i = 0; i < m->node_count; i++)
-        for (int64_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
-            s->power_out[i] += ((const double *)h->work)[h->slot[q]];
 }
 
 /* Largest eigenvalue of the tridiagonal matrix (diagonal alpha, off-diagonal beta) and its eigenvector z, by
