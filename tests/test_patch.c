@@ -108,7 +108,7 @@ static double relative_acceleration(fixture *f, const sf_constraint *constraint)
     sf_state *s = &f->state;
     sf_constraint_step step = {.force = s->force, .v = s->v, .dt = 1e-5, .reaction = s->reaction};
     double free_motion = 0, held_motion = 0;
-    sf_constraint_project(m, constraint, &step);
+    sf_constraint_project(constraint, &step);
     for (int64_t k = 0; k < 3 * m->node_count; k++) {
         free_motion = fmax(free_motion, fabs(s->force[k]) / m->mass[k / 3]);
         held_motion = fmax(held_motion, fabs(s->force[k] - s->reaction[k]) / m->mass[k / 3]);

@@ -92,7 +92,7 @@ static void accelerations(fixture *f, const double *body, double dt, double *a) 
     for (int64_t k = 0; k < 3 * m->node_count; k++)
         s->force[k] += body[k];
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt, .reaction = s->reaction};
-    sf_constraint_project(m, &f->operators.constraint, &held);
+    sf_constraint_project(&f->operators.constraint, &held);
     for (int64_t k = 0; k < 3 * m->node_count; k++)
         a[k] = (s->force[k] - s->reaction[k]) / m->mass[k / 3];
 }
@@ -106,7 +106,7 @@ static void set_start(fixture *f, const sf_mms_field *field) {
         sf_mms_disturbance(field, &m->position[3 * i], &s->v[3 * i]);
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = 1, .reaction = s->reaction};
     memset(s->force, 0, 3 * (size_t)m->node_count * sizeof *s->force);
-    sf_constraint_project(m, &f->operators.constraint, &held);
+    sf_constraint_project(&f->operators.constraint, &held);
     for (int64_t k = 0; k < 3 * m->node_count; k++) {
         double w = s->v[k] - s->reaction[k] / m->mass[k / 3];
         s->d[k] = (field->stretch[k % 3] - 1) * m->position[k] + w;

@@ -107,7 +107,7 @@ static const sf_key keys[] = {
     /* solver */
     {"solver", "end_time", SF_KEY_QUANTITY, NULL, AT(run.end_time),
      "latest end of the run, at least 3 step_limit", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},
-    {"solver", "step_safety", SF_KEY_NUMBER, "0.9", AT(run.step_safety),
+    {"solver", "step_safety", SF_KEY_NUMBER, "0.95", AT(run.step_safety),
      "time step as a fraction of the stability limit", .low = 1e-3, .high = 1.0},
     {"solver", "step_limit", SF_KEY_QUANTITY, "\"20 us\"", AT(run.step_limit),
      "largest time step; 20 us records the history at 50 kHz", .quantity = SF_TIME, .low = 1e-12, .high = 20e-6},

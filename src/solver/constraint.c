@@ -19,6 +19,7 @@ struct sf_constraint_block {
     /* G by row, over the nodes that it touches, and by touched node. */
     int64_t touched_count;
     int32_t *touched;   /* [touched_count] nodes, ascending */
+    double *mobility;   /* [touched_count] kg-1, inverse masses */
     int64_t *row_ptr;   /* [rows + 1] */
     int32_t *row_place; /* [row_ptr[rows]] in `touched` */
     double *row_phi;    /* [row_ptr[rows]] */
@@ -196,6 +197,11 @@ static sf_status build_block(const sf_model *m, int first, sf_constraint *c, sf_
         order_rows(m, b, err);
     if (err->status == SF_OK)
         b->field = sf_alloc(err, (unsigned long)b->touched_count, sizeof *b->field, "constraint forces");
+    if (err->status == SF_OK)
+        b->mobility =
+            sf_alloc(err, (unsigned long)b->touched_count, sizeof *b->mobility, "constraint forces");
+    for (int64_t t = 0; t < b->touched_count && err->status == SF_OK; t++)
+        b->mobility[t] = 1 / m->mass[b->touched[t]];
     return err->status;
 }
 
@@ -221,6 +227,7 @@ void sf_constraint_free(sf_constraint *c) {
         free(b->node);
         free(b->base);
         free(b->field);
+        free(b->mobility);
         free(b->lambda);
         free(b);
     }
@@ -251,7 +258,7 @@ static SF_KERNEL void set_reactions(const sf_constraint_block *b, int64_t first,
 
 /* lambda = G (force / mass) + G v / dt. The loops of different blocks do not wait for each other; all are for
  * the threads of one parallel region. */
-static void right_sides(const sf_model *m, const sf_constraint *c, const sf_constraint_step *step) {
+static void right_sides(const sf_constraint *c, const sf_constraint_step *step) {
     double inverse = 1 / step->dt;
     for (int k = 0; k < c->block_count; k++) {
         const sf_constraint_block *b = c->block[k];
@@ -259,7 +266,7 @@ static void right_sides(const sf_model *m, const sf_constraint *c, const sf_cons
         for (int64_t t = 0; t < b->touched_count; t++) {
             int64_t i = b->touched[t];
             b->field[t] =
-                sf_vec_load(&step->force[3 * i]) * (1 / m->mass[i]) + sf_vec_load(&step->v[3 * i]) * inverse;
+                sf_vec_load(&step->force[3 * i]) * b->mobility[t] + sf_vec_load(&step->v[3 * i]) * inverse;
         }
     }
 #pragma omp barrier
@@ -305,10 +312,10 @@ static void add_resultants(const sf_constraint *c, sf_constraint_step *step) {
     }
 }
 
-void sf_constraint_project(const sf_model *m, const sf_constraint *c, sf_constraint_step *step) {
-#pragma omp parallel default(none) shared(m, c, step)
+void sf_constraint_project(const sf_constraint *c, sf_constraint_step *step) {
+#pragma omp parallel default(none) shared(c, step)
     {
-        right_sides(m, c, step);
+        right_sides(c, step);
         solve(c);
         for (int k = 0; k < c->block_count; k++) {
             const sf_constraint_block *b = c->block[k];

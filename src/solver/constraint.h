@@ -29,7 +29,7 @@ typedef struct sf_constraint_step {
     double all[3];       /* N, out: force of all constraints on the pad */
 } sf_constraint_step;
 
-void sf_constraint_project(const sf_model *model, const sf_constraint *constraint, sf_constraint_step *step);
+void sf_constraint_project(const sf_constraint *constraint, sf_constraint_step *step);
 
 /* Largest |G v| at the next half step, m s-1, after a projection: only rounding errors are left. */
 double sf_constraint_residual(const sf_model *model, const sf_constraint *constraint,

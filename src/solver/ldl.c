@@ -213,26 +213,28 @@ SF_KERNEL void sf_ldl_forward(const sf_ldl *f, int branch, sf_vec *x) {
     sf_vec *carried = &f->carried[branch * size];
     memset(carried, 0, (size_t)size * sizeof *carried);
     for (int64_t j = f->branch[branch]; j < f->branch[branch + 1]; j++) {
+        const sf_vec known = x[j];
         int64_t k = f->column[j];
         for (; k < f->trunk_from[j]; k++)
-            x[f->place[k]] -= f->value[k] * x[j];
+            x[f->place[k]] -= f->value[k] * known;
         for (; k < f->column[j + 1]; k++)
-            carried[f->place[k] - trunk] += f->value[k] * x[j];
+            carried[f->place[k] - trunk] += f->value[k] * known;
     }
 }
 
-/* Row j of D L^T x = b from those behind it. Two sums run side by side, because each addition waits for the
+/* Row j of D L^T x = b from those behind it. Four sums run side by side, because each addition waits for the
  * one before. */
 static inline void solve_row(const sf_ldl *f, int64_t j, sf_vec *x) {
-    sf_vec even = {0}, odd = {0};
-    int64_t k = f->column[j];
-    for (; k + 1 < f->column[j + 1]; k += 2) {
-        even += f->value[k] * x[f->place[k]];
-        odd += f->value[k + 1] * x[f->place[k + 1]];
-    }
-    if (k < f->column[j + 1])
-        even += f->value[k] * x[f->place[k]];
-    x[j] = f->inverse[j] * x[j] - (even + odd);
+    sf_vec sum[4] = {{0}, {0}, {0}, {0}};
+    const int32_t *place = f->place;
+    const double *value = f->value;
+    int64_t k = f->column[j], end = f->column[j + 1];
+    for (; k + 3 < end; k += 4)
+        for (int q = 0; q < 4; q++)
+            sum[q] += value[k + q] * x[place[k + q]];
+    for (; k < end; k++)
+        sum[0] += value[k] * x[place[k]];
+    x[j] = f->inverse[j] * x[j] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
 }
 
 SF_KERNEL void sf_ldl_trunk(const sf_ldl *f, sf_vec *x) {
@@ -240,9 +242,9 @@ SF_KERNEL void sf_ldl_trunk(const sf_ldl *f, sf_vec *x) {
     for (int64_t j = trunk; j < f->rows; j++) {
         for (int b = 0; b < SF_LDL_BRANCHES; b++)
             x[j] -= f->carried[b * size + j - trunk];
-        /* what the rows before have left is in x[j] already */
+        const sf_vec known = x[j];
         for (int64_t k = f->column[j]; k < f->column[j + 1]; k++)
-            x[f->place[k]] -= f->value[k] * x[j];
+            x[f->place[k]] -= f->value[k] * known;
     }
     for (int64_t j = f->rows - 1; j >= trunk; j--)
         solve_row(f, j, x);

@@ -168,7 +168,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_contact_solve(m, op, s); /* f += phi^T q; missile's acceleration */
     sf_lap(s->watch, SF_PHASE_CONTACT);
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
-    sf_constraint_project(m, &op->constraint, &held);
+    sf_constraint_project(&op->constraint, &held);
     memcpy(s->base_reaction, held.base, sizeof held.base);
     if (s->step % RESIDUAL_INTERVAL == 0)
         s->constraint_residual = sf_constraint_residual(m, &op->constraint, &held);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 enum {
-    POWER_INTERVAL = 25,         /* steps between measurements at most */
+    POWER_INTERVAL = 40,         /* steps between measurements at most */
     POWER_PAUSE = 5,             /* and at least, when the bound moves */
     POWER_FIRST = 80,            /* products of the first measurement at most */
     POWER_WARM = SF_POWER_BASIS, /* of the later ones */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The time step: a bound that holds in every step (core/stability.h), tightened by the ratio of the true
  * highest frequency to the bound. A warm-started Lanczos iteration measures that ratio when the bound has
- * moved by 10 %, and at least every 25 steps (theory, section "Time step"). Contact and constraints are
+ * moved by 10 %, and at least every 40 steps (theory, section "Time step"). Contact and constraints are
  * kinematic and do not limit the step. */
 #ifndef SF_SOLVER_TIME_STEP_H
 #define SF_SOLVER_TIME_STEP_H
