@@ -13,6 +13,7 @@ static inline void displacement_gradient(const sf_vec *restrict d, const uint16_
     sf_vec even[3] = {{0}, {0}, {0}}, odd[3] = {{0}, {0}, {0}};
     for (int64_t k = 0; k + 1 < count; k += 2) {
         sf_vec x = d[local[k]], y = d[local[k + 1]];
+        __builtin_prefetch(&b[3 * k + SF_AHEAD]);
         for (int c = 0; c < 3; c++) {
             even[c] += x * b[3 * k + c];
             odd[c] += y * b[3 * k + 3 + c];

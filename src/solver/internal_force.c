@@ -7,8 +7,10 @@
 static inline void add_domain(const double *restrict p, const uint16_t *restrict local,
                               const double *restrict b, int64_t count, sf_vec *restrict sum) {
     const sf_vec x = {p[0], p[3], p[6]}, y = {p[1], p[4], p[7]}, z = {p[2], p[5], p[8]};
-    for (int64_t k = 0; k < count; k++)
+    for (int64_t k = 0; k < count; k++) {
+        __builtin_prefetch(&b[3 * k + SF_AHEAD]);
         sum[local[k]] += x * b[3 * k] + y * b[3 * k + 1] + z * b[3 * k + 2];
+    }
 }
 
 /* What the domains of group g exert, into its array. */

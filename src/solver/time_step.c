@@ -29,9 +29,12 @@ static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, sf_sta
         mode[q - h->ptr[group]] = s->mode[h->node[q]];
     for (int64_t l = group * SF_GROUP; l < sf_halo_end(m, group); l++) {
         double g[3] = {0};
-        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++)
+        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
+            const double *b = &m->domain_b[3 * k];
+            __builtin_prefetch(b + SF_AHEAD);
             for (int c = 0; c < 3; c++)
-                g[c] += mode[h->local[k]] * m->domain_b[3 * k + c];
+                g[c] += mode[h->local[k]] * b[c];
+        }
         memcpy(&s->mode_work[3 * l], g, sizeof g);
     }
 }
@@ -77,6 +80,7 @@ static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_halo *h, const 
         const double *q = &s->power_couple[3 * l];
         for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
             const double *b = &m->domain_b[3 * k];
+            __builtin_prefetch(b + SF_AHEAD);
             sum[h->local[k]] += q[0] * b[0] + q[1] * b[1] + q[2] * b[2];
         }
     }
