@@ -216,7 +216,7 @@ static void repeated_constraint_is_refused(void **state) {
     assert_int_equal(sf_constraint_build(m, &constraint, &err), SF_ERR_MODEL);
     assert_non_null(strstr(err.text, "depend on each other"));
     assert_non_null(strstr(err.text, "kernel.support_ratio"));
-    assert_int_equal(constraint.block_count, 0); /* released */
+    assert_int_equal(constraint.rows, 0); /* released */
     fixture_free(&f);
 }
 

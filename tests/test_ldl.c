@@ -21,24 +21,29 @@ static sf_vec *vectors(int64_t count) {
 }
 
 /* A Laplacian on a grid of side x side points plus `shift` on the diagonal, its rows shuffled: every entry in
- * two equal halves, which the factorisation must add. */
-static sf_ldl_entries laplacian(int side, double shift) {
+ * two equal halves, which the factorisation must add. Of the shuffled rows, the first are shared and the rest
+ * belong to components one to three, as `part` says, without entries between them. */
+static sf_ldl_entries laplacian(int side, double shift, const int64_t part[4]) {
     int64_t rows = (int64_t)side * side, room = 6 * rows;
-    sf_ldl_entries a = {.rows = rows,
-                        .row = calloc((size_t)room, sizeof *a.row),
+    sf_ldl_entries a = {.row = calloc((size_t)room, sizeof *a.row),
                         .column = calloc((size_t)room, sizeof *a.column),
                         .value = calloc((size_t)room, sizeof *a.value)};
-    assert_true(a.row && a.column && a.value);
+    assert_true(a.row && a.column && a.value && part[3] == rows);
+    memcpy(a.part, part, sizeof a.part);
     for (int64_t p = 0; p < rows; p++)
-        for (int side_of = 0; side_of < 3; side_of++) {
-            int64_t q = side_of == 0 ? p : side_of == 1 ? p + 1 : p + side;
-            if (q >= rows || (side_of == 1 && q % side == 0))
+        for (int to = 0; to < 3; to++) {
+            int64_t q = to == 0 ? p : to == 1 ? p + 1 : p + side;
+            if (q >= rows || (to == 1 && q % side == 0))
                 continue;
             int64_t r = p * 7 % rows, s = q * 7 % rows; /* 7 divides no number of rows used here */
-            for (int half = 0; half < 2; half++) {
-                a.row[a.count] = r > s ? r : s;
-                a.column[a.count] = r > s ? s : r;
-                a.value[a.count++] = 0.5 * (side_of == 0 ? 4 + shift : -1);
+            int64_t high = r > s ? r : s, low = r > s ? s : r;
+            bool apart = false;
+            for (int k = 0; k < 3; k++)
+                apart = apart || (low >= part[0] && low < part[k] && high >= part[k]);
+            for (int half = 0; half < 2 && !apart; half++) {
+                a.row[a.count] = high;
+                a.column[a.count] = low;
+                a.value[a.count++] = 0.5 * (to == 0 ? 4 + shift : -1);
             }
         }
     return a;
@@ -50,11 +55,17 @@ static void free_entries(sf_ldl_entries *a) {
     free(a->value);
 }
 
+/* Does component c have this row of A? */
+static bool has_row(const sf_ldl_entries *a, int64_t row, int c) {
+    return row < a->part[0] || (row >= a->part[c] && row < a->part[c + 1]);
+}
+
+/* Largest |A x - b| over the rows that each component has, and |x| over those that it has not. */
 static double residual(const sf_ldl_entries *a, const sf_ldl *f, const sf_vec *b, const sf_vec *x) {
     double largest = 0;
-    int64_t *place = calloc((size_t)a->rows, sizeof *place);
-    sf_vec *r = vectors(a->rows);
-    for (int64_t k = 0; k < a->rows; k++) {
+    int64_t *place = calloc((size_t)f->rows, sizeof *place);
+    sf_vec *r = vectors(f->rows);
+    for (int64_t k = 0; k < f->rows; k++) {
         place[f->order[k]] = k;
         r[k] = b[k];
     }
@@ -64,26 +75,37 @@ static double residual(const sf_ldl_entries *a, const sf_ldl *f, const sf_vec *b
         if (i != j)
             r[j] -= a->value[k] * x[i];
     }
-    for (int64_t k = 0; k < a->rows; k++)
+    for (int64_t k = 0; k < f->rows; k++)
         for (int c = 0; c < 3; c++)
-            largest = fmax(largest, fabs(r[k][c]));
+            largest = fmax(largest, fabs(has_row(a, f->order[k], c) ? r[k][c] : x[k][c]));
     free(place);
     free(r);
     return largest;
 }
 
-/* Grids of one point, of a few (one branch, no trunk) and of many. */
-static void solution_meets_its_system(void **state) {
+/* Grids of one point, of a few (one branch, no trunk) and of many; shared by all components, by none, with
+ * rows of two components besides, and of one component alone. */
+static void solution_meets_its_systems(void **state) {
     (void)state;
-    static const int sides[] = {1, 2, 5, 40};
-    for (int k = 0; k < 4; k++) {
+    static const struct {
+        int side;
+        int64_t part[4];
+    } grid[] = {{1, {1, 1, 1, 1}},
+                {2, {4, 4, 4, 4}},
+                {5, {25, 25, 25, 25}},
+                {40, {1600, 1600, 1600, 1600}},
+                {40, {1300, 1450, 1600, 1600}},
+                {5, {0, 8, 16, 25}},
+                {5, {0, 0, 0, 25}},
+                {40, {1500, 1500, 1500, 1600}}};
+    for (size_t k = 0; k < sizeof grid / sizeof grid[0]; k++) {
         sf_error err = SF_ERROR_INIT;
         uint64_t seed = 5;
         sf_ldl f;
-        sf_ldl_entries a = laplacian(sides[k], 0.1);
+        sf_ldl_entries a = laplacian(grid[k].side, 0.1, grid[k].part);
         assert_int_equal(sf_ldl_build(&a, &f, &err), SF_OK);
-        sf_vec *b = vectors(a.rows), *x = vectors(a.rows);
-        for (int64_t i = 0; i < a.rows; i++)
+        sf_vec *b = vectors(f.rows), *x = vectors(f.rows);
+        for (int64_t i = 0; i < f.rows; i++)
             b[i] = x[i] = (sf_vec){fixture_random(&seed), fixture_random(&seed), fixture_random(&seed)};
         for (int q = SF_LDL_BRANCHES - 1; q >= 0; q--) /* in any order */
             sf_ldl_forward(&f, q, x);
@@ -103,7 +125,7 @@ static void branches_are_balanced(void **state) {
     (void)state;
     sf_error err = SF_ERROR_INIT;
     sf_ldl f;
-    sf_ldl_entries a = laplacian(60, 0.1);
+    sf_ldl_entries a = laplacian(60, 0.1, (const int64_t[]){3600, 3600, 3600, 3600});
     assert_int_equal(sf_ldl_build(&a, &f, &err), SF_OK);
     double all = (double)f.column[f.rows];
     for (int q = 0; q < SF_LDL_BRANCHES; q++) {
@@ -120,7 +142,7 @@ static void indefinite_matrix_is_refused(void **state) {
     (void)state;
     sf_error err = SF_ERROR_INIT;
     sf_ldl f;
-    sf_ldl_entries a = laplacian(5, -4);
+    sf_ldl_entries a = laplacian(5, -4, (const int64_t[]){25, 25, 25, 25});
     assert_int_equal(sf_ldl_build(&a, &f, &err), SF_ERR_MODEL);
     assert_non_null(strstr(err.text, "depend on each other"));
     assert_null(f.value);
@@ -129,7 +151,7 @@ static void indefinite_matrix_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(solution_meets_its_system),
+        cmocka_unit_test(solution_meets_its_systems),
         cmocka_unit_test(branches_are_balanced),
         cmocka_unit_test(indefinite_matrix_is_refused),
     };
