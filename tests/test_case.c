@@ -457,6 +457,16 @@ static void long_whole_numbers_are_numbers(void **state) {
     assert_true(c.missile_card.friction == 1.0);
     assert_true(c.pad.parameter[0].value == 5e9 && c.pad.parameter[1].value == 50.0);
     sf_case_free(&c);
+    assert_refused(GOOD, "geometry.parameters.side=5000000000", "--set", "5000000000 is too large", NULL);
+    assert_refused(GOOD, "geometry.parameters={ a = 1; b = 99999999999999999999L; }",
+                   "99999999999999999999L is too large", NULL);
+    assert_refused(GEOMETRY MATERIAL SOLVER "# 3000000000 /* \" */\nmissile: { mass = \"4000000000 kg\";\n"
+                                            "velocity = \"4.5 m/s\"; friction = -3000000000; };\n",
+                   NULL, "case.cfg:6: -3000000000 is too large", NULL);
+    assert_refused(GOOD "pad: { fixed = 0x100000000; };\n", NULL, "case.cfg:5: 0x100000000 is", NULL);
+    read_good(GOOD "# 5000000000\n", "geometry.parameters={ side5000000000 = 5000000000.0; }", &c);
+    assert_true(c.pad.parameter[0].value == 5e9);
+    sf_case_free(&c);
 }
 
 static void files_that_are_not_there_are_refused(void **state) {
