@@ -5,6 +5,7 @@ option(SOFTFALL_NATIVE "Compile for the processor of this machine alone" OFF)
 option(SOFTFALL_WERROR "Treat warnings as errors" OFF)
 set(SOFTFALL_SANITIZE "" CACHE STRING "Comma list for -fsanitize=, e.g. address,undefined")
 
+option(SOFTFALL_COVERAGE "Count executed lines (gcc; tools/coverage.sh)" OFF)
 option(SOFTFALL_FUZZ "Build the fuzzers of the readers (clang)" OFF)
 set(SOFTFALL_FUZZ_SECONDS 20 CACHE STRING "Time of each fuzzer as a test, s")
 
@@ -17,6 +18,8 @@ set(CMAKE_C_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # assert() guards programmer errors and costs nothing in the kernels: keep it in every build.
 set(CMAKE_C_FLAGS_RELEASE "-O3 -g")
+set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O2 -g")
+set(CMAKE_C_FLAGS_COVERAGE "-O2 -g")
 
 add_library(softfall_options INTERFACE)
 target_compile_definitions(softfall_options INTERFACE _GNU_SOURCE)
@@ -40,6 +43,13 @@ if(SOFTFALL_SANITIZE)
     target_compile_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE} -fno-omit-frame-pointer
                                                       -fno-sanitize-recover=all)
     target_link_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE})
+endif()
+if(SOFTFALL_COVERAGE)
+    # gcc counts before it optimises, so that -O2 does not move lines. The children that softfall forks count as well.
+    add_library(softfall_coverage STATIC ${CMAKE_SOURCE_DIR}/cmake/coverage_exit.c)
+    target_compile_options(softfall_options INTERFACE --coverage)
+    target_link_options(softfall_options INTERFACE --coverage -Wl,--wrap=_exit)
+    target_link_libraries(softfall_options INTERFACE softfall_coverage)
 endif()
 if(SOFTFALL_FUZZ)
     target_compile_options(softfall_options INTERFACE -fsanitize=fuzzer-no-link)

@@ -51,7 +51,8 @@ static program_result run_command(const program_place *place, const char *comman
     result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     read_text(program_path(place, ".stdout"), result.out, sizeof result.out);
     read_text(program_path(place, ".stderr"), result.err, sizeof result.err);
-    if (strstr(result.err, "AddressSanitizer") || strstr(result.err, "runtime error:"))
+    if (strstr(result.err, "AddressSanitizer") || strstr(result.err, "ThreadSanitizer") ||
+        strstr(result.err, "runtime error:"))
         fail_msg("%s: %s", command, result.err);
     return result;
 }

@@ -153,12 +153,15 @@ static void cases_that_contradict_their_geometry_are_refused(void **state) {
         {"material.curve=curve.csv", "curve.csv"},
         {"material.HU=2.0", "HU"},
         {"missile.direction='[0.0, 0.0, 1.0]'", "direction"},
+        {"missile.direction='[0.6, 0.0, -0.8]'", "needs a model without that plane"},
+        {"missile=@deep.cfg", "60 mm deep into a pad that is 50 mm thick"},
         {"kernel.support_ratio=0.5", "support_ratio"},
         {"solver.end_time='0 s'", "end_time"},
         {"output.fields='[\"colour\"]'", "colour"},
     };
     program_bytes before = program_read_file(program_path(p, "model.h5"));
-    program_shell(p, "echo 'strain' > curve.csv");
+    program_shell(p, "echo 'strain' > curve.csv; echo 'motion = \"deep.csv\";' > deep.cfg; printf "
+                     "'time_ms,displacement_mm\\n0,0\\n100,60\\n' > deep.csv");
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         program_result result = program_run(p, "pre", "good.cfg -o model.h5 --force %s --set %s",
                                             program_coarse(20), cases[k].set);
@@ -219,6 +222,29 @@ static void no_mass(sf_model *m) {
 }
 static void falling_curve(sf_model *m) {
     m->foam.curve_stress[m->foam.curve_points - 1] = 0;
+}
+static void no_curve(sf_model *m) {
+    m->foam.curve_ptr[m->foam.curve_count] -= 1;
+}
+static void curve_from_nowhere(sf_model *m) {
+    m->foam.curve_stress[0] = 1;
+}
+static void curve_of_three_points(sf_model *m) {
+    m->foam.curve_points = m->foam.curve_ptr[1] = 3;
+}
+static void three_planes(sf_model *m) {
+    m->symmetry_factor = 3;
+}
+static void held_in_no_direction(sf_model *m) {
+    m->fixed_mask[0] = 0;
+}
+static void frame_before_the_beginning(sf_model *m) {
+    sf_error err = SF_ERROR_INIT;
+    free(m->frame_time);
+    m->frame_time_count = 1;
+    m->frame_time = sf_alloc(&err, 1, sizeof(double), "frame times");
+    assert_int_equal(err.status, SF_OK);
+    m->frame_time[0] = -0.001;
 }
 static void long_direction(sf_model *m) {
     m->missile.direction[2] = -2;
@@ -293,6 +319,12 @@ static void damaged_models_are_refused_with_what_is_wrong(void **state) {
         {negative_volume, "node 11 has volume"},
         {no_mass, "node 0 has volume"},
         {falling_curve, "does not rise"},
+        {no_curve, "no usable compression curve"},
+        {curve_from_nowhere, "does not start at (0, 0)"},
+        {curve_of_three_points, "fewer than 4 points"},
+        {three_planes, "symmetry factor is 3"},
+        {held_in_no_direction, "has mask 0"},
+        {frame_before_the_beginning, "frame time -0.001 s"},
         {long_direction, "direction"},
         {held_node_out_of_range, "constrained nodes"},
         {contact_nodes_out_of_order, "contact nodes"},

@@ -394,6 +394,8 @@ static void values_out_of_bounds_are_refused(void **state) {
     assert_refused(GOOD, "material.densification.start=0.9",
                    "0.9 lies beyond the end of the compression table (0.8)", NULL);
     assert_refused(GOOD, "material.densification.limit=0.9", "0.9 belongs to rule H2", NULL);
+    assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; exponent = 0; }",
+                   "exponent: rule H2 needs one above 0", NULL);
     assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.5; exponent = 2; }",
                    "0.5 is not above the strain 0.8 at which the law starts", NULL);
 }
@@ -409,9 +411,62 @@ static void wrong_types_and_words_are_refused(void **state) {
     assert_refused(GOOD, "pad.fixed=[\"base\", \"base\"]", "\"base\" is named twice", NULL);
     assert_refused(GOOD, "pad.fixed=[]", "pad.fixed: at least one surface must hold the pad", NULL);
     assert_refused(GOOD, "pad.group=3", "pad.group: a plain number stands where a name is expected", NULL);
+    assert_refused(GOOD, "pad.group=true", "true or false stands where a name is expected", NULL);
+    assert_refused(GOOD, "pad.group=[1]", "an array stands where a name is expected", NULL);
+    assert_refused(GOOD, "pad.group=(1)", "a list stands where a name is expected", NULL);
+    assert_refused(GOOD, "pad.group=\"\"", "pad.group: the name is empty", NULL);
+    assert_refused(GOOD, "geometry.file=\"\"", "an empty text stands where a file name is expected", NULL);
+    assert_refused(GOOD, "geometry.length_unit=3", "expected a unit of length, for example", NULL);
+    assert_refused(GOOD, "geometry.length_unit=kg", "\"kg\" is not a unit of length", NULL);
     assert_refused(GOOD, "geometry.parameters=3", "expected a group such as", NULL);
     assert_refused(GOOD, "geometry.parameters.side=40 mm", "\"side\" is not a finite plain number", NULL);
     assert_refused(GOOD, "geometry.missile_parameters.diameter=3", "no geometry.missile_file", NULL);
+}
+
+static void names_and_lists_that_are_too_long_are_refused(void **state) {
+    (void)state;
+    char name[SF_CASE_NAME_SIZE + 1], set[2048];
+    memset(name, 'n', SF_CASE_NAME_SIZE);
+    name[SF_CASE_NAME_SIZE] = '\0';
+    snprintf(set, sizeof set, "pad.group=%s", name);
+    assert_refused(GOOD, set, "the name is longer than 127 characters", NULL);
+    snprintf(set, sizeof set, "geometry.parameters={ %s = 1; }", name);
+    assert_refused(GOOD, set, "is longer than 127 characters", NULL);
+    snprintf(set, sizeof set, "missile.%s%s%s=1", name, name, name);
+    assert_refused(GOOD, set, "the key is longer than 255 characters", NULL);
+
+    int length = snprintf(set, sizeof set, "pad.fixed=[\"n0\"");
+    for (int k = 1; k <= SF_CASE_MAX_GROUPS; k++)
+        length += snprintf(set + length, sizeof set - (size_t)length, ", \"n%d\"", k);
+    snprintf(set + length, sizeof set - (size_t)length, "]");
+    assert_refused(GOOD, set, "17 names; at most 16 are allowed", NULL);
+    length = snprintf(set, sizeof set, "geometry.parameters={ ");
+    for (int k = 0; k <= SF_CASE_MAX_PARAMETERS; k++)
+        length += snprintf(set + length, sizeof set - (size_t)length, "p%d = 1; ", k);
+    snprintf(set + length, sizeof set - (size_t)length, "}");
+    assert_refused(GOOD, set, "65 parameters; at most 64 are allowed", NULL);
+}
+
+/* libconfig's own type for whole numbers beyond 32 bits, in the file and by --set. */
+static void long_whole_numbers_are_numbers(void **state) {
+    (void)state;
+    sf_case c;
+    read_good(GEOMETRY MATERIAL SOLVER
+              "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; friction = 1L; };\n",
+              "geometry.parameters={ side = 5000000000L; thickness = 50; }", &c);
+    assert_true(c.missile_card.friction == 1.0);
+    assert_true(c.pad.parameter[0].value == 5e9 && c.pad.parameter[1].value == 50.0);
+    sf_case_free(&c);
+    assert_refused(GOOD, "geometry.parameters.side=5000000000", "--set", "5000000000 is too large", NULL);
+    assert_refused(GOOD, "geometry.parameters={ a = 1; b = 99999999999999999999L; }",
+                   "99999999999999999999L is too large", NULL);
+    assert_refused(GEOMETRY MATERIAL SOLVER "# 3000000000 /* \" */\nmissile: { mass = \"4000000000 kg\";\n"
+                                            "velocity = \"4.5 m/s\"; friction = -3000000000; };\n",
+                   NULL, "case.cfg:6: -3000000000 is too large", NULL);
+    assert_refused(GOOD "pad: { fixed = 0x100000000; };\n", NULL, "case.cfg:5: 0x100000000 is", NULL);
+    read_good(GOOD "# 5000000000\n", "geometry.parameters={ side5000000000 = 5000000000.0; }", &c);
+    assert_true(c.pad.parameter[0].value == 5e9);
+    sf_case_free(&c);
 }
 
 static void files_that_are_not_there_are_refused(void **state) {
@@ -455,6 +510,9 @@ static void rate_curves_are_checked(void **state) {
     GEOMETRY MISSILE SOLVER "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = " list "; };\n"
     assert_refused(RATES("( )"), NULL, "material.curves must be a list", NULL);
     assert_refused(RATES("( { rate = \"1 1/s\"; } )"), NULL, "each entry must be { rate", NULL);
+    assert_refused(RATES("( { rate = \"1 1/s\"; file = \"\"; } )"), NULL, "the name of a curve's CSV file",
+                   NULL);
+    assert_refused(RATES("( { rate = 1; file = \"foam.csv\"; } )"), NULL, "the rate must be a text", NULL);
     assert_refused(RATES("( { rate = \"1 s\"; file = \"foam.csv\"; } )"), NULL, "is a time; expected a rate",
                    NULL);
     assert_refused(
@@ -635,6 +693,8 @@ int main(void) {
         cmocka_unit_test(units_of_another_kind_are_refused),
         cmocka_unit_test(values_out_of_bounds_are_refused),
         cmocka_unit_test(wrong_types_and_words_are_refused),
+        cmocka_unit_test(names_and_lists_that_are_too_long_are_refused),
+        cmocka_unit_test(long_whole_numbers_are_numbers),
         cmocka_unit_test(files_that_are_not_there_are_refused),
         cmocka_unit_test(broken_syntax_names_file_and_line),
         cmocka_unit_test(rate_curves_are_checked),

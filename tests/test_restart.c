@@ -219,7 +219,7 @@ static void run_with_signals(const program_place *p, const char *results, const 
         if (is_there(p, results)) {
             sf_error err = SF_ERROR_INIT;
             sf_results r;
-            int code = sf_results_open(program_path(p, results), &r, &err);
+            sf_status code = sf_results_open(program_path(p, results), &r, &err);
             if (code != SF_OK && !strstr(err.text, "usable rows"))
                 fail_msg("after %d signals: %s", killed, err.text);
             opened += code == SF_OK;

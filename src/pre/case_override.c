@@ -66,8 +66,10 @@ static bool copy_setting(const config_setting_t *from, config_setting_t *parent,
 }
 
 /* libconfig syntax if it is that, else a text as it stands, so that shells need no second layer of quotes. */
-static bool put_value(config_setting_t *parent, const char *name, const char *value, const char *text) {
+static sf_status put_value(config_setting_t *parent, const char *name, const char *value, const char *text,
+                           sf_error *err) {
     config_t scratch;
+    int length, at;
     config_init(&scratch);
     bool done = false, parsed = false;
     char *line = NULL;
@@ -75,7 +77,12 @@ static bool put_value(config_setting_t *parent, const char *name, const char *va
         parsed = config_read_string(&scratch, line) && config_setting_length(scratch.root) == 1;
         free(line);
     }
-    if (parsed) {
+    const char *wide = parsed ? sf_case_wide_integer(value, &length, &at) : NULL;
+    if (wide) {
+        SF_FAIL(err, SF_ERR_INPUT,
+                "--set %s: %.*s is too large for a whole number: write it with a decimal point, or with an L",
+                text, length, wide);
+    } else if (parsed) {
         const copy_source source = {.text = text};
         done = copy_setting(config_setting_get_elem(scratch.root, 0), parent, name, &source);
     } else {
@@ -83,7 +90,9 @@ static bool put_value(config_setting_t *parent, const char *name, const char *va
         done = to && mark(to, text, 0) && config_setting_set_string(to, value);
     }
     config_destroy(&scratch);
-    return done;
+    if (!done)
+        SF_FAIL(err, SF_ERR_INPUT, "--set %s: \"%s\" is not a valid key", text, name);
+    return err->status;
 }
 
 /* The group named by the next component of the key, made if it is absent; NULL if it cannot be a group. */
@@ -162,7 +171,5 @@ sf_status sf_case_override(config_t *config, const char *text, sf_error *err) {
             return SF_FAIL(err, SF_ERR_INPUT, "--set %s: \"%s\" is not a group", text, name);
     }
     config_setting_remove(parent, name);
-    if (!put_value(parent, name, value, text))
-        return SF_FAIL(err, SF_ERR_INPUT, "--set %s: \"%s\" is not a valid key", text, name);
-    return SF_OK;
+    return put_value(parent, name, value, text, err);
 }

@@ -27,6 +27,10 @@ char *sf_case_load_text(const char *path, int count, const char *const *override
 const char *sf_case_source_find(const sf_case_source *source, int line, int *file_line);
 void sf_case_source_free(sf_case_source *source);
 
+/* libconfig 1.5 cuts a whole number to 32 bits unless an L follows it. The first number of the text that
+ * would be cut, with its length and line; NULL if there is none. */
+const char *sf_case_wide_integer(const char *text, int *length, int *line);
+
 /* The folder part of a path, "." if there is none; from malloc. */
 char *sf_case_folder_of(const char *path, sf_error *err);
 

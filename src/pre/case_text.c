@@ -3,6 +3,7 @@
 #include "pre/case_keys.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -84,6 +85,56 @@ const char *sf_case_source_find(const sf_case_source *source, int line, int *fil
         k--;
     *file_line = line - source->piece[k].first + source->piece[k].line;
     return source->piece[k].path;
+}
+
+/* The end of the string or comment that begins at p; p if none does. */
+static const char *past_string_or_comment(const char *p) {
+    if (*p == '"') {
+        for (p++; *p && *p != '"'; p++)
+            p += *p == '\\' && p[1];
+        return p + (*p == '"');
+    }
+    if (*p == '#' || strncmp(p, "//", 2) == 0)
+        return p + strcspn(p, "\n");
+    if (strncmp(p, "/*", 2) == 0) {
+        const char *end = strstr(p + 2, "*/");
+        return end ? end + 2 : p + strlen(p);
+    }
+    return p;
+}
+
+static bool is_wide(const char *word, size_t length) {
+    char *end;
+    errno = 0;
+    long long value = strtoll(word, &end, word[0] == '0' && (word[1] == 'x' || word[1] == 'X') ? 16 : 10);
+    end += errno == ERANGE ? strspn(end, "L") : 0;
+    return end == word + length && (errno == ERANGE || value < INT_MIN || value > INT_MAX);
+}
+
+const char *sf_case_wide_integer(const char *text, int *length, int *line) {
+    *line = 1;
+    for (const char *p = text, *end; *p; p = end) {
+        size_t word = strspn(p, "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_.+-");
+        *length = (int)word;
+        if (word > 0 && is_wide(p, word))
+            return p;
+        end = word > 0 ? p + word : past_string_or_comment(p);
+        end += end == p;
+        for (const char *c = p; c < end; c++)
+            *line += *c == '\n';
+    }
+    return NULL;
+}
+
+static void refuse_wide_integer(const char *path, const char *text, const sf_case_source *source,
+                                sf_error *err) {
+    int length, line;
+    const char *number = sf_case_wide_integer(text, &length, &line);
+    const char *file = number && source ? sf_case_source_find(source, line, &line) : path;
+    if (number)
+        SF_FAIL(err, SF_ERR_INPUT,
+                "%s:%d: %.*s is too large for a whole number: write it with a decimal point, or with an L",
+                file, line, length, number);
 }
 
 /* The text under construction. */
@@ -223,6 +274,8 @@ char *sf_case_load_text(const char *path, int count, const char *const *override
     if (fclose(out) != 0)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
     free(folder);
+    if (err->status == SF_OK)
+        refuse_wide_integer(path, text, source, err);
     if (err->status != SF_OK) {
         free(text);
         return NULL;

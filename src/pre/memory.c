@@ -22,8 +22,17 @@ double sf_memory_available(void) {
     return kilobytes < 0 ? INFINITY : 1024.0 * (double)kilobytes;
 }
 
+/* The sanitizers' shadow takes terabytes of addresses. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define UNLIMITED_ADDRESSES
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define UNLIMITED_ADDRESSES
+#endif
+#endif
+
 void sf_memory_limit_process(void) {
-#ifndef __SANITIZE_ADDRESS__ /* its shadow takes terabytes of addresses */
+#ifndef UNLIMITED_ADDRESSES
     double bytes = sf_memory_available();
     if (bytes < 1e15) {
         const struct rlimit limit = {(rlim_t)bytes, (rlim_t)bytes};

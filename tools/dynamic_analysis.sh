@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sanitizers and valgrind; fails at the first finding.   tools/dynamic_analysis.sh [memory] [threads] [valgrind]
+#   memory    gcc's address and undefined-behaviour sanitizers, all tests that are not slow
+#   threads   clang's thread sanitizer with OpenMP's libarcher and 3 threads: a loop with a race, which must be found, the
+#             tests of everything that runs in parallel, and a coarse drop
+#   valgrind  memcheck on a coarse drop through softfall-pre, -solve and -post (built for AVX2: valgrind does not
+#             know AVX-512); tests/valgrind.supp says what of gmsh is left out, and why
+# Packages: section analysis of packages.txt.
+set -euo pipefail
+place=
+trap '[ -z "$place" ] || rm -rf "$place"' EXIT
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+build() {
+    [ -f "$1/build.ninja" ] || cmake -B "$@"
+    cmake --build "$1"
+}
+
+# coarse_drop BIN [COMMAND...]: the three programs under a command, in a folder that goes away.
+coarse_drop() {
+    local bin=$PWD/$1 example=$PWD/examples/eva50-v4.5/case.cfg
+    shift
+    place=$(mktemp -d)
+    (
+        cd "$place"
+        set -x
+        "$@" "$bin/softfall-pre" "$example" -o model.h5 --set geometry.parameters.fine_spacing=20.0 \
+            --set geometry.parameters.outer_spacing=20.0 --set geometry.missile_parameters.element_size=20.0
+        "$@" "$bin/softfall-solve" model.h5 -o results.h5
+        "$@" "$bin/softfall-post" results.h5 -o out
+    ) >/dev/null
+    rm -r "$place"
+}
+
+run_memory() {
+    build build-sanitize --preset sanitize
+    OMP_NUM_THREADS=1 ctest --test-dir build-sanitize --output-on-failure --no-tests=error -LE slow
+}
+
+run_threads() {
+    local archer
+    build build-threads --preset threads
+    archer=$(sed -n 's/^ARCHER_LIBRARY:.*=//p' build-threads/CMakeCache.txt)
+    ctest --test-dir build-threads --output-on-failure --no-tests=error \
+        -R '^(threads_control|test_(domains|constraint|stabilisation|patch|kernels|failure))$'
+    coarse_drop build-threads/bin env OMP_NUM_THREADS=3 OMP_WAIT_POLICY=passive OMP_TOOL_LIBRARIES="$archer" \
+        TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1 exitcode=66"
+    echo "threads: nothing found"
+}
+
+run_valgrind() {
+    build build-valgrind --preset default -DCMAKE_BUILD_TYPE=RelWithDebInfo -DSOFTFALL_NATIVE=OFF \
+        -DCMAKE_C_FLAGS=-march=x86-64-v3 -DSOFTFALL_TESTS=OFF
+    coarse_drop build-valgrind/bin env OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive valgrind --quiet --error-exitcode=99 \
+        --leak-check=full --errors-for-leak-kinds=definite,indirect --suppressions="$PWD/tests/valgrind.supp"
+    echo "valgrind: nothing found"
+}
+
+[ $# -gt 0 ] || set -- memory threads valgrind
+for tool in "$@"; do
+    case $tool in
+    memory | threads | valgrind) "run_$tool" ;;
+    *) echo "dynamic_analysis.sh: unknown word $tool" >&2 && exit 2 ;;
+    esac
+done
