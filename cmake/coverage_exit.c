@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Children that softfall forks end with _exit, which does not write gcov's counts: the linker puts this
- * before it
- * (-Wl,--wrap=_exit, preset "coverage"). */
+/* Children that softfall forks end with _exit, which does not write gcov's counts: the linker puts this before
+ * it (-Wl,--wrap=_exit, preset "coverage"). */
 #include <gcov.h>
 
 void __real__exit(int status) __attribute__((noreturn));
