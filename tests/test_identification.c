@@ -17,6 +17,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "point_fixture.h"
 #include "post_check.h"
 #include "program_fixture.h"
 
@@ -339,24 +340,14 @@ static void maxwell_stress_is_that_of_the_solver(void **state) {
     (void)state;
     enum { N = 9 };
     static const double strain[N] = {0.01, 0.1, 0.3, 0.55, 0.8, 0.7, 0.5, 0.2, 0.01};
-    double rates[2] = {0}, line_strain[3] = {0, 0.45, 0.9}, line_stress[3] = {0, 450, 900}, with[N],
-           without[N];
-    int64_t ptr[2] = {0, 3};
-    sf_foam_card card = {.density = 35,
-                         .modulus = 1e3,
-                         .hysteresis_hu = 1,
-                         .hysteresis_shape = 1,
-                         .maxwell_rate = 0.7,
-                         .tension_cutoff = 1e30,
-                         .densification_limit = 1,
-                         .densification_exponent = 1,
-                         .rate_filter_time = 1e-4,
-                         .curve_count = 1,
-                         .curve_points = 3,
-                         .curve_rate = rates,
-                         .curve_ptr = ptr,
-                         .curve_strain = line_strain,
-                         .curve_stress = line_stress};
+    double with[N], without[N];
+    point_card line;
+    point_card_init(&line);
+    point_card_add_line(&line, 1e3, 0.9);
+    sf_foam_card card = line.card;
+    card.modulus = 1e3;
+    card.maxwell_rate = 0.7;
+    card.densification_exponent = 1;
     for (double rate = 0.01; rate < 20; rate *= 10) {
         sf_foam foam;
         sf_error err = SF_ERROR_INIT;
