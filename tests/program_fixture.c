@@ -166,6 +166,12 @@ void program_write_file(const char *path, const void *data, size_t size) {
         fail_msg("cannot write %s", path);
 }
 
+const char *program_write_text(const program_place *place, const char *name, const char *text) {
+    const char *path = program_path(place, name);
+    program_write_file(path, text, strlen(text));
+    return path;
+}
+
 void program_assert_unchanged(const char *path, program_bytes *before) {
     program_bytes after = program_read_file(path);
     if (after.size != before->size || memcmp(after.data, before->data, after.size) != 0)
