@@ -12,6 +12,7 @@ sections=docs/images/verification
 [ $# -gt 0 ] || set -- $order
 mkdir -p "$sections"
 export SF_BIN_DIR="$PWD/$build/bin" SF_SOURCE_DIR="$PWD"
+[ -x build-debug/bin/softfall-post ] && export SF_DEBUG_BIN_DIR="$PWD/build-debug/bin" # reproducibility compares
 
 failed=""
 for name in "$@"; do
