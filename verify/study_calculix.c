@@ -243,7 +243,7 @@ static void write_data(sf_study *s, const pair *p, const pair *limit) {
         "plot f u 1:9 w l lw 2 lc 6 t 'CalculiX, 3.85 mm', f u 1:8 w p pt 6 lc 7 t 'softfall, 3.85 mm', "
         "f u 1:3 w l dt 2 lc 6 t 'CalculiX, 10 mm', f u 1:2 w p pt 1 lc 7 t 'softfall, 10 mm'\n"
         "unset logscale\nset format x '%g'\nset xlabel 'depth (mm)'\nset ylabel 'softfall - CalculiX (%)'\n"
-        "set key right bottom\nset yrange [-15:5]\n"
+        "set key center bottom\nset yrange [-15:5]\n"
         "plot f u 1:(100*($2/$3-1)) w lp t '10 mm', f u 1:(100*($4/$5-1)) w lp t '7.14 mm', "
         "f u 1:(100*($6/$7-1)) w lp t '5 mm', f u 1:(100*($8/$9-1)) w lp t '3.85 mm', "
         "f u 1:(100*($10/$11-1)) w lp lw 2 t 'h to 0', "
@@ -350,18 +350,30 @@ static sf_status study_influences(sf_study *s, const sf_indentation *in, const p
     return SF_OK;
 }
 
-static void print_stretches(sf_study *s, const sf_indentation_curve *c) {
+/* And what is known of the difference that remains at the end. */
+static void print_stretches(sf_study *s, const sf_ogden *law, const sf_indentation_curve *c) {
     static const int depths[] = {10, 20, 30, 38, 40, 42};
+    double largest = 1;
     sf_study_text(s,
                   "Tension in softfall at %.3g mm spacing, largest principal stretch and part of the volume "
                   "above 1.3:\n\n| depth | stretch | volume above 1.3 |\n|---|---|---|\n",
                   spacing(FINEST));
     for (size_t i = 0; i < sizeof depths / sizeof *depths; i++) {
         int k = point_at(depths[i]);
-        if (k < c->frames)
-            sf_study_text(s, "| %d mm | %.3f | %.2f %% |\n", depths[i], c->stretch[k], 100 * c->beyond[k]);
+        if (k >= c->frames)
+            continue;
+        largest = fmax(largest, c->stretch[k]);
+        sf_study_text(s, "| %d mm | %.3f | %.2f %% |\n", depths[i], c->stretch[k], 100 * c->beyond[k]);
     }
-    sf_study_text(s, "\n");
+    sf_study_text(
+        s,
+        "\nAt 42 mm the difference is above 3 %% on every mesh, and the limits differ too. One reason "
+        "is known: up to 38 mm the stretch stays below 1.3, where the two laws differ by less than 1 "
+        "%%, beyond it the foam beside the sphere is stretched further; at the largest stretch of the "
+        "table CalculiX's law lies %.1f %% above softfall's line. By what tension is worth (above) that "
+        "can be about half of the difference of the limits at 42 mm. The other half is not explained; "
+        "a stiffer contact in CalculiX would add to it.\n\n",
+        100 * over_line(law, largest));
 }
 
 /* How far CalculiX goes at all, and with the other contact. */
@@ -405,7 +417,7 @@ int main(int argc, char **argv) {
         study_law(&s, &in);
         study_element(&s, &in);
         if (study_pad(&s, &in, p, &err) == SF_OK && study_influences(&s, &in, &p[0], &err) == SF_OK) {
-            print_stretches(&s, &p[FINEST].softfall);
+            print_stretches(&s, &in.law, &p[FINEST].softfall);
             study_end_of_range(&s, &in, &err);
         }
         sf_indentation_end(&in);
