@@ -27,6 +27,39 @@ void program_tear_down(const program_place *place) {
         fail_msg("cannot remove %s", place->folder);
 }
 
+program_place *program_group_set_up(void **state) {
+    program_place *place = calloc(1, sizeof *place);
+    assert_non_null(place);
+    *state = place;
+    program_set_up(place);
+    return place;
+}
+
+int program_group_folder(void **state) {
+    program_group_set_up(state);
+    return 0;
+}
+
+int program_group_example(void **state) {
+    const program_place *place = program_group_set_up(state);
+    program_result made =
+        program_shell(place, "R=\"$SF_SOURCE_DIR\" && cp -r \"$R/geo\" \"$R/examples/materials\" . && "
+                             "sed 's|\\.\\./\\.\\./geo|geo|; s|\\.\\./materials|materials|' "
+                             "\"$R/examples/eva50-v4.5/case.cfg\" > good.cfg");
+    if (made.code != 0)
+        fail_msg("the example cannot be copied: %s", made.err);
+    program_succeed(place, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
+    program_succeed(place, "solve", "model.h5 -o results.h5 --threads 1");
+    program_succeed(place, "post", "results.h5 -o out");
+    return 0;
+}
+
+int program_group_tear_down(void **state) {
+    program_tear_down(*state);
+    free(*state);
+    return 0;
+}
+
 const char *program_path(const program_place *place, const char *name) {
     static char path[8][1024];
     static int turn;
@@ -115,14 +148,29 @@ program_bytes program_read_file(const char *path) {
     rewind(file);
     if (!bytes.data || fread(bytes.data, 1, bytes.size, file) != bytes.size)
         fail_msg("cannot read %s", path);
+    bytes.data[bytes.size] = '\0';
     fclose(file);
     return bytes;
+}
+
+sf_h5 *program_open_h5(const program_place *place, const char *name) {
+    sf_error err = SF_ERROR_INIT;
+    sf_h5 *file = NULL;
+    if (sf_h5_open(program_path(place, name), &file, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    return file;
 }
 
 void program_write_file(const char *path, const void *data, size_t size) {
     FILE *file = fopen(path, "wb");
     if (!file || fwrite(data, 1, size, file) != size || fclose(file) != 0)
         fail_msg("cannot write %s", path);
+}
+
+const char *program_write_text(const program_place *place, const char *name, const char *text) {
+    const char *path = program_path(place, name);
+    program_write_file(path, text, strlen(text));
+    return path;
 }
 
 void program_assert_unchanged(const char *path, program_bytes *before) {

@@ -4,6 +4,7 @@
 #ifndef SF_TESTS_PROGRAM_FIXTURE_H
 #define SF_TESTS_PROGRAM_FIXTURE_H
 
+#include "io/h5.h"
 #include <stddef.h>
 
 typedef struct program_place {
@@ -18,12 +19,19 @@ typedef struct program_result {
 
 /* A copy of a file. */
 typedef struct program_bytes {
-    char *data; /* owned: free */
+    char *data; /* owned: free; a zero follows */
     size_t size;
 } program_bytes;
 
 void program_set_up(program_place *place);
 void program_tear_down(const program_place *place);
+
+/* A place of a whole group of tests, in *state; each ends with program_group_tear_down. */
+program_place *program_group_set_up(void **state);
+int program_group_folder(void **state); /* empty */
+/* With good.cfg (the example, geo and materials beside it), model.h5, results.h5 of 1 ms and out/. */
+int program_group_example(void **state);
+int program_group_tear_down(void **state);
 
 /* folder/name, valid until the eighth call after this one. */
 const char *program_path(const program_place *place, const char *name);
@@ -42,8 +50,12 @@ program_result program_succeed(const program_place *place, const char *name, con
  * next call. */
 const char *program_coarse(double spacing);
 
+/* folder/name of HDF5, open for reading. */
+sf_h5 *program_open_h5(const program_place *place, const char *name);
 program_bytes program_read_file(const char *path);
 void program_write_file(const char *path, const void *data, size_t size);
+/* Writes folder/name and returns its path, as program_path does. */
+const char *program_write_text(const program_place *place, const char *name, const char *text);
 /* Fails if the file at `path` is not byte by byte what `before` is; releases `before`. */
 void program_assert_unchanged(const char *path, program_bytes *before);
 

@@ -15,30 +15,6 @@
 #include <string.h>
 #include <cmocka.h>
 
-static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
-
-/* good.cfg (the example, with geo and materials beside it), model.h5 and results.h5 of 1 ms, out/. */
-static int set_up(void **state) {
-    program_place *p = calloc(1, sizeof *p);
-    *state = p;
-    program_set_up(p);
-    program_result text = program_shell(
-        p,
-        "cp -r '%s' '%s' . && sed 's|\\.\\./\\.\\./geo|geo|; s|\\.\\./materials|materials|' '%s' > good.cfg",
-        fixture_source("geo"), fixture_source("examples/materials"), fixture_source(EXAMPLE));
-    assert_int_equal(text.code, 0);
-    program_succeed(p, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
-    program_succeed(p, "solve", "model.h5 -o results.h5 --threads 1");
-    program_succeed(p, "post", "results.h5 -o out");
-    return 0;
-}
-
-static int tear_down(void **state) {
-    program_tear_down(*state);
-    free(*state);
-    return 0;
-}
-
 /* Not 0, no signal; one line on stderr (argp adds a second one that points to --help), with `part` in it. */
 static void assert_refused(const program_result *r, const char *part) {
     int lines = 0;
@@ -418,5 +394,5 @@ int main(void) {
         cmocka_unit_test(files_of_newer_formats_or_without_content_are_refused),
         cmocka_unit_test(flipped_bytes_never_crash_a_program),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: what a good one gives, and the sentence that each fault gets. */
+#include "program_fixture.h"
+
 #include "pre/case.h"
 #include "pre/case_curve.h"
 
@@ -12,10 +14,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 #include <cmocka.h>
 
-static char folder[256]; /* of this run's files; set up once before the tests */
+static program_place place; /* of this run's files; set up once before the tests */
 
 #define GEOMETRY "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\n"
 #define MATERIAL "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curve = \"foam.csv\"; };\n"
@@ -24,26 +25,16 @@ static char folder[256]; /* of this run's files; set up once before the tests */
 #define GOOD GEOMETRY MATERIAL MISSILE SOLVER
 
 static const char *in_folder(const char *name) {
-    static char path[4][512];
-    static int turn;
-    turn = (turn + 1) % 4;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-    return path[turn];
+    return program_path(&place, name);
 }
 
 static void write_file(const char *name, const char *text) {
-    FILE *out = fopen(in_folder(name), "w");
-    assert_non_null(out);
-    fputs(text, out);
-    assert_int_equal(fclose(out), 0);
+    program_write_text(&place, name, text);
 }
 
 static int make_folder(void **state) {
     (void)state;
-    const char *base = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/softfall-case-XXXXXX", base && *base ? base : "/tmp");
-    if (!mkdtemp(folder))
-        return 1;
+    program_set_up(&place);
     mkdir(in_folder("materials"), 0700);
     write_file("pad.geo", "DefineConstant[ side = 1 ];\n");
     write_file("ball.geo", "DefineConstant[ diameter = 1 ];\n");
@@ -56,9 +47,8 @@ static int make_folder(void **state) {
 
 static int remove_folder(void **state) {
     (void)state;
-    char command[600];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command) != 0;
+    program_tear_down(&place);
+    return 0;
 }
 
 /* Reads `text` as case.cfg with up to one override. */
@@ -484,7 +474,7 @@ static void files_that_are_not_there_are_refused(void **state) {
     assert_int_equal(sf_case_read(in_folder("absent.cfg"), 0, NULL, &c, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "absent.cfg cannot be read"));
     sf_error of_folder = SF_ERROR_INIT;
-    assert_int_equal(sf_case_read(folder, 0, NULL, &c, &of_folder), SF_ERR_INPUT);
+    assert_int_equal(sf_case_read(place.folder, 0, NULL, &c, &of_folder), SF_ERR_INPUT);
     assert_non_null(strstr(of_folder.text, "is not a plain file"));
 }
 

@@ -17,19 +17,6 @@
 static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
 static const double SPACING = 15;
 
-static int set_up(void **state) {
-    program_place *p = calloc(1, sizeof *p);
-    *state = p;
-    program_set_up(p);
-    return 0;
-}
-
-static int tear_down(void **state) {
-    program_tear_down(*state);
-    free(*state);
-    return 0;
-}
-
 /* The number after the first "key": in the text that follows `after`; NaN for null. */
 static double number_of(const char *json, const char *after, const char *key) {
     char quoted[64];
@@ -44,9 +31,7 @@ static double number_of(const char *json, const char *after, const char *key) {
 }
 
 static char *read_text(const program_place *p, const char *name) {
-    program_bytes bytes = program_read_file(program_path(p, name));
-    bytes.data[bytes.size] = '\0';
-    return bytes.data;
+    return program_read_file(program_path(p, name)).data;
 }
 
 static int count_of(const char *text, const char *part) {
@@ -115,8 +100,7 @@ static void bounds_and_extrapolation_are_said(void **state) {
     assert_non_null(strstr(report, "greatest height allowed"));
     assert_null(strstr(report, "## Warnings"));
     free(report);
-    program_shell(p, "sed '/^0.[6-9]/d' '%s' > short.csv",
-                  fixture_source("examples/materials/eva35.csv"));
+    program_shell(p, "sed '/^0.[6-9]/d' '%s' > short.csv", fixture_source("examples/materials/eva35.csv"));
     r = program_succeed(p, "cfh",
                         "'%s' -o short -t 1 --max-height '50 cm' %s --set material.curve=\"$PWD/short.csv\"",
                         fixture_source(EXAMPLE), program_coarse(20));
@@ -168,5 +152,5 @@ int main(void) {
         cmocka_unit_test(bounds_and_extrapolation_are_said),
         cmocka_unit_test(command_lines_that_cannot_be_meant_are_refused),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

@@ -18,28 +18,6 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-/* good.cfg, model.h5, results.h5 of 1 ms and out/ of an earlier run. */
-static int set_up(void **state) {
-    program_place *p = calloc(1, sizeof *p);
-    *state = p;
-    program_set_up(p);
-    program_result made =
-        program_shell(p, "R=\"$SF_SOURCE_DIR\" && cp -r \"$R/geo\" \"$R/examples/materials\" . && "
-                         "sed 's|\\.\\./\\.\\./geo|geo|; s|\\.\\./materials|materials|' "
-                         "\"$R/examples/eva50-v4.5/case.cfg\" > good.cfg");
-    assert_int_equal(made.code, 0);
-    program_succeed(p, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
-    program_succeed(p, "solve", "model.h5 -o results.h5 --threads 1");
-    program_succeed(p, "post", "results.h5 -o out");
-    return 0;
-}
-
-static int tear_down(void **state) {
-    program_tear_down(*state);
-    free(*state);
-    return 0;
-}
-
 /* The last line of stderr is the program's sentence, with `part` in it. */
 static void assert_says(const program_result *r, const char *program, const char *part) {
     char begin[64];
@@ -196,5 +174,5 @@ int main(void) {
         cmocka_unit_test(closed_pipe_does_not_cost_the_files),
         cmocka_unit_test(leavings_of_killed_runs_are_removed),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
 }

@@ -317,10 +317,6 @@ static void mapping_passes_on_a_failed_simulation(void **state) {
 #define MATERIAL "material = \"start.cfg\";\n"
 #define GOOD MATERIAL DROPS("a_max_g = 60.0; HIC = 180.0;")
 
-static void put(const program_place *place, const char *name, const char *text) {
-    program_write_file(program_path(place, name), text, strlen(text));
-}
-
 /* The case of the 70 mm drop with a coarse mesh, and a start material. */
 static void put_case(const program_place *place) {
     char text[4096];
@@ -336,11 +332,12 @@ static void put_case(const program_place *place) {
         "material: {\n@include \"start.cfg\"\n};\nmissile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
         "solver: { end_time = \"40 ms\"; };\n",
         source, source);
-    put(place, "case.cfg", text);
-    put(place, "start.cfg",
+    program_write_text(place, "case.cfg", text);
+    program_write_text(
+        place, "start.cfg",
         "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"start.csv\"; HU = 0.01; ED = \"2 MPa\"; "
         "BETA1 = \"5000 1/s\";\n");
-    put(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
+    program_write_text(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
 }
 
 static void bad_input_gets_one_sentence(void **state) {
@@ -387,7 +384,7 @@ static void bad_input_gets_one_sentence(void **state) {
     program_set_up(&place);
     put_case(&place);
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
-        put(&place, "fit.cfg", bad[k].text);
+        program_write_text(&place, "fit.cfg", bad[k].text);
         program_result r = program_run(&place, "fit", "drop fit.cfg -o out");
         if (r.code == 0 || !strstr(r.err, bad[k].sentence) || strchr(r.err, '\n') != strrchr(r.err, '\n'))
             fail_msg("%s\nexit code %d, expected \"%s\", got: %s", bad[k].text, r.code, bad[k].sentence,
@@ -405,7 +402,8 @@ static void hidden_foam_is_found(void **state) {
     char text[1024];
     program_set_up(&place);
     put_case(&place);
-    put(&place, "hidden.cfg",
+    program_write_text(
+        &place, "hidden.cfg",
         "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"hidden.csv\"; HU = 0.01; ED = \"3 MPa\"; "
         "BETA1 = \"5000 1/s\";\n");
     FILE *curve = fopen(program_path(&place, "hidden.csv"), "w");
@@ -433,7 +431,7 @@ static void hidden_foam_is_found(void **state) {
              "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = %.9g; HIC = %.9g; },\n"
              "{ name = \"fast\"; case = \"fast.cfg\"; a_max_g = %.9g; HIC = %.9g; } );\n",
              a_max[0], hic[0], a_max[1], hic[1]);
-    put(&place, "fit.cfg", text);
+    program_write_text(&place, "fit.cfg", text);
     program_succeed(&place, "fit", "drop fit.cfg -o out -t 1");
     program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
     const char *at = json.data;

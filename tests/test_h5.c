@@ -16,19 +16,6 @@ enum { COUNT = 100 };
 
 static const double numbers[COUNT] = {1, 2, 3};
 
-static int set_up(void **state) {
-    program_place *p = calloc(1, sizeof *p);
-    *state = p;
-    program_set_up(p);
-    return 0;
-}
-
-static int tear_down(void **state) {
-    program_tear_down(*state);
-    free(*state);
-    return 0;
-}
-
 static hid_t create(const program_place *p, const char *name) {
     hid_t file = H5Fcreate(program_path(p, name), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     assert_true(file >= 0);
@@ -203,5 +190,5 @@ int main(void) {
         cmocka_unit_test(texts_must_be_one_string),
         cmocka_unit_test(what_is_no_file_is_refused_at_once),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

@@ -17,6 +17,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "point_fixture.h"
 #include "post_check.h"
 #include "program_fixture.h"
 
@@ -32,12 +33,6 @@ static int tear_down(void **state) {
     (void)state;
     program_tear_down(&place);
     return 0;
-}
-
-static const char *write_text(const char *name, const char *text) {
-    const char *path = program_path(&place, name);
-    program_write_file(path, text, strlen(text));
-    return path;
 }
 
 /* ---- a test that is good, and what can be wrong with it ---- */
@@ -222,8 +217,9 @@ static void wrong_files_are_refused_with_their_line(void **state) {
         sf_compression_config config;
         sf_error err = SF_ERROR_INIT;
         char where[64];
-        assert_int_equal(sf_compression_config_read(write_text("fit.cfg", cases[k].text), &config, &err),
-                         SF_ERR_INPUT);
+        assert_int_equal(
+            sf_compression_config_read(program_write_text(&place, "fit.cfg", cases[k].text), &config, &err),
+            SF_ERR_INPUT);
         snprintf(where, sizeof where, "fit.cfg:%d", cases[k].line);
         if (!strstr(err.text, cases[k].part) || (cases[k].line && !strstr(err.text, where)))
             fail_msg("\"%s\" and \"%s\" are expected in: %s", where, cases[k].part, err.text);
@@ -288,7 +284,7 @@ static void read_tests(sf_compression_config *config) {
     sf_error err = SF_ERROR_INIT;
     write_sheet("slow.csv", &slow);
     write_sheet("fast.csv", &fast);
-    if (sf_compression_config_read(write_text("fit.cfg", text), config, &err) != SF_OK)
+    if (sf_compression_config_read(program_write_text(&place, "fit.cfg", text), config, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_relative(config->test[0].rate, 0.1 / 60, 1e-12); /* in ascending order */
     assert_relative(config->test[1].rate, 10.0 / 60, 1e-12);
@@ -339,24 +335,14 @@ static void maxwell_stress_is_that_of_the_solver(void **state) {
     (void)state;
     enum { N = 9 };
     static const double strain[N] = {0.01, 0.1, 0.3, 0.55, 0.8, 0.7, 0.5, 0.2, 0.01};
-    double rates[2] = {0}, line_strain[3] = {0, 0.45, 0.9}, line_stress[3] = {0, 450, 900}, with[N],
-           without[N];
-    int64_t ptr[2] = {0, 3};
-    sf_foam_card card = {.density = 35,
-                         .modulus = 1e3,
-                         .hysteresis_hu = 1,
-                         .hysteresis_shape = 1,
-                         .maxwell_rate = 0.7,
-                         .tension_cutoff = 1e30,
-                         .densification_limit = 1,
-                         .densification_exponent = 1,
-                         .rate_filter_time = 1e-4,
-                         .curve_count = 1,
-                         .curve_points = 3,
-                         .curve_rate = rates,
-                         .curve_ptr = ptr,
-                         .curve_strain = line_strain,
-                         .curve_stress = line_stress};
+    double with[N], without[N];
+    point_card line;
+    point_card_init(&line);
+    point_card_add_line(&line, 1e3, 0.9);
+    sf_foam_card card = line.card;
+    card.modulus = 1e3;
+    card.maxwell_rate = 0.7;
+    card.densification_exponent = 1;
     for (double rate = 0.01; rate < 20; rate *= 10) {
         sf_foam foam;
         sf_error err = SF_ERROR_INIT;
@@ -455,9 +441,10 @@ static void without_unloading_there_is_no_hysteresis_and_it_is_said(void **state
     sf_error err = SF_ERROR_INIT;
     s.unloading = 0;
     write_sheet("slow.csv", &s);
-    assert_int_equal(sf_compression_config_read(write_text("fit.cfg", "density = \"35 kg/m3\";\n" TEST_LIST),
-                                                &config, &err),
-                     SF_OK);
+    assert_int_equal(
+        sf_compression_config_read(
+            program_write_text(&place, "fit.cfg", "density = \"35 kg/m3\";\n" TEST_LIST), &config, &err),
+        SF_OK);
     if (sf_compression_fit_run(&config, &fit, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_close(fit.estimate[SF_ESTIMATE_HU].value, 1, 0);
@@ -483,12 +470,13 @@ static void written_material_is_the_card_of_the_fit(void **state) {
     assert_int_equal(sf_compression_card(&fit, &card, &err), SF_OK);
     program_result r = program_succeed(&place, "fit", "compression fit.cfg -o out");
     assert_non_null(strstr(r.out, "SHAPE"));
-    write_text("pad.geo", "// not meshed\n");
+    program_write_text(&place, "pad.geo", "// not meshed\n");
     snprintf(material, sizeof material, "material=@%s", program_path(&place, "out/material.cfg"));
     const char *const overrides[] = {material};
-    const char *path = write_text("case.cfg", "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\n"
-                                              "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
-                                              "solver: { end_time = \"40 ms\"; };\n");
+    const char *path = program_write_text(&place, "case.cfg",
+                                          "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\n"
+                                          "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
+                                          "solver: { end_time = \"40 ms\"; };\n");
     if (sf_case_read(path, 1, overrides, &c, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_int_equal(c.foam.curve_count, card.curve_count);
@@ -527,11 +515,11 @@ static void simulated_cube_agrees_with_the_material_point(void **state) {
     char case_path[512];
     snprintf(case_path, sizeof case_path, "%s/examples/compression/case.cfg", getenv("SF_SOURCE_DIR"));
     write_sheet("slow.csv", &s);
-    write_text("fit.cfg", "density = \"35 kg/m3\";\n" TEST_LIST);
+    program_write_text(&place, "fit.cfg", "density = \"35 kg/m3\";\n" TEST_LIST);
     program_result r = program_run(&place, "fit", "compression fit.cfg -o cube --simulate '%s'", case_path);
     assert_int_equal(r.code, SF_ERR_INPUT); /* no specimen */
-    write_text(
-        "fit.cfg",
+    program_write_text(
+        &place, "fit.cfg",
         "density = \"35 kg/m3\";\nspecimen = { side = \"20 mm\"; thickness = \"20 mm\"; };\n" TEST_LIST);
     r = program_succeed(&place, "fit", "compression fit.cfg -o cube --force --simulate '%s' --friction 0.2",
                         case_path);

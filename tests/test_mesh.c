@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Geometries through gmsh to the background mesh and the missile's surface, and the checks of a mesh. */
+#include "model_fixture.h"
+#include "program_fixture.h"
+
 #include "core/model.h"
 #include "pre/cell_topology.h"
 #include "pre/gmsh_session.h"
@@ -14,48 +17,30 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <cmocka.h>
 
 static const double MM = 1e-3;
 static const double PI = 3.14159265358979323846;
-static char folder[256]; /* of this run's files; set up once before the tests */
+static program_place files; /* of this run's files; set up once before the tests */
 
 static const char *in_folder(const char *name) {
-    static char path[4][512];
-    static int turn;
-    turn = (turn + 1) % 4;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-    return path[turn];
-}
-
-static const char *in_source(const char *name) {
-    static char path[1024];
-    const char *root = getenv("SF_SOURCE_DIR");
-    assert_non_null(root);
-    snprintf(path, sizeof path, "%s/%s", root, name);
-    return path;
+    return program_path(&files, name);
 }
 
 static void write_file(const char *name, const char *text) {
-    FILE *out = fopen(in_folder(name), "w");
-    assert_non_null(out);
-    fputs(text, out);
-    assert_int_equal(fclose(out), 0);
+    program_write_text(&files, name, text);
 }
 
 static int set_up(void **state) {
     sf_error err = SF_ERROR_INIT;
-    const char *base = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/softfall-mesh-XXXXXX", base && *base ? base : "/tmp");
-    return !mkdtemp(folder) || sf_gmsh_begin((sf_gmsh **)state, &err) != SF_OK;
+    program_set_up(&files);
+    return sf_gmsh_begin((sf_gmsh **)state, &err) != SF_OK;
 }
 
 static int tear_down(void **state) {
-    char command[600];
     sf_gmsh_end((sf_gmsh **)state);
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command) != 0;
+    program_tear_down(&files);
+    return 0;
 }
 
 /* A source with parameters given as name, value pairs up to NULL. */
@@ -237,9 +222,10 @@ static void pad_at_10_mm_is_an_exact_conforming_box(void **state) {
     for (int quarter = 0; quarter < 2; quarter++) {
         sf_mesh mesh;
         double volume;
-        load_mesh(*state,
-                  source_of(in_source("geo/pad.geo"), "fine_spacing", 10.0, "quarter", (double)quarter, NULL),
-                  &mesh, &volume);
+        load_mesh(
+            *state,
+            source_of(fixture_source("geo/pad.geo"), "fine_spacing", 10.0, "quarter", (double)quarter, NULL),
+            &mesh, &volume);
         assert_box(&mesh, volume, quarter ? 0.0 : -0.2, 0.2, 0.05, quarter);
         assert_no_orphans(&mesh);
         assert_int_equal(mesh.orphan_count, 0);
@@ -259,8 +245,8 @@ static void pad_meshes_over_its_range_of_sizes(void **state) {
         double volume;
         const double *s = sizes[k];
         load_mesh(*state,
-                  source_of(in_source("geo/pad.geo"), "side", s[0], "thickness", s[1], "fine_spacing", s[2],
-                            "outer_spacing", s[3], "quarter", 1.0, NULL),
+                  source_of(fixture_source("geo/pad.geo"), "side", s[0], "thickness", s[1], "fine_spacing",
+                            s[2], "outer_spacing", s[3], "quarter", 1.0, NULL),
                   &mesh, &volume);
         assert_box(&mesh, volume, 0.0, 0.5 * s[0] * MM, s[1] * MM, true);
         sf_mesh_free(&mesh);
@@ -272,7 +258,7 @@ static void pad_meshes_over_its_range_of_sizes(void **state) {
 static void impact_zone_is_a_lattice_of_cubes(void **state) {
     sf_mesh mesh;
     double volume;
-    load_mesh(*state, source_of(in_source("geo/pad.geo"), "quarter", 1.0, NULL), &mesh, &volume);
+    load_mesh(*state, source_of(fixture_source("geo/pad.geo"), "quarter", 1.0, NULL), &mesh, &volume);
     int64_t hexahedra = 0, pyramids = 0;
     for (int64_t k = 0; k < mesh.cell_count; k++) {
         hexahedra += mesh.cell_type[k] == SF_CELL_HEXAHEDRON;
@@ -292,14 +278,14 @@ static void same_mesh_whatever_was_loaded_before(void **state) {
     double volume;
     sf_error err = SF_ERROR_INIT;
     sf_geo_source coarse =
-        source_of(in_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing", 20.0, NULL);
+        source_of(fixture_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing", 20.0, NULL);
     load_mesh(*state, coarse, &first, &volume);
-    sf_geo_source other = source_of(in_source("geo/hemisphere.geo"), "quarter", 1.0, NULL);
+    sf_geo_source other = source_of(fixture_source("geo/hemisphere.geo"), "quarter", 1.0, NULL);
     assert_int_equal(sf_gmsh_load(*state, &other, &err), SF_OK);
-    sf_geo_source thick = source_of(in_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing", 20.0,
-                                    "thickness", 100.0, NULL);
+    sf_geo_source thick = source_of(fixture_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing",
+                                    20.0, "thickness", 100.0, NULL);
     assert_int_equal(sf_gmsh_load(*state, &thick, &err), SF_OK);
-    coarse = source_of(in_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing", 20.0, NULL);
+    coarse = source_of(fixture_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing", 20.0, NULL);
     load_mesh(*state, coarse, &second, &volume);
     assert_int_equal(first.node_count, second.node_count);
     assert_int_equal(first.cell_count, second.cell_count);
@@ -313,7 +299,7 @@ static void same_mesh_whatever_was_loaded_before(void **state) {
 static void msh_is_taken_as_it_is(void **state) {
     char text[2048];
     snprintf(text, sizeof text, "DefineConstant[ fine_spacing = 20, outer_spacing = 20 ];\nInclude \"%s\";\n",
-             in_source("geo/pad.geo"));
+             fixture_source("geo/pad.geo"));
     write_file("save.geo", text);
     sf_mesh meshed, read;
     double volume;
@@ -353,11 +339,11 @@ static void step_is_meshed_through_a_geo_that_names_groups(void **state) {
 
 static void wrong_names_are_refused_with_what_exists(void **state) {
     assert_mesh_refused(
-        *state, source_of(in_source("geo/pad.geo"), "thicknes", 70.0, NULL), "pad",
+        *state, source_of(fixture_source("geo/pad.geo"), "thicknes", 70.0, NULL), "pad",
         "pad.geo has no parameter \"thicknes\"; its DefineConstant parameters are: side, thickness, "
         "zone_side, fine_spacing, outer_spacing, quarter");
     sf_geo_source coarse =
-        source_of(in_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing", 20.0, NULL);
+        source_of(fixture_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing", 20.0, NULL);
     assert_mesh_refused(
         *state, coarse, "foam",
         "has no volume group \"foam\"; its volume groups: \"pad\"; its surface groups: \"sides\", "
@@ -368,7 +354,7 @@ static void wrong_names_are_refused_with_what_exists(void **state) {
     assert_non_null(strstr(err.text, "has no surface group \"dome\"; its volume groups: \"pad\""));
     assert_mesh_refused(*state, source_of(in_folder("none.geo"), NULL), "pad",
                         "none.geo cannot be read: No such file");
-    assert_mesh_refused(*state, source_of(folder, NULL), "pad", "is not a plain file");
+    assert_mesh_refused(*state, source_of(files.folder, NULL), "pad", "is not a plain file");
 }
 
 static void parameters_are_found_in_included_files_only_if_defined(void **state) {
@@ -397,7 +383,7 @@ static void faults_in_the_geometry_are_told(void **state) {
     assert_mesh_refused(*state, source_of(in_folder("syntax.geo"), NULL), "pad", "syntax.geo', line 2:");
     write_file("nothing.geo", "a = 1;\n");
     assert_mesh_refused(*state, source_of(in_folder("nothing.geo"), NULL), "pad", "holds no mesh");
-    assert_mesh_refused(*state, source_of(in_source("geo/pad.geo"), "zone_side", 400.0, NULL), "pad",
+    assert_mesh_refused(*state, source_of(fixture_source("geo/pad.geo"), "zone_side", 400.0, NULL), "pad",
                         "zone_side = 400 leaves less than one fine spacing up to side = 400");
 #define BOX                                                                                                  \
     "SetFactory(\"OpenCASCADE\"); Box(1) = {0, 0, 0, 1, 1, 1}; Mesh.MeshSizeMax = 1;\nPhysical "             \
@@ -541,7 +527,8 @@ static void hemisphere_dome_is_a_sphere_turned_outwards(void **state) {
     for (int quarter = 0; quarter < 2; quarter++) {
         sf_surface dome;
         double sum[3], area, share = quarter ? 0.25 : 1.0;
-        load_surface(*state, source_of(in_source("geo/hemisphere.geo"), "quarter", (double)quarter, NULL),
+        load_surface(*state,
+                     source_of(fixture_source("geo/hemisphere.geo"), "quarter", (double)quarter, NULL),
                      "missile_surface", &dome);
         assert_on_sphere(&dome, centre, r, sum, &area);
         /* Chords lie inside the sphere: its area and its disc's are approached from below. */

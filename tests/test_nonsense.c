@@ -18,62 +18,48 @@ typedef struct nonsense {
     const char *part[PARTS]; /* of the sentence */
 } nonsense;
 
-/* good.cfg, model.h5, results.h5 of 1 ms, out/, and files/ with what is wrong in each. */
+/* The example, and files/ with what is wrong in each. */
 static int set_up(void **state) {
-    program_place *p = calloc(1, sizeof *p);
-    *state = p;
-    program_set_up(p);
-    program_result made =
-        program_shell(p, "R=\"$SF_SOURCE_DIR\" && cp -r \"$R/geo\" \"$R/examples/materials\" . && sed "
-                         "'s|\\.\\./\\.\\./geo|geo|; "
-                         "s|\\.\\./materials|materials|' \"$R/examples/eva50-v4.5/case.cfg\" > good.cfg && "
-                         "mkdir files && cd files && "
-                         "printf 'strain,stress_kPa\\n0,0\\n0.1,20\\n0.5,10\\n0.8,900\\n' > falls.csv && "
-                         "printf 'strain,stress_kPa\\n0,0\\n0.02,5\\n0.05,9\\n0.08,12\\n' > stops.csv && "
-                         "printf 'strain,stress_kPa\\n0,0\\n0.8,900\\n' > two.csv && "
-                         "printf 'strain,stress_kPa\\n0,0\\n0.1,nan\\n0.5,100\\n0.8,900\\n' > nan.csv && "
-                         "printf 'strain,stress_kPa\\n0,0\\n0.1,1e999\\n0.5,100\\n0.8,900\\n' > inf.csv && "
-                         "printf 'strain,stress_kPa\\n0,0\\n0.1,20\\n0.5,100\\n1.2,900\\n' > through.csv && "
-                         "printf 'strain,stress_kPa\\n0,7\\n0.1,20\\n0.5,100\\n0.8,900\\n' > preload.csv && "
-                         "printf 'strain,stress_kPa\\n0,0\\n0.1,0\\n0.5,0\\n0.8,0\\n' > zero.csv && "
-                         "printf 'strain,force_N\\n0,0\\n0.1,20\\n' > force.csv && "
-                         "printf 'time_ms,displacement_mm\\n0,0\\n1,900\\n' > fast.csv && "
-                         "printf 'time_ms,displacement_mm\\n0,0\\n5,1\\n4,2\\n' > back.csv && "
-                         "printf 'time_ms,displacement_mm\\n0,3\\n50,10\\n' > late.csv && "
-                         "printf 'time_ms,acceleration_g\\n0,0\\n1,5\\n' > short.csv && "
-                         "printf 'time_ms,acceleration_g\\n0,0\\n1,nan\\n2,0\\n' > hole.csv && "
-                         "printf 'time_ms,acceleration_g\\n0,0\\n2,5\\n1,0\\n' > order.csv && "
-                         "printf 'height_m,v_test_m_s\\n1,9\\n2,12\\n' > rig.csv && "
-                         "printf 'SystemCall \"touch written\";\\n' > run.geo && printf 'Save "
-                         "\"written.msh\";\\n' > save.geo && "
-                         "printf 'Printf(\"x\") > \"written\";\\n' > print.geo && printf 'SystemCall \"touch "
-                         "written\";\\n' > run.msh && "
-                         "printf 'Include StrCat(\"a\", \"b\");\\n' > include.geo && cp run.geo pad.txt && "
-                         "printf '$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n1 999999999999 1 "
-                         "999999999999\\n' > bomb.msh && "
-                         "printf 'name = \"f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
-                         "\"../good.cfg\"; %%s } );\\n' "
-                         "'a_max_g = -3.0;' > minus.cfg && "
-                         "printf 'name = \"f\"; material = \"none.cfg\"; drops = ( { case = \"../good.cfg\"; "
-                         "a_max_g = 50.0; } );\\n' > "
-                         "nomaterial.cfg && "
-                         "printf 'name = \"f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
-                         "\"../good.cfg\"; } );\\n' > "
-                         "nothing.cfg && "
-                         "printf 'name = \"../f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
-                         "\"../good.cfg\"; a_max_g = "
-                         "50.0; } );\\n' > outside.cfg");
+    program_group_example(state);
+    program_result made = program_shell(
+        *state, "mkdir files && cd files && "
+                "printf 'strain,stress_kPa\\n0,0\\n0.1,20\\n0.5,10\\n0.8,900\\n' > falls.csv && "
+                "printf 'strain,stress_kPa\\n0,0\\n0.02,5\\n0.05,9\\n0.08,12\\n' > stops.csv && "
+                "printf 'strain,stress_kPa\\n0,0\\n0.8,900\\n' > two.csv && "
+                "printf 'strain,stress_kPa\\n0,0\\n0.1,nan\\n0.5,100\\n0.8,900\\n' > nan.csv && "
+                "printf 'strain,stress_kPa\\n0,0\\n0.1,1e999\\n0.5,100\\n0.8,900\\n' > inf.csv && "
+                "printf 'strain,stress_kPa\\n0,0\\n0.1,20\\n0.5,100\\n1.2,900\\n' > through.csv && "
+                "printf 'strain,stress_kPa\\n0,7\\n0.1,20\\n0.5,100\\n0.8,900\\n' > preload.csv && "
+                "printf 'strain,stress_kPa\\n0,0\\n0.1,0\\n0.5,0\\n0.8,0\\n' > zero.csv && "
+                "printf 'strain,force_N\\n0,0\\n0.1,20\\n' > force.csv && "
+                "printf 'time_ms,displacement_mm\\n0,0\\n1,900\\n' > fast.csv && "
+                "printf 'time_ms,displacement_mm\\n0,0\\n5,1\\n4,2\\n' > back.csv && "
+                "printf 'time_ms,displacement_mm\\n0,3\\n50,10\\n' > late.csv && "
+                "printf 'time_ms,acceleration_g\\n0,0\\n1,5\\n' > short.csv && "
+                "printf 'time_ms,acceleration_g\\n0,0\\n1,nan\\n2,0\\n' > hole.csv && "
+                "printf 'time_ms,acceleration_g\\n0,0\\n2,5\\n1,0\\n' > order.csv && "
+                "printf 'height_m,v_test_m_s\\n1,9\\n2,12\\n' > rig.csv && "
+                "printf 'SystemCall \"touch written\";\\n' > run.geo && printf 'Save "
+                "\"written.msh\";\\n' > save.geo && "
+                "printf 'Printf(\"x\") > \"written\";\\n' > print.geo && printf 'SystemCall \"touch "
+                "written\";\\n' > run.msh && "
+                "printf 'Include StrCat(\"a\", \"b\");\\n' > include.geo && cp run.geo pad.txt && "
+                "printf '$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n1 999999999999 1 "
+                "999999999999\\n' > bomb.msh && "
+                "printf 'name = \"f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
+                "\"../good.cfg\"; %%s } );\\n' "
+                "'a_max_g = -3.0;' > minus.cfg && "
+                "printf 'name = \"f\"; material = \"none.cfg\"; drops = ( { case = \"../good.cfg\"; "
+                "a_max_g = 50.0; } );\\n' > "
+                "nomaterial.cfg && "
+                "printf 'name = \"f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
+                "\"../good.cfg\"; } );\\n' > "
+                "nothing.cfg && "
+                "printf 'name = \"../f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
+                "\"../good.cfg\"; a_max_g = "
+                "50.0; } );\\n' > outside.cfg");
     if (made.code != 0)
         fail_msg("the files cannot be made: %s", made.err);
-    program_succeed(p, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
-    program_succeed(p, "solve", "model.h5 -o results.h5 --threads 1");
-    program_succeed(p, "post", "results.h5 -o out");
-    return 0;
-}
-
-static int tear_down(void **state) {
-    program_tear_down(*state);
-    free(*state);
     return 0;
 }
 
@@ -273,5 +259,5 @@ int main(void) {
         cmocka_unit_test(geometries),       cmocka_unit_test(command_lines_and_files),
         cmocka_unit_test(campaigns),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

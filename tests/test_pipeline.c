@@ -25,28 +25,12 @@ static const double MASS = 4.6, SPEED = 4.5, GRAVITY = 9.80665; /* of the exampl
 
 /* model.h5, results.h5 and out/ of one run, made once for all tests. */
 static int set_up(void **state) {
-    program_place *p = calloc(1, sizeof *p);
-    *state = p;
-    program_set_up(p);
+    const program_place *p = program_group_set_up(state);
     program_succeed(p, "pre", "'%s' -o model.h5 %s --set output.frame_interval='\"4 ms\"'",
                     fixture_source(EXAMPLE), program_coarse(10));
     program_succeed(p, "solve", "model.h5 -o results.h5 --threads 1");
     program_succeed(p, "post", "results.h5 -o out");
     return 0;
-}
-
-static int tear_down(void **state) {
-    program_tear_down(*state);
-    free(*state);
-    return 0;
-}
-
-static sf_h5 *open_file(const program_place *p, const char *name) {
-    sf_error err = SF_ERROR_INIT;
-    sf_h5 *file = NULL;
-    if (sf_h5_open(program_path(p, name), &file, &err) != SF_OK)
-        fail_msg("%s", err.text);
-    return file;
 }
 
 static double *read_column(const sf_h5 *file, const char *path, int64_t *rows) {
@@ -99,7 +83,7 @@ static const struct {
 
 static history read_history(const program_place *p, const char *name) {
     history h = {0};
-    sf_h5 *file = open_file(p, name);
+    sf_h5 *file = program_open_h5(p, name);
     sf_error err = SF_ERROR_INIT;
     for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++) {
         int64_t rows;
@@ -121,7 +105,6 @@ static void history_free(history *h) {
 static double summary_number(const program_place *p, const char *key) {
     char pattern[128];
     program_bytes text = program_read_file(program_path(p, "out/summary.json"));
-    text.data[text.size] = '\0';
     snprintf(pattern, sizeof pattern, "\"%s\":", key);
     const char *at = strstr(text.data, pattern);
     if (!at)
@@ -215,7 +198,7 @@ static void no_local_collapse(void **state) {
 static void files_say_where_they_come_from(void **state) {
     const program_place *p = *state;
     sf_error err = SF_ERROR_INIT;
-    sf_h5 *model = open_file(p, "model.h5"), *results = open_file(p, "results.h5");
+    sf_h5 *model = program_open_h5(p, "model.h5"), *results = program_open_h5(p, "results.h5");
     char *parameters = read_text(model, "/provenance/parameters"),
          *text = read_text(model, "/provenance/case_text");
     char *copied = read_text(results, "/provenance/model/parameters"),
@@ -288,7 +271,7 @@ static void set_overrides_a_key_of_the_case(void **state) {
 static double column_end(const program_place *p, const char *name, const char *path) {
     sf_error err = SF_ERROR_INIT;
     int64_t rows;
-    sf_h5 *file = open_file(p, name);
+    sf_h5 *file = program_open_h5(p, name);
     double *column = read_column(file, path, &rows), value = column[rows - 1];
     free(column);
     sf_h5_close(&file, &err);
@@ -306,7 +289,7 @@ static void compression_test_runs_to_its_end_and_is_no_drop(void **state) {
     program_result solve = program_succeed(p, "solve", "press.h5 -o pressed.h5 --threads 1");
     assert_non_null(strstr(solve.out, "the motion's work"));
     assert_null(strstr(solve.err, "warning"));
-    sf_h5 *file = open_file(p, "pressed.h5");
+    sf_h5 *file = program_open_h5(p, "pressed.h5");
     char *status = read_text(file, "/summary/status");
     assert_string_equal(status, "finished");
     free(status);
@@ -330,7 +313,6 @@ static void compression_test_runs_to_its_end_and_is_no_drop(void **state) {
     assert_null(strstr(post.out, "HIC"));
     assert_null(strstr(post.out, "a_max"));
     program_bytes summary = program_read_file(program_path(p, "pressed/summary.json"));
-    summary.data[summary.size] = '\0';
     static const char *const parts[] = {"\"a_max_g\": null",
                                         "\"hic\": null",
                                         "\"v0_m_s\": null",
@@ -391,7 +373,6 @@ static int interrupt(const program_place *p, int number) {
     for (int wait = 0; wait < 600 && !started && waitpid(child, &status, WNOHANG) == 0; wait++) {
         sleep_ms(50);
         program_bytes log = program_read_file(program_path(p, "interrupted.log"));
-        log.data[log.size] = '\0';
         started = strstr(log.data, "step") != NULL; /* the first progress line */
         free(log.data);
     }
@@ -414,7 +395,7 @@ static void interrupted_run_leaves_readable_results(void **state) {
         assert_true(WIFEXITED(status));
         assert_int_equal(WEXITSTATUS(status), 130);
         sf_error err = SF_ERROR_INIT;
-        sf_h5 *file = open_file(p, "interrupted.h5");
+        sf_h5 *file = program_open_h5(p, "interrupted.h5");
         char *text = read_text(file, "/summary/status");
         assert_string_equal(text, "interrupted");
         free(text);
@@ -452,7 +433,7 @@ static void paraview_reads_every_frame(void **state) {
     sf_error err = SF_ERROR_INIT;
     sf_model model;
     assert_int_equal(sf_model_read(program_path(p, "model.h5"), &model, NULL, &err), SF_OK);
-    sf_h5 *file = open_file(p, "results.h5");
+    sf_h5 *file = program_open_h5(p, "results.h5");
     program_result result = program_shell(
         p, "pvpython '%s' out/pad.xdmf %lld %lld %lld %lld", fixture_source("tests/check_xdmf.py"),
         (long long)sf_h5_group_size(file, "/frames"), (long long)model.node_count,
@@ -480,5 +461,5 @@ int main(void) {
         cmocka_unit_test(help_and_version_are_there),
         cmocka_unit_test(paraview_reads_every_frame),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -34,9 +34,7 @@ static int kill_count(void) {
 
 /* model.h5 and what one run makes of it, full.h5; steps are small, so that there is time to kill. */
 static int set_up(void **state) {
-    program_place *p = calloc(1, sizeof *p);
-    *state = p;
-    program_set_up(p);
+    const program_place *p = program_group_set_up(state);
     program_succeed(
         p, "pre",
         "'%s' -o model.h5 %s --set output.frame_interval='\"1 ms\"' --set solver.step_safety=%.3f "
@@ -44,20 +42,6 @@ static int set_up(void **state) {
         fixture_source(EXAMPLE), program_coarse(20), 2.0 / kill_count());
     program_succeed(p, "solve", "model.h5 -o full.h5 --threads 1");
     return 0;
-}
-
-static int tear_down(void **state) {
-    program_tear_down(*state);
-    free(*state);
-    return 0;
-}
-
-static sf_h5 *open_file(const program_place *p, const char *name) {
-    sf_error err = SF_ERROR_INIT;
-    sf_h5 *file = NULL;
-    if (sf_h5_open(program_path(p, name), &file, &err) != SF_OK)
-        fail_msg("%s", err.text);
-    return file;
 }
 
 /* A dataset of numbers, whatever its type and rank; its size in bytes, or 0: a text. */
@@ -125,7 +109,7 @@ static void assert_same_group(const sf_h5 *a, const sf_h5 *b, const char *path) 
 static void assert_same_results(const program_place *p, const char *first, const char *second) {
     static const char *const groups[] = {"/history", "/frames", "/peak", "/summary"};
     sf_error err = SF_ERROR_INIT;
-    sf_h5 *a = open_file(p, first), *b = open_file(p, second);
+    sf_h5 *a = program_open_h5(p, first), *b = program_open_h5(p, second);
     assert_true(sf_h5_group_size(a, "/frames") > 10);
     for (size_t k = 0; k < sizeof groups / sizeof groups[0]; k++)
         assert_same_group(a, b, groups[k]);
@@ -136,7 +120,7 @@ static void assert_same_results(const program_place *p, const char *first, const
 static int64_t restarts_of(const program_place *p, const char *name) {
     sf_error err = SF_ERROR_INIT;
     void *data = NULL;
-    sf_h5 *file = open_file(p, name);
+    sf_h5 *file = program_open_h5(p, name);
     assert_int_equal(sf_h5_read(file, "/summary/restarts", SF_H5_I64, 0, NULL, &data, &err), SF_OK);
     int64_t restarts = *(int64_t *)data;
     free(data);
@@ -482,5 +466,5 @@ int main(void) {
         cmocka_unit_test(failed_run_leaves_its_state),
         cmocka_unit_test(campaign_goes_on_with_an_interrupted_drop),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

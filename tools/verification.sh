@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the verification studies and writes docs/verification.md from what they print.
-#   tools/verification.sh            all studies (the long ones take most of an hour on two cores)
+#   tools/verification.sh            all studies (more than an hour; their sections say what the longest take)
 #   tools/verification.sh NAME...    only these; the sections of the others stay as they are
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -12,6 +12,7 @@ sections=docs/images/verification
 [ $# -gt 0 ] || set -- $order
 mkdir -p "$sections"
 export SF_BIN_DIR="$PWD/$build/bin" SF_SOURCE_DIR="$PWD"
+[ -x build-debug/bin/softfall-post ] && export SF_DEBUG_BIN_DIR="$PWD/build-debug/bin" # reproducibility compares
 
 failed=""
 for name in "$@"; do

@@ -8,6 +8,7 @@
 #include "fit/column.h"
 #include "fit/drop_parameters.h"
 #include "fit/space_mapping.h"
+#include "point_fixture.h"
 #include "post/hic.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>
@@ -158,22 +159,13 @@ static sf_status repeat(laboratory *lab, gsl_rng *random, tally *t, sf_error *er
 int main(int argc, char **argv) {
     sf_study study;
     sf_error err = SF_ERROR_INIT;
-    double strain[] = {0, 0.02, 0.5, 0.9}, stress[] = {0, 8e3, 80e3, 2e6}, rate[] = {0};
-    int64_t ptr[] = {0, 4};
-    laboratory lab = {.form = {.gas = true,
-                               .base = {.density = 35,
-                                        .modulus = 0.4136e6,
-                                        .hysteresis_hu = 0.01,
-                                        .hysteresis_shape = 1,
-                                        .tension_cutoff = 1e300,
-                                        .densification_limit = 1,
-                                        .rate_filter_time = 1e-4,
-                                        .curve_count = 1,
-                                        .curve_points = 4,
-                                        .curve_rate = rate,
-                                        .curve_ptr = ptr,
-                                        .curve_strain = strain,
-                                        .curve_stress = stress}}};
+    static const double strain[] = {0, 0.02, 0.5, 0.9}, stress[] = {0, 8e3, 80e3, 2e6};
+    point_card card;
+    point_card_init(&card);
+    point_card_add(&card, 0, 4, strain, stress);
+    laboratory lab = {.form = {.gas = true, .base = card.card}};
+    lab.form.base.modulus = 0.4136e6;
+    lab.form.base.hysteresis_hu = 0.01;
     tally t = {.converged = 0};
     gsl_set_error_handler_off();
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937); /* its default seed: the same numbers in every run */

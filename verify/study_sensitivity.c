@@ -78,8 +78,8 @@ static void conclude(sf_study *study, const sf_drop *base, const sf_drop *drop) 
         numerics = kind == NUMERICS ? largest : numerics;
     }
     sf_study_text(
-        study,
-        "\nThere is no contact stiffness to vary: contact forces are Lagrange multipliers (ADR 0003).\n\n");
+        study, "\nThere is no contact stiffness to vary: contact forces are Lagrange multipliers (ADR 0003). "
+               "There is one method of stabilisation, for the reason given in theory, section 4.\n\n");
     sf_study_check(study, numerics, -INFINITY, 1, "numerics: largest change of a_max (%%)");
 }
 

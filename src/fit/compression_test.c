@@ -41,21 +41,6 @@ static sf_status check_row(const sf_case_csv_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_case_csv_name names[] = {{"strain", 0, 1.0},
-                                         {"strain_percent", 0, 0.01},
-                                         {"stress_Pa", 1, 1.0},
-                                         {"stress_kPa", 1, 1e3},
-                                         {"stress_MPa", 1, 1e6}};
-
-static const sf_case_csv_layout layout = {
-    .what = "test",
-    .column = {"strain", "stress"},
-    .wanted = {"\"strain\" or \"strain_percent\"", "\"stress_Pa\", \"stress_kPa\" or \"stress_MPa\""},
-    .names = names,
-    .name_count = sizeof names / sizeof *names,
-    .check = check_row,
-};
-
 /* The table's arrays become the test's. */
 static void take_table(sf_case_csv *table, sf_compression_test *t) {
     t->count = (int)table->count;
@@ -200,6 +185,7 @@ static void condense(sf_compression_test *t) {
 
 sf_status sf_compression_test_read(const char *path, double rate, sf_compression_test *test, sf_error *err) {
     *test = (sf_compression_test){.path = strdup(path), .rate = rate};
+    const sf_case_csv_layout layout = sf_case_csv_stress_strain("test", check_row);
     sf_case_csv table = {0};
     if (!test->path)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);

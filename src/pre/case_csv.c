@@ -23,6 +23,22 @@ typedef struct csv {
     sf_case_csv *table;
 } csv;
 
+sf_case_csv_layout sf_case_csv_stress_strain(const char *what, sf_case_csv_check *check) {
+    static const sf_case_csv_name names[] = {{"strain", 0, 1.0},
+                                             {"strain_percent", 0, 0.01},
+                                             {"stress_Pa", 1, 1.0},
+                                             {"stress_kPa", 1, 1e3},
+                                             {"stress_MPa", 1, 1e6}};
+    return (sf_case_csv_layout){
+        .what = what,
+        .column = {"strain", "stress"},
+        .wanted = {"\"strain\" or \"strain_percent\"", "\"stress_Pa\", \"stress_kPa\" or \"stress_MPa\""},
+        .names = names,
+        .name_count = sizeof names / sizeof *names,
+        .check = check,
+    };
+}
+
 void sf_case_csv_free(sf_case_csv *table) {
     free(table->value[0]);
     free(table->value[1]);

@@ -26,14 +26,20 @@ typedef struct sf_case_csv_point {
     double last[2];   /* the same in the file's own units */
 } sf_case_csv_point;
 
+/* Refuses a point. */
+typedef sf_status sf_case_csv_check(const sf_case_csv_point *point, sf_error *err);
+
 typedef struct sf_case_csv_layout {
     const char *what;      /* "curve" */
     const char *column[2]; /* "strain", "stress" */
     const char *wanted[2]; /* what the header may call them, for the sentence */
     const sf_case_csv_name *names;
     int name_count;
-    sf_status (*check)(const sf_case_csv_point *point, sf_error *err); /* refuses a point */
+    sf_case_csv_check *check;
 } sf_case_csv_layout;
+
+/* Stress over strain in compression; the strain may be in percent. */
+sf_case_csv_layout sf_case_csv_stress_strain(const char *what, sf_case_csv_check *check);
 
 typedef struct sf_case_csv {
     int64_t count;

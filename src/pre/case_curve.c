@@ -38,21 +38,6 @@ static sf_status check_point(const sf_case_csv_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_case_csv_name names[] = {{"strain", 0, 1.0},
-                                         {"strain_percent", 0, 0.01},
-                                         {"stress_Pa", 1, 1.0},
-                                         {"stress_kPa", 1, 1e3},
-                                         {"stress_MPa", 1, 1e6}};
-
-static const sf_case_csv_layout layout = {
-    .what = "curve",
-    .column = {"strain", "stress"},
-    .wanted = {"\"strain\" or \"strain_percent\"", "\"stress_Pa\", \"stress_kPa\" or \"stress_MPa\""},
-    .names = names,
-    .name_count = sizeof names / sizeof *names,
-    .check = check_point,
-};
-
 /* The table's points, after (0, 0) if they begin above it. */
 static sf_status take_points(const sf_case_csv *table, sf_case_curve *curve, sf_error *err) {
     size_t points = (size_t)table->count, before = table->value[0][0] > 0.0;
@@ -68,6 +53,7 @@ static sf_status take_points(const sf_case_csv *table, sf_case_curve *curve, sf_
 }
 
 sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err) {
+    const sf_case_csv_layout layout = sf_case_csv_stress_strain("curve", check_point);
     sf_case_csv table;
     memset(curve, 0, sizeof *curve);
     if (sf_case_csv_read(path, &layout, &table, err) != SF_OK)

@@ -12,7 +12,6 @@
 
 static const double RADIUS = 0.08;    /* m, of the missile */
 static const double WINDOW = 0.25e-3; /* m, half width of the mean over softfall's force */
-static const double FRAME = 10e-3;    /* m, of depth between two frames */
 static const double SYMMETRY = 4;     /* quarters */
 
 /* The missile is so heavy that it keeps its speed. */
@@ -72,7 +71,7 @@ static void make_overrides(const sf_indentation *in, const sf_indentation_case *
     snprintf(text[n++], OVERRIDE_SIZE, "material.E=\"%.12g Pa\"", c->modulus * sf_ogden_modulus(&in->law));
     snprintf(text[n++], OVERRIDE_SIZE, "missile.velocity=\"%g m/s\"", c->speed);
     snprintf(text[n++], OVERRIDE_SIZE, "solver.end_time=\"%.9g s\"", (c->depth + 2 * WINDOW) / c->speed);
-    snprintf(text[n++], OVERRIDE_SIZE, "output.frame_interval=\"%.9g s\"", FRAME / c->speed);
+    snprintf(text[n++], OVERRIDE_SIZE, "output.frame_interval=\"%.9g s\"", c->interval / c->speed);
     for (int k = 0; k < n; k++)
         list[k] = text[k];
     list[n] = NULL;

@@ -7,7 +7,7 @@
 #include "calculix/ogden.h"
 #include "core/error.h"
 
-enum { SF_INDENTATION_POINTS = 64, SF_INDENTATION_FRAMES = 8 };
+enum { SF_INDENTATION_POINTS = 64, SF_INDENTATION_FRAMES = 64 };
 
 typedef struct sf_indentation {
     char folder[512]; /* temporary; holds case and curve */
@@ -31,7 +31,7 @@ typedef struct sf_indentation_curve {
     double depth_reached;                  /* m */
     double cpu;                            /* s, of all programs */
     char ending[256];                      /* CalculiX: its error, "" if none */
-    int frames;                            /* softfall: every 10 mm of depth */
+    int frames;                            /* softfall: one at every point */
     double stretch[SF_INDENTATION_FRAMES]; /* softfall: largest principal stretch */
     double beyond[SF_INDENTATION_FRAMES];  /* softfall: part of the volume where it exceeds 1.3 */
 } sf_indentation_curve;
