@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint.h"
 
+#include "solver/state.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -250,7 +252,7 @@ static void add_resultants(const sf_constraint *c, sf_constraint_step *step) {
 }
 
 void sf_constraint_project(const sf_constraint *c, sf_constraint_step *step) {
-#pragma omp parallel if (c->rows > 0) default(none) shared(c, step)
+#pragma omp parallel if (c->rows > SF_FEW_POINTS) default(none) shared(c, step)
     {
         right_side(c, step);
         if (c->rows > 0)
@@ -264,7 +266,7 @@ void sf_constraint_project(const sf_constraint *c, sf_constraint_step *step) {
 
 double sf_constraint_residual(const sf_model *m, const sf_constraint *c, const sf_constraint_step *step) {
     double residual = 0;
-#pragma omp parallel default(none) shared(m, c, step) reduction(max : residual)
+#pragma omp parallel if (c->rows > SF_FEW_POINTS) default(none) shared(m, c, step) reduction(max : residual)
     {
 #pragma omp for schedule(static)
         for (int64_t t = 0; t < c->touched_count; t++) {

@@ -57,7 +57,8 @@ static void list_near(const sf_operators *op, const double direction[3], sf_stat
 
 /* Positions now and predicted without contact forces, by u_h. */
 static void predict_points(const sf_model *m, sf_state *s, double dt_v) {
-#pragma omp parallel for default(none) shared(m, s, dt_v) schedule(static)
+#pragma omp parallel for if (s->contact_near_count > SF_FEW_POINTS) default(none) shared(m, s, dt_v)         \
+    schedule(static)
     for (int64_t near = 0; near < s->contact_near_count; near++) {
         int64_t c = s->contact_near[near], node = m->contact_node[c];
         double now[3] = {0}, step[3] = {0};

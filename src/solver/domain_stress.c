@@ -171,7 +171,7 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
 void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {
     static const int64_t chunks = SF_GROUP / SF_CHUNK;
     const sf_halo *h = &op->halo;
-#pragma omp parallel for default(none) shared(m, op, s, h, chunks) schedule(static)
+#pragma omp for schedule(static)
     for (int64_t g = 0; g < h->group_count; g++) {
         gather_group(h, g, s->d);
         for (int64_t chunk = g * chunks; chunk < (g + 1) * chunks && chunk < s->chunk_count; chunk++)

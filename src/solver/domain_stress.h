@@ -7,7 +7,8 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* dt_old is the step that led to the present coefficients; 0 at the start. */
+/* dt_old is the step that led to the present coefficients; 0 at the start. In a parallel region the threads
+ * share the work, as in the two other parts of the force (stabilisation.h, internal_force.h). */
 void sf_domain_stress(const sf_model *model, const sf_operators *operators, sf_state *state);
 
 #endif

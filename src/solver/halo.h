@@ -12,8 +12,8 @@
 
 enum { SF_GROUP = 128 }; /* nodes, a multiple of SF_CHUNK (state.h) */
 
-/* Numbers of B between what a kernel works on and what it asks the memory for: 4 kB, as B does not fit into the
- * caches and processors stop reading ahead at the end of a page. */
+/* Numbers of B between what a kernel works on and what it asks the memory for: 4 kB, as B does not fit into
+ * the caches and processors stop reading ahead at the end of a page. */
 enum { SF_AHEAD = 512 };
 
 typedef struct sf_halo {

@@ -37,13 +37,10 @@ static SF_KERNEL void take_from_groups(const sf_model *m, const sf_halo *h, int6
 
 void sf_internal_force(const sf_model *m, const sf_operators *op, sf_state *s) {
     const sf_halo *h = &op->halo;
-#pragma omp parallel default(none) shared(m, h, s)
-    {
 #pragma omp for schedule(static)
-        for (int64_t g = 0; g < h->group_count; g++)
-            collect_group(m, h, s, g);
+    for (int64_t g = 0; g < h->group_count; g++)
+        collect_group(m, h, s, g);
 #pragma omp for schedule(static)
-        for (int64_t g = 0; g < h->group_count; g++)
-            take_from_groups(m, h, g, s->force);
-    }
+    for (int64_t g = 0; g < h->group_count; g++)
+        take_from_groups(m, h, g, s->force);
 }

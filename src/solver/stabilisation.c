@@ -29,7 +29,7 @@ SF_KERNEL double sf_stabilisation_node(const sf_model *m, const double *pair, co
 }
 
 void sf_stabilisation(const sf_model *m, const sf_operators *op, sf_state *s) {
-#pragma omp parallel for default(none) shared(m, op, s) schedule(static)
+#pragma omp for schedule(static)
     for (int64_t chunk = 0; chunk < s->chunk_count; chunk++) {
         sf_partial *partial = &s->partial[chunk];
         for (int64_t i = chunk * SF_CHUNK; i < (chunk + 1) * SF_CHUNK && i < m->node_count; i++) {

@@ -119,7 +119,7 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
 /* v += dt_v (force - reaction) / m, with the kinetic energy at the present time, and momentum and largest
  * speed after it. */
 static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
-#pragma omp parallel for default(none) shared(m, s, dt_v) schedule(static)
+#pragma omp parallel for if (m->node_count > SF_FEW_NODES) default(none) shared(m, s, dt_v) schedule(static)
     for (int64_t chunk = 0; chunk < s->chunk_count; chunk++) {
         double kinetic = 0, momentum[3] = {0}, fastest = 0;
         for (int64_t i = chunk * SF_CHUNK; i < (chunk + 1) * SF_CHUNK && i < m->node_count; i++) {
@@ -153,14 +153,20 @@ static void move_missile(const sf_model *m, sf_state *s, double dt_v) {
 }
 
 sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
-    sf_domain_stress(m, op, s); /* F, P, history */
+#pragma omp parallel default(none) shared(m, op, s)
+    {
+        sf_domain_stress(m, op, s); /* F, P, history */
+#pragma omp master
+        sf_lap(s->watch, SF_PHASE_STRESS);
+        sf_stabilisation(m, op, s); /* pair forces, couples */
+#pragma omp master
+        sf_lap(s->watch, SF_PHASE_STABILISATION);
+        sf_internal_force(m, op, s); /* f = pair forces - sum V P B */
+#pragma omp master
+        sf_lap(s->watch, SF_PHASE_FORCE);
+    }
     if (check_domains(m, s, err) != SF_OK)
         return err->status;
-    sf_lap(s->watch, SF_PHASE_STRESS);
-    sf_stabilisation(m, op, s); /* pair forces, couples */
-    sf_lap(s->watch, SF_PHASE_STABILISATION);
-    sf_internal_force(m, op, s); /* f = pair forces - sum V P B */
-    sf_lap(s->watch, SF_PHASE_FORCE);
     sf_time_step_choose(m, op, s);
     sf_lap(s->watch, SF_PHASE_TIME_STEP);
     double dt_v = 0.5 * (s->dt_old + s->dt);
@@ -185,7 +191,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
 
 void sf_step_advance(const sf_model *m, sf_state *s) {
     double dt = s->dt;
-#pragma omp parallel for default(none) shared(m, s, dt) schedule(static)
+#pragma omp parallel for if (m->node_count > SF_FEW_NODES) default(none) shared(m, s, dt) schedule(static)
     for (int64_t k = 0; k < 3 * m->node_count; k++)
         s->d[k] += dt * s->v[k];
     s->missile_old = s->missile.displacement;
