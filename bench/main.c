@@ -42,10 +42,16 @@ typedef struct record {
     int64_t first_products, products; /* Lanczos products of the first step, and of all */
 } record;
 
-/* Bytes that the program holds now. */
-static double held_bytes(void) {
-    struct mallinfo2 info = mallinfo2();
-    return (double)info.uordblks + (double)info.hblkhd;
+/* Bytes that the program has in memory now. */
+static double resident_bytes(void) {
+    long pages = 0, skipped;
+    malloc_trim(0);
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (!file || fscanf(file, "%ld %ld", &skipped, &pages) != 2)
+        pages = 0;
+    if (file)
+        fclose(file);
+    return (double)pages * (double)sysconf(_SC_PAGESIZE);
 }
 
 /* Bytes of the model's arrays. What meshing leaves behind in the heap does not count. */
@@ -288,26 +294,18 @@ static sf_status run_one(const sf_model *m, const sf_operators *op, const option
     return err->status;
 }
 
-/* Bytes of the state. */
-static double state_bytes(const sf_model *m) {
-    size_t count;
-    const sf_state_array *array = sf_state_arrays(&count);
-    double sum = 0;
-    for (size_t k = 0; k < count; k++)
-        sum += array[k].bytes * (double)sf_state_rows(m, array[k].rows);
-    return sum;
-}
-
 /* Runs `model`, which it frees. */
 static sf_status run_model(const options *o, sf_model *model, double spacing, const char *part, sf_json *json,
                            sf_error *err) {
     sf_operators operators = {0};
+    sf_state state = {0};
     struct rusage usage;
     sf_model_drop_mesh(model);
-    double before = held_bytes() - model_bytes(model);
-    if (sf_operators_build(model, &operators, err) == SF_OK) {
+    double before = resident_bytes() - model_bytes(model);
+    if (sf_operators_build(model, &operators, err) == SF_OK && sf_state_create(model, &state, err) == SF_OK) {
         sf_model_drop_domain_nodes(model);
-        double held = held_bytes() - before + state_bytes(model);
+        double held = resident_bytes() - before;
+        sf_state_free(&state);
         sf_json_open(json, NULL, '{');
         sf_json_number(json, "core_spacing_mm", spacing);
         sf_json_text(json, "part", part);

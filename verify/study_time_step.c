@@ -428,13 +428,13 @@ static double limit_of(const fixture *drop, fixture *twin, gsl_matrix *k, gsl_ma
 static void small_drop(sf_study *s) {
     fixture f, twin;
     sf_error err = SF_ERROR_INIT;
-    double high = 0, low = INFINITY;
+    double high = 0, low = INFINITY, sum = 0;
+    int count = 0;
     FILE *steps = sf_study_file(s, "steps.txt"), *exact_file = sf_study_file(s, "exact.txt");
     build(PAD, VISCOUS, &f);
     build(PAD, VISCOUS, &twin);
     sf_state *st = &f.state;
     f.operators.foam.kelvin = twin.operators.foam.kelvin = 0;
-    f.model.run.step_safety = 0.9;
     gsl_matrix *k = gsl_matrix_alloc(3 * (size_t)f.model.node_count, 3 * (size_t)f.model.node_count);
     gsl_matrix *c = gsl_matrix_alloc(k->size1, k->size1);
     while (st->time < 20e-3 && sf_step_evaluate(&f.model, &f.operators, st, &err) == SF_OK) {
@@ -445,6 +445,8 @@ static void small_drop(sf_study *s) {
             double exact = limit_of(&f, &twin, k, c);
             low = fmin(low, used / exact);
             high = fmax(high, used / exact);
+            sum += st->dt / exact;
+            count++;
             if (exact_file)
                 fprintf(exact_file, "%g %g\n", 1e3 * st->time, 1e6 * exact);
         }
@@ -465,6 +467,7 @@ static void small_drop(sf_study *s) {
                   (long long)f.model.node_count);
     sf_study_check(s, high, 0, 1, "drop: largest step (at safety 1) / exact limit");
     sf_study_check(s, low, 0.8, INFINITY, "drop: smallest step (at safety 1) / exact limit");
+    sf_study_check(s, sum / count, 0.8, 1, "drop: mean step, with the default safety / exact limit");
     sf_study_plot(
         s, "drop.png", "Time step of a drop, its guaranteed bound, and the exact limit",
         "set xlabel 'time (ms)'\nset ylabel 'time step (us)'\nset yrange [0:*]\nset key bottom left\n"

@@ -7,7 +7,7 @@
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
  * that rebounds half-way to the end time, over those that the guaranteed first step would need to get there.
  */
-static const double RATE = 2e6, TYPICAL = 0.5;
+static const double RATE = 3.5e6, TYPICAL = 0.5;
 
 static void print_range(FILE *out, const char *name, const double *value, int64_t count, double scale,
                         const char *unit) {
