@@ -2,6 +2,7 @@
 # Language level, warnings, optimisation and sanitizers, carried by the interface target softfall_options.
 option(SOFTFALL_TESTS "Build the tests" ON)
 option(SOFTFALL_NATIVE "Compile for the processor of this machine alone" OFF)
+option(SOFTFALL_THREADS_ALWAYS "Share small loops among threads too (core/threads.h), for analyses" OFF)
 option(SOFTFALL_WERROR "Treat warnings as errors" OFF)
 set(SOFTFALL_SANITIZE "" CACHE STRING "Comma list for -fsanitize=, e.g. address,undefined")
 
@@ -27,6 +28,8 @@ target_compile_options(softfall_options INTERFACE
     -Wall -Wextra -Wshadow -Wconversion -Wmissing-prototypes -Wvla
     # Vectors pass between static inline functions only: how a call would pass them without AVX does not matter.
     -Wno-psabi
+    # What GCC and Clang may fuse differs; nothing fused gives the same bits in every build.
+    -ffp-contract=off
     # No errno and no traps from sqrt and friends: lets loops over lanes vectorise without changing any result.
     -fno-math-errno -fno-trapping-math -fopenmp-simd)
 if(SOFTFALL_WERROR)
@@ -35,9 +38,15 @@ endif()
 # Kernels for several processors in one program (core/lanes.h); instrumented and plain builds do without.
 if(SOFTFALL_NATIVE)
     target_compile_options(softfall_options INTERFACE -march=native)
-elseif(CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64 AND NOT SOFTFALL_SANITIZE
-       AND CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo)$")
+elseif(CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_C_COMPILER_VERSION VERSION_GREATER_EQUAL 12
+       AND CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64 AND NOT SOFTFALL_SANITIZE
+       AND NOT CMAKE_BUILD_TYPE MATCHES "^(Debug|Coverage)$")
     target_compile_definitions(softfall_options INTERFACE SF_DISPATCH)
+else()
+    message(STATUS "Kernels for this build's instruction set alone: SOFTFALL_NATIVE=ON makes them fast here")
+endif()
+if(SOFTFALL_THREADS_ALWAYS)
+    target_compile_definitions(softfall_options INTERFACE SF_THREADS_ALWAYS)
 endif()
 if(SOFTFALL_SANITIZE)
     target_compile_options(softfall_options INTERFACE -fsanitize=${SOFTFALL_SANITIZE} -fno-omit-frame-pointer

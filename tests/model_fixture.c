@@ -252,9 +252,12 @@ void fixture_free(fixture *f) {
 }
 
 void fixture_forces(fixture *f) {
-    sf_domain_stress(&f->model, &f->operators, &f->state);
-    sf_stabilisation(&f->model, &f->operators, &f->state);
-    sf_internal_force(&f->model, &f->operators, &f->state);
+#pragma omp parallel default(none) shared(f)
+    {
+        sf_domain_stress(&f->model, &f->operators, &f->state);
+        sf_stabilisation(&f->model, &f->operators, &f->state);
+        sf_internal_force(&f->model, &f->operators, &f->state);
+    }
 }
 
 void fixture_set_affine(fixture *f, const double gradient[9], const double shift[3]) {

@@ -221,6 +221,27 @@ static void deformation_gradients_are_those_of_the_definition(void **state) {
     fixture_free(&f);
 }
 
+/* A pad that grows everywhere: lanes behind the last node must not pass for the most compressed one. */
+static void spare_lanes_say_nothing(void **state) {
+    (void)state;
+    const fixture_block block = {.cells = {4, 4, 4}, .spacing = 0.01};
+    fixture f;
+    fixture_held_block(&block, &f);
+    fixture_start(&f);
+    int64_t n = f.model.node_count;
+    assert_true(n % SF_LANES != 0);
+    for (int64_t k = 0; k < 3 * n; k++)
+        f.state.d[k] = 0.01 * f.model.position[k];
+    sf_domain_stress(&f.model, &f.operators, &f.state);
+    for (int64_t k = 0; k < f.state.chunk_count; k++) {
+        const sf_partial *p = &f.state.partial[k];
+        assert_true(p->jacobian_node >= k * SF_CHUNK && p->jacobian_node < n);
+        assert_relative(p->jacobian, 1.01 * 1.01 * 1.01, 1e-12);
+        assert_relative(p->shortest, 1.01, 1e-12);
+    }
+    fixture_free(&f);
+}
+
 /* Theory eq. 8, by scattering. */
 static void internal_forces_are_those_of_the_definition(void **state) {
     (void)state;
@@ -305,6 +326,7 @@ int main(void) {
         cmocka_unit_test(foam_law_with_rates_is_that_of_the_reference),
         cmocka_unit_test(curve_over_lanes_is_the_curve),
         cmocka_unit_test(deformation_gradients_are_those_of_the_definition),
+        cmocka_unit_test(spare_lanes_say_nothing),
         cmocka_unit_test(internal_forces_are_those_of_the_definition),
         cmocka_unit_test(stabilisation_is_that_of_the_definition),
         cmocka_unit_test(sums_do_not_depend_on_the_threads),

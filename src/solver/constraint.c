@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint.h"
 
-#include "solver/state.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,24 +9,46 @@
 
 enum { ALL = 7, BATCH = 64 }; /* mask of x, y and z; rows or nodes of one call of a kernel */
 
-/* Does a held node have a row in the range: 0 for all components, 1 to 3 for one of them alone? */
-static bool has_row(uint8_t mask, int range) {
-    return range == 0 ? mask == ALL : mask != ALL && ((mask >> (range - 1)) & 1);
+/* Does a node whose components in `mask` are held have a row in the range: 0 for all components in `shared`
+ * together, 1 to 3 for one of the others? */
+static bool has_row(uint8_t mask, uint8_t shared, int range) {
+    bool together = (mask & shared) == shared;
+    if (range == 0)
+        return together;
+    int bit = 1 << (range - 1);
+    return (mask & bit) != 0 && !(together && (shared & bit) != 0);
 }
 
-/* The rows range by range, in the order of the model; `part`: the ends of the ranges. */
-static sf_status list_rows(const sf_model *m, sf_constraint *c, int64_t part[4], sf_error *err) {
+/* The components that most rows are to hold together: all, or the one that is held most often if no node is
+ * held in all. */
+static uint8_t choose_shared(const sf_model *m) {
+    int64_t held[3] = {0};
+    int most = 0;
+    for (int64_t k = 0; k < m->fixed_count; k++) {
+        if (m->fixed_mask[k] == ALL)
+            return ALL;
+        for (int r = 0; r < 3; r++)
+            held[r] += (m->fixed_mask[k] >> r) & 1;
+    }
+    for (int r = 1; r < 3; r++)
+        most = held[r] > held[most] ? r : most;
+    return (uint8_t)(1 << most);
+}
+
+/* The rows range by range, in the order of the model, and the ends of the ranges. */
+static sf_status list_rows(const sf_model *m, sf_constraint *c, sf_ldl_entries *a, sf_error *err) {
+    a->shared = choose_shared(m);
     for (int range = 0; range < 4; range++) {
         for (int64_t k = 0; k < m->fixed_count; k++)
-            c->rows += has_row(m->fixed_mask[k], range);
-        part[range] = c->rows;
+            c->rows += has_row(m->fixed_mask[k], a->shared, range);
+        a->part[range] = c->rows;
     }
     c->node = sf_alloc(err, (unsigned long)c->rows, sizeof *c->node, "constraint nodes");
     c->base = sf_alloc(err, (unsigned long)c->rows, 1, "constraint nodes");
     int64_t row = 0;
     for (int range = 0; range < 4 && err->status == SF_OK; range++)
         for (int64_t k = 0; k < m->fixed_count; k++)
-            if (has_row(m->fixed_mask[k], range)) {
+            if (has_row(m->fixed_mask[k], a->shared, range)) {
                 c->node[row] = m->fixed_node[k];
                 c->base[row++] = m->fixed_base[k];
             }
@@ -110,8 +132,7 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
     return err->status;
 }
 
-/* Lower triangle of G M^-1 G^T: all pairs of rows that share a node, unless they stand for different
- * components. */
+/* Lower triangle of G M^-1 G^T: all pairs of rows that share a node and a component. */
 static sf_status gram_entries(const sf_model *m, const sf_constraint *c, sf_ldl_entries *a, sf_error *err) {
     int64_t pairs = 0;
     for (int64_t t = 0; t < c->touched_count; t++) {
@@ -125,10 +146,7 @@ static sf_status gram_entries(const sf_model *m, const sf_constraint *c, sf_ldl_
         for (int64_t p = c->node_ptr[t]; p < c->node_ptr[t + 1]; p++)
             for (int64_t q = c->node_ptr[t]; q <= p; q++) {
                 int64_t high = c->node_row[p], low = c->node_row[q]; /* rows ascend within a node */
-                bool apart = false;
-                for (int k = 0; k < 3; k++)
-                    apart = apart || (low >= a->part[0] && low < a->part[k] && high >= a->part[k]);
-                if (apart)
+                if (sf_ldl_apart(a, low, high))
                     continue;
                 a->row[a->count] = high;
                 a->column[a->count] = low;
@@ -166,7 +184,7 @@ static sf_status build_work(const sf_model *m, sf_constraint *c, sf_error *err) 
 sf_status sf_constraint_build(const sf_model *m, sf_constraint *c, sf_error *err) {
     sf_ldl_entries a = {.count = 0};
     memset(c, 0, sizeof *c);
-    if (list_rows(m, c, a.part, err) == SF_OK && c->rows > 0 && build_lists(m, c, err) == SF_OK &&
+    if (list_rows(m, c, &a, err) == SF_OK && c->rows > 0 && build_lists(m, c, err) == SF_OK &&
         gram_entries(m, c, &a, err) == SF_OK && sf_ldl_build(&a, &c->factor, err) == SF_OK &&
         order_rows(c, err) == SF_OK) {
         free_lists(c);

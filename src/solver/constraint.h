@@ -26,9 +26,10 @@ typedef struct sf_constraint {
     int32_t *node_row;  /* [row_ptr[rows]] */
     double *node_phi;   /* [row_ptr[rows]] */
 
-    sf_ldl factor;  /* of G M^-1 G^T */
+    sf_ldl factor; /* of G M^-1 G^T */
+    /* Work of one projection at a time, although the functions take a constant. */
     sf_vec *field;  /* [touched_count] what G is applied to */
-    sf_vec *lambda; /* [rows] N */
+    sf_vec *lambda; /* [rows] right side, then lambda (N); in sf_constraint_residual G v */
 } sf_constraint;
 
 sf_status sf_constraint_build(const sf_model *model, sf_constraint *constraint, sf_error *err);

@@ -3,6 +3,7 @@
 
 #include "core/mat3.h"
 #include "core/motion.h"
+#include "core/threads.h"
 #include <string.h>
 
 enum { MAX_SWEEPS = 500 };
@@ -19,7 +20,7 @@ typedef struct contact_solve {
 } contact_solve;
 
 /* The list of near points is made of those within NEAR spacings of the missile, and made anew when half of
- * that is used up: what is left is more than anything moves in one step. */
+ * that is used up, or when what is left is not more than twice what is used up in a step. */
 static const double NEAR = 2;
 
 /* What drives the missile is as heavy as it needs to be. */
@@ -32,7 +33,7 @@ static double mobility_of(const sf_model *m) {
 static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
     double speed = op->gram.spread * s->fastest + fabs(s->missile.velocity);
     s->contact_room -= s->dt_old * speed;
-    if (s->step > 0 && s->contact_room > 0.5 * NEAR * op->gram.spacing)
+    if (s->step > 0 && s->contact_room > fmax(0.5 * NEAR * op->gram.spacing, 2 * s->dt * speed))
         return false;
     for (int64_t c = 0; c < m->contact_count; c++)
         s->contact_near[c] = (int32_t)c;

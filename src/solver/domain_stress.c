@@ -65,7 +65,7 @@ typedef struct lane_sums {
     double jacobian[SF_LANES], block[SF_LANES]; /* smallest, and in which block of the chunk; a NaN is kept */
 } lane_sums;
 
-/* What a spare lane must not say: it weighs nothing and is neither stiff nor short. */
+/* A spare lane weighs nothing and is not stiff. */
 typedef struct lane_weights {
     double volume[SF_LANES], stability[SF_LANES];
 } lane_weights;
@@ -163,6 +163,8 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
         batch.directions = sf_time_step_due(s);
         load_batch(m, op, s, d, block, count, &batch);
         sf_foam_update(&op->foam, s->dt_old, &batch);
+        for (int l = count; l < SF_LANES; l++) /* nor is it short */
+            batch.jacobian[l] = batch.stretch[0][l] = batch.stretch[1][l] = batch.stretch[2][l] = INFINITY;
         store_batch(m, op, s, block, count, &batch, &sum);
     }
     merge_lanes(&sum, chunk * SF_CHUNK, &s->partial[chunk]);

@@ -7,8 +7,8 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* dt_old is the step that led to the present coefficients; 0 at the start. In a parallel region the threads
- * share the work, as in the two other parts of the force (stabilisation.h, internal_force.h). */
+/* dt_old is the step that led to the present coefficients; 0 at the start. In a parallel region all threads
+ * must call it and share the work; it ends with a barrier. */
 void sf_domain_stress(const sf_model *model, const sf_operators *operators, sf_state *state);
 
 #endif

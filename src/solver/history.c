@@ -34,7 +34,7 @@ static const sf_h5_info columns[SF_HISTORY_COLUMNS] = {
     {"/history/smallest_jacobian", "1", "smallest det F"},
     {"/history/contact_nodes", "1", "points in contact, modelled part"},
     {"/history/penetration", "m", "deepest penetration of a point"},
-    {"/history/constraint_residual", "m s-1", "largest |G v|"},
+    {"/history/constraint_residual", "m s-1", "largest |G v|, measured every 16 steps"},
 };
 
 /* Room for one row more. */

@@ -7,7 +7,8 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* Adds them to force. */
+/* Adds them to force. In a parallel region all threads must call it and share the work; it ends with a
+ * barrier. */
 void sf_internal_force(const sf_model *model, const sf_operators *operators, sf_state *state);
 
 #endif

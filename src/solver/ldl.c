@@ -104,6 +104,14 @@ static int range_of(const sf_ldl_entries *a, int64_t row) {
     return range;
 }
 
+static uint8_t components_of(const sf_ldl_entries *a, int range) {
+    return range == 0 ? a->shared : (uint8_t)(1 << (range - 1));
+}
+
+bool sf_ldl_apart(const sf_ldl_entries *a, int64_t row, int64_t other) {
+    return (components_of(a, range_of(a, row)) & components_of(a, range_of(a, other))) == 0;
+}
+
 /* The entries among the shared rows (if `with_shared`) and those of one component's range (0: none), at their
  * positions. */
 static cholmod_sparse *gather_system(builder *w, bool with_shared, int range) {
@@ -164,6 +172,16 @@ static sf_status order_range(builder *w, int range, sf_error *err) {
     return err->status;
 }
 
+/* CHOLMOD stops at a zero in D, not at a negative number. */
+static bool is_positive(const cholmod_factor *l) {
+    const SuiteSparse_long *p = l->p;
+    const double *x = l->x;
+    bool positive = l->minor == l->n;
+    for (size_t j = 0; j < l->n && positive; j++)
+        positive = x[p[j]] > 0;
+    return positive;
+}
+
 /* L D L^T of the shared rows and those of one range, in the order of their positions. */
 static sf_status factorize(builder *w, int range, cholmod_factor **out, sf_error *err) {
     w->common.nmethods = 1;
@@ -177,8 +195,8 @@ static sf_status factorize(builder *w, int range, cholmod_factor **out, sf_error
     *out = l;
     if (!l || w->common.status < CHOLMOD_OK)
         return fail_library(w, err);
-    double condition = cholmod_l_rcond(l, &w->common);
-    if (w->common.status == CHOLMOD_NOT_POSDEF || !(condition > SINGULAR))
+    double condition = is_positive(l) ? cholmod_l_rcond(l, &w->common) : 0;
+    if (!(condition > SINGULAR))
         return SF_FAIL(
             err, SF_ERR_MODEL,
             "the constraints of %lld nodes depend on each other (reciprocal condition %.3g): choose "
@@ -205,7 +223,7 @@ static void order_places(const builder *w, const tree *t, sf_ldl *f, int64_t *pl
         int64_t at = place[range_first(a, range) + w->position[row]];
         f->order[at] = (int32_t)row;
         for (int c = 0; c < 3; c++)
-            f->mask[at][c] = range == 0 || range == c + 1;
+            f->mask[at][c] = (components_of(a, range) >> c) & 1;
     }
 }
 
@@ -259,7 +277,6 @@ static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
                 room += (unsigned long)((const SuiteSparse_long *)l->nz)[j];
         }
     f->rows = w->rows;
-    f->shared = w->a->part[0];
     int64_t *place = sf_alloc(err, rows, sizeof *place, "factor of the constraints");
     int64_t *source = sf_alloc(err, rows, sizeof *source, "factor of the constraints");
     f->order = sf_alloc(err, rows, sizeof *f->order, "factor of the constraints");
@@ -269,7 +286,7 @@ static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
     f->value = sf_alloc(err, room, sizeof *f->value, "factor of the constraints");
     f->inverse = sf_alloc(err, rows, sizeof *f->inverse, "factor of the constraints");
     f->mask = sf_alloc(err, rows, sizeof *f->mask, "factor of the constraints");
-    if (err->status == SF_OK && build_tree(l, f->shared, &t, err) == SF_OK) {
+    if (err->status == SF_OK && build_tree(l, w->a->part[0], &t, err) == SF_OK) {
         cut_tree(&t);
         order_places(w, &t, f, place);
         for (int64_t j = 0; j < f->rows; j++)
@@ -326,7 +343,7 @@ SF_KERNEL void sf_ldl_forward(const sf_ldl *f, int branch, sf_vec *x) {
     sf_vec *carried = &f->carried[branch * size];
     memset(carried, 0, (size_t)size * sizeof *carried);
     for (int64_t j = f->branch[branch]; j < f->branch[branch + 1]; j++) {
-        const sf_vec known = x[j];
+        const sf_vec known = x[j] *= f->mask[j];
         int64_t k = f->column[j];
         for (; k < f->trunk_from[j]; k++)
             x[f->place[k]] -= f->value[k] * known;

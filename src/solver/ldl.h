@@ -10,33 +10,40 @@
 
 #include "core/error.h"
 #include "core/lanes.h"
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { SF_LDL_BRANCHES = 4 };
 
-/* Entries of the lower triangle, in any order; those of one place add up. Rows 0 to part[0] - 1 are shared,
- * part[c] to part[c + 1] - 1 those of component c alone; rows of different components have no entry. Owned by
- * who fills it. */
+/* Entries of the lower triangle, in any order; those of one place add up. Rows 0 to part[0] - 1 are those of
+ * the components in `shared` (bits 1, 2, 4) together, part[c] to part[c + 1] - 1 those of component c alone.
+ * Owned by who fills it. */
 typedef struct sf_ldl_entries {
+    uint8_t shared;
     int64_t part[4], count;
     int64_t *row, *column; /* [count] */
     double *value;         /* [count] */
 } sf_ldl_entries;
 
 typedef struct sf_ldl {
-    int64_t rows, shared;
+    int64_t rows;
     int32_t *order; /* [rows] row of A by place in the elimination: branch by branch, trunk */
-    int64_t branch[SF_LDL_BRANCHES + 1]; /* first place of every branch; the last is the trunk's */
+    int64_t branch[SF_LDL_BRANCHES + 1]; /* first place of every branch; the last is the trunk's, which ends
+                                            with the rows of single components */
     int64_t *column;                     /* [rows + 1] L by column, without its unit diagonal */
     int64_t *trunk_from;                 /* [rows] where a column's entries in the trunk begin */
     int32_t *place;                      /* [column[rows]] */
     double *value;                       /* [column[rows]] */
     double *inverse;                     /* [rows] 1 / D */
     sf_vec *mask;                        /* [rows] 1 in the components that have the row, else 0 */
-    sf_vec *carried;                     /* [SF_LDL_BRANCHES][trunk rows] what branches leave to the trunk */
+    sf_vec *carried; /* [SF_LDL_BRANCHES][rows - branch[SF_LDL_BRANCHES]] what branches leave to the trunk;
+                        work of one solution at a time */
 } sf_ldl;
 
-/* SF_ERR_MODEL if A is singular or nearly so (reciprocal condition below 1e-13). */
+/* Do two rows have no component in common? Then A has no entry there. */
+bool sf_ldl_apart(const sf_ldl_entries *a, int64_t row, int64_t other);
+
+/* SF_ERR_MODEL if A is not positive definite, or nearly singular (reciprocal condition below 1e-13). */
 sf_status sf_ldl_build(const sf_ldl_entries *a, sf_ldl *factor, sf_error *err);
 void sf_ldl_free(sf_ldl *factor);
 

@@ -10,7 +10,8 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* Sets force to the pairs' forces, adds the couples to stress, and fills the partial sums of the
+/* In a parallel region all threads must call it and share the work; it ends with a barrier.
+ * Sets force to the pairs' forces, adds the couples to stress, and fills the partial sums of the
  * stabilisation. */
 void sf_stabilisation(const sf_model *model, const sf_operators *operators, sf_state *state);
 

@@ -3,6 +3,7 @@
 
 #include "core/lanes.h"
 #include "core/motion.h"
+#include "core/threads.h"
 #include "solver/contact.h"
 #include "solver/domain_stress.h"
 #include "solver/internal_force.h"

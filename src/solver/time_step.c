@@ -164,7 +164,7 @@ static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state 
         before_last = value;
         value = tridiagonal_top(size, alpha, beta, z);
         if (!(beta[size - 1] > 1e-7 * fabs(alpha[size - 1])) || /* an exact vector */
-            (size >= POWER_LEAST && value - before_last <= settled * value))
+            (size >= POWER_LEAST && value - before_last < settled * value))
             break;
     }
     s->power_iterations += size;
