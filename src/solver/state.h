@@ -14,8 +14,13 @@
 enum { SF_POWER_BASIS = 8 }; /* Lanczos vectors kept, at most 9 */
 
 /* Waking a thread takes about 50 us on a virtual machine: loops over fewer nodes than this with little work
- * for each, and over fewer rows or contact points, stay on one. */
+ * for each, and over fewer rows or contact points, stay on one. SF_ALL_PARALLEL: none does, for the thread
+ * sanitizer, whose models are small. */
+#ifdef SF_ALL_PARALLEL
+enum { SF_FEW_NODES = 0, SF_FEW_POINTS = 0 };
+#else
 enum { SF_FEW_NODES = 20000, SF_FEW_POINTS = 3000 };
+#endif
 
 enum { SF_CHUNK = 64 }; /* nodes per partial sum: fixes the order of every sum, whatever the threads */
 
