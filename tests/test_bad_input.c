@@ -252,6 +252,8 @@ static void no_contact_points(sf_model *m) {
 
 static void set_motion(sf_model *m, double time, double displacement) {
     sf_error err = SF_ERROR_INIT;
+    free(m->motion_time); /* a model without a motion may hold empty lists */
+    free(m->motion_displacement);
     m->motion_count = 2;
     m->motion_time = sf_alloc(&err, 2, sizeof(double), "motion");
     m->motion_displacement = sf_alloc(&err, 2, sizeof(double), "motion");

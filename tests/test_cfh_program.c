@@ -110,6 +110,55 @@ static void bounds_and_extrapolation_are_said(void **state) {
     free(report);
 }
 
+/* A limit that the lowest drop exceeds already is a bound as well. */
+static void a_limit_exceeded_from_the_lowest_height_on_is_a_bound(void **state) {
+    const program_place *p = *state;
+    program_result r = program_succeed(p, "cfh", "'%s' -o below -t 1 --height '2 cm' --limit-g 0.5 %s",
+                                       fixture_source(EXAMPLE), program_coarse(20));
+    assert_non_null(strstr(r.out, "Critical fall height below 0.010 m of free fall: a_max exceeds 0.5 g"));
+    char *json = read_text(p, "below/cfh.json"), *report = read_text(p, "below/report.md");
+    assert_non_null(strstr(json, "\"verdict\": \"below the lowest point\""));
+    assert_non_null(strstr(json, "\"deciding\": \"a_max\""));
+    assert_true(isnan(number_of(json, "critical_fall_height", "height_m")));
+    assert_relative(number_of(json, "critical_fall_height", "lowest_simulated_m"), 0.01, 1e-9);
+    assert_non_null(strstr(report, "a limit is exceeded down to 1 cm"));
+    free(json);
+    free(report);
+}
+
+/* Drops so fast that the foam fails leave points without figures. With too few others the height is not
+ * determined: that is a failure, but the report is written, with what the solver said of each. */
+static void too_few_drops_that_succeed_determine_nothing(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        const char *name, *heights, *problem;
+        int code, failed;
+    } cases[] = {
+        {"none", "20 m,22 m,24 m,26 m", "no simulation succeeded", SF_ERR_NUMERIC, 4},
+        {"some", "1 m,2 m,24 m,26 m", "a_max has 2 points, at least 4 are needed", SF_ERR_INPUT, 2},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        char path[64];
+        program_result r = program_run(p, "cfh", "'%s' -o %s -t 1 --heights '%s' %s", fixture_source(EXAMPLE),
+                                       cases[k].name, cases[k].heights, program_coarse(20));
+        if (r.code != cases[k].code || !strstr(r.err, cases[k].problem))
+            fail_msg("exit code %d, \"%s\" expected in: %s", r.code, cases[k].problem, r.err);
+        snprintf(path, sizeof path, "%s/cfh.json", cases[k].name);
+        char *json = read_text(p, path);
+        assert_non_null(strstr(json, "\"verdict\": \"not determined\""));
+        assert_non_null(strstr(json, cases[k].problem));
+        assert_int_equal(count_of(json, "\"failed\": true"), cases[k].failed);
+        assert_int_equal(count_of(json, "the simulation failed: softfall-solve: at t = "), cases[k].failed);
+        assert_int_equal(count_of(json, "log.txt)"), cases[k].failed); /* whole sentences */
+        snprintf(path, sizeof path, "%s/report.md", cases[k].name);
+        char *report = read_text(p, path);
+        assert_non_null(strstr(report, "Critical fall height not determined"));
+        assert_int_equal(count_of(report, "the simulation failed: "), cases[k].failed);
+        free(report);
+        free(json);
+    }
+}
+
 static void command_lines_that_cannot_be_meant_are_refused(void **state) {
     const program_place *p = *state;
     static const struct {
@@ -150,6 +199,8 @@ int main(void) {
         cmocka_unit_test(the_height_found_gives_the_limit_when_it_is_simulated),
         cmocka_unit_test(a_second_run_uses_every_drop_again),
         cmocka_unit_test(bounds_and_extrapolation_are_said),
+        cmocka_unit_test(a_limit_exceeded_from_the_lowest_height_on_is_a_bound),
+        cmocka_unit_test(too_few_drops_that_succeed_determine_nothing),
         cmocka_unit_test(command_lines_that_cannot_be_meant_are_refused),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

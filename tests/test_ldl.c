@@ -132,7 +132,7 @@ static void branches_are_balanced(void **state) {
         double share = (double)(f.column[f.branch[q + 1]] - f.column[f.branch[q]]) / all;
         assert_true(share > 0.1 && share < 0.4);
     }
-    assert_true(f.column[f.rows] - f.column[f.branch[SF_LDL_BRANCHES]] < 0.35 * all);
+    assert_true((double)(f.column[f.rows] - f.column[f.branch[SF_LDL_BRANCHES]]) < 0.35 * all);
     sf_ldl_free(&f);
     free_entries(&a);
 }

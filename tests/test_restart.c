@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -32,6 +33,24 @@ static int kill_count(void) {
     return kills ? atoi(kills) : 10;
 }
 
+static double run_time; /* s of the processor, of one run without interruption in this build */
+
+/* Processor time of the children that have ended. */
+static double time_of_children(void) {
+    struct rusage used;
+    assert_int_equal(getrusage(RUSAGE_CHILDREN, &used), 0);
+    return (double)used.ru_utime.tv_sec + 1e-6 * (double)used.ru_utime.tv_usec;
+}
+
+/* Processor time of a child that runs: no wall time, so that other work on the machine does not matter. */
+static double time_of(pid_t child) {
+    clockid_t clock;
+    struct timespec used = {0};
+    if (clock_getcpuclockid(child, &clock) == 0)
+        clock_gettime(clock, &used);
+    return (double)used.tv_sec + 1e-9 * (double)used.tv_nsec;
+}
+
 /* model.h5 and what one run makes of it, full.h5; steps are small, so that there is time to kill. */
 static int set_up(void **state) {
     const program_place *p = program_group_set_up(state);
@@ -40,7 +59,9 @@ static int set_up(void **state) {
         "'%s' -o model.h5 %s --set output.frame_interval='\"1 ms\"' --set solver.step_safety=%.3f "
         "--set solver.end_time='\"20 ms\"'",
         fixture_source(EXAMPLE), program_coarse(20), 2.0 / kill_count());
+    double start = time_of_children();
     program_succeed(p, "solve", "model.h5 -o full.h5 --threads 1");
+    run_time = time_of_children() - start;
     return 0;
 }
 
@@ -177,12 +198,13 @@ static pid_t start_solver(const program_place *p, const char *const *words) {
     return child;
 }
 
-/* Runs to the end with a signal after a random time below `longest`, again and again, at least `least` times.
- * The file opens after each; post-processing reads it. */
+/* Runs to the end with a signal after a random time, again and again, at least `least` times. The file opens
+ * after each; post-processing reads it. */
 static void run_with_signals(const program_place *p, const char *results, const int *numbers, int count,
-                             int least, double longest) {
+                             int least) {
     char checkpoint[64];
     uint64_t seed = 7;
+    double longest = 1.2 * run_time / least;
     int killed = 0, opened = 0;
     snprintf(checkpoint, sizeof checkpoint, "%s.restart", results);
     for (int turn = 0; turn < 100 * least; turn++) {
@@ -190,8 +212,8 @@ static void run_with_signals(const program_place *p, const char *results, const 
         const char *again[] = {"--restart", results, "--checkpoint-every", "0.02 s", NULL};
         pid_t child = start_solver(p, is_there(p, checkpoint) ? again : anew);
         int status = 0, number = numbers[turn % count];
-        double wait = killed < least ? 0.5 * longest * (1 + fixture_random(&seed)) : 60;
-        for (double slept = 0; slept < wait && waitpid(child, &status, WNOHANG) == 0; slept += 0.002)
+        double wait = killed < least ? 0.5 * longest * (1 + fixture_random(&seed)) : 100 * run_time;
+        while (time_of(child) < wait && waitpid(child, &status, WNOHANG) == 0)
             sleep_for(0.002);
         if (kill(child, number) == 0 && waitpid(child, &status, 0) == child)
             killed++;
@@ -218,13 +240,13 @@ static void run_with_signals(const program_place *p, const char *results, const 
 
 static void interrupted_run_goes_on(void **state) {
     static const int numbers[] = {SIGINT, SIGTERM};
-    run_with_signals(*state, "interrupted.h5", numbers, 2, 6, 0.4);
+    run_with_signals(*state, "interrupted.h5", numbers, 2, 6);
     assert_true(restarts_of(*state, "interrupted.h5") >= 5);
 }
 
 static void killed_run_loses_nothing(void **state) {
     static const int numbers[] = {SIGKILL};
-    run_with_signals(*state, "killed.h5", numbers, 1, kill_count(), 0.25);
+    run_with_signals(*state, "killed.h5", numbers, 1, kill_count());
     assert_false(is_there(*state, "killed.h5.run"));
 }
 

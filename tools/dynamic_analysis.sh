@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Sanitizers and valgrind; fails at the first finding.   tools/dynamic_analysis.sh [memory] [threads] [valgrind]
 #   memory    gcc's address and undefined-behaviour sanitizers, all tests that are not slow
-#   threads   clang's thread sanitizer with OpenMP's libarcher and 3 threads: a loop with a race, which must be found, the
-#             tests of everything that runs in parallel, and a coarse drop
-#   valgrind  memcheck on a coarse drop through softfall-pre, -solve and -post (built for AVX2: valgrind does not
-#             know AVX-512); tests/valgrind.supp says what of gmsh is left out, and why
+#   threads   gcc's thread sanitizer with LLVM's OpenMP and libarcher, 3 threads: a loop with a race, which must be found, the
+#             tests of everything that runs in parallel, and a coarse drop; no loop is too short for threads there
+#   valgrind  memcheck on a coarse drop through softfall-pre, -solve and -post of the default build, with the kernels for
+#             AVX2 (valgrind's processor has no AVX-512); tests/valgrind.supp says what of gmsh is left out, and why
 # Packages: section analysis of packages.txt.
 set -euo pipefail
 place=
@@ -50,9 +50,8 @@ run_threads() {
 }
 
 run_valgrind() {
-    build build-valgrind --preset default -DCMAKE_BUILD_TYPE=RelWithDebInfo -DSOFTFALL_NATIVE=OFF \
-        -DCMAKE_C_FLAGS=-march=x86-64-v3 -DSOFTFALL_TESTS=OFF
-    coarse_drop build-valgrind/bin env OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive valgrind --quiet --error-exitcode=99 \
+    build build --preset default
+    coarse_drop build/bin env OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive valgrind --quiet --error-exitcode=99 \
         --leak-check=full --errors-for-leak-kinds=definite,indirect --suppressions="$PWD/tests/valgrind.supp"
     echo "valgrind: nothing found"
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # gcc -fanalyzer, clang-tidy (.clang-tidy) and cppcheck over src/. Prints every finding that tools/static_analysis.txt does
-# not explain, and fails if there is one.   tools/static_analysis.sh [BUILD] [TOOL...]
+# not explain, and fails if there is one; says which explanations are no longer needed.   tools/static_analysis.sh [BUILD] [TOOL...]
 # BUILD (default build) is a configured folder; TOOLs: gcc, clang-tidy, cppcheck (default: all).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -38,9 +38,11 @@ run_cppcheck() {
 for tool in ${tools[*]}; do
     "run_$tool" >>"$raw"
 done
-explained=$(grep -v '^#' tools/static_analysis.txt | cut -d' ' -f1-3 | sort -u)
-unexplained=$(sort -u "$raw" | comm -23 - <(printf '%s\n' "$explained"))
-printf '%d kinds of findings, %d not explained\n' "$(sort -u "$raw" | wc -l)" "$(printf '%s' "$unexplained" | grep -c . || true)"
+sort -u "$raw" -o "$raw"
+explained=$(grep -E "^($(tr ' ' '|' <<<"${tools[*]}")) " tools/static_analysis.txt | cut -d' ' -f1-3 | sort -u)
+unexplained=$(comm -23 "$raw" - <<<"$explained")
+printf '%d kinds of findings, %d not explained\n' "$(wc -l <"$raw")" "$(grep -c . <<<"$unexplained" || true)"
+comm -13 "$raw" - <<<"$explained" | sed 's/^/no longer found: /'
 [ -z "$unexplained" ] || {
     printf '%s\n' "$unexplained"
     exit 1

@@ -107,14 +107,16 @@ static sf_status hash_case(const sf_case *c, uint64_t *hash, sf_error *err) {
 
 /* The last line of a log that says something, for an error's sentence. */
 static void last_line(const char *path, char *out, size_t size) {
-    char line[512];
+    char *line = NULL;
+    size_t room = 0;
     FILE *file = fopen(path, "r");
     snprintf(out, size, "it said nothing");
-    while (file && fgets(line, sizeof line, file)) {
+    while (file && getline(&line, &room, file) >= 0) {
         line[strcspn(line, "\n")] = '\0';
         if (*line)
             snprintf(out, size, "%s", line);
     }
+    free(line);
     if (file)
         fclose(file);
 }
@@ -168,7 +170,7 @@ static sf_status run_program(char *const *arguments, const char *log, sf_error *
         return SF_OK;
     if (stopped || code == SF_INTERRUPTED || code == 128 + SIGTERM)
         return interrupted(err);
-    char said[512];
+    char said[800];
     last_line(log, said, sizeof said);
     return SF_FAIL(err, code <= SF_ERR_LIBRARY ? (sf_status)code : SF_ERR_LIBRARY,
                    "%s (exit code %d; see %s)", said, code, log);

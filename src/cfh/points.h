@@ -10,7 +10,7 @@
 
 typedef enum sf_cfh_criterion { SF_CFH_A_MAX, SF_CFH_HIC, SF_CFH_CRITERIA } sf_cfh_criterion;
 
-enum { SF_CFH_MAX_POINTS = 16, SF_CFH_NOTE_SIZE = 400 };
+enum { SF_CFH_MAX_POINTS = 16, SF_CFH_NOTE_SIZE = 1100 };
 
 typedef struct sf_cfh_point {
     double height;                 /* m */
