@@ -52,7 +52,8 @@ run_threads() {
 run_valgrind() {
     build build --preset default
     coarse_drop build/bin env OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive valgrind --quiet --error-exitcode=99 \
-        --leak-check=full --errors-for-leak-kinds=definite,indirect --suppressions="$PWD/tests/valgrind.supp"
+        --leak-check=full --errors-for-leak-kinds=definite,indirect --show-leak-kinds=definite,indirect \
+        --suppressions="$PWD/tests/valgrind.supp"
     echo "valgrind: nothing found"
 }
 
