@@ -105,7 +105,7 @@ static int range_of(const sf_ldl_entries *a, int64_t row) {
 }
 
 static uint8_t components_of(const sf_ldl_entries *a, int range) {
-    return range == 0 ? a->shared : (uint8_t)(1 << (range - 1));
+    return (uint8_t)(range == 0 ? a->shared : 1 << (range - 1));
 }
 
 bool sf_ldl_apart(const sf_ldl_entries *a, int64_t row, int64_t other) {
