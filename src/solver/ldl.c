@@ -2,7 +2,6 @@
 #include "solver/ldl.h"
 
 #include <cholmod.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -266,15 +265,24 @@ static void copy_columns(const builder *w, const int64_t *source, const int64_t 
     f->column[f->rows] = next;
 }
 
+/* Entries of l, with its diagonal, in rows from `first` on. */
+static unsigned long count_entries(const cholmod_factor *l, int64_t first) {
+    const SuiteSparse_long *p = l->p, *i = l->i, *nz = l->nz;
+    unsigned long count = 0;
+    for (size_t j = 0; j < l->n; j++)
+        for (int64_t k = p[j]; k < p[j] + nz[j]; k++)
+            count += i[k] >= first;
+    return count;
+}
+
 static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
     tree t = {0};
     const cholmod_factor *l = NULL;
     unsigned long rows = (unsigned long)w->rows, room = 0;
-    for (int c = 2; c >= 0; c--)
+    for (int c = 0; c < 3; c++)
         if (w->l[c]) {
-            l = w->l[c];
-            for (size_t j = 0; j < l->n; j++)
-                room += (unsigned long)((const SuiteSparse_long *)l->nz)[j];
+            room += count_entries(w->l[c], l ? w->a->part[0] : 0);
+            l = l ? l : w->l[c];
         }
     f->rows = w->rows;
     int64_t *place = sf_alloc(err, rows, sizeof *place, "factor of the constraints");
