@@ -17,11 +17,12 @@
 #include <cmocka.h>
 
 #include "post_check.h"
+#include "program_fixture.h"
 
 typedef struct place {
-    char directory[256];
-    char results[300];
-    char output[300];
+    program_place made;
+    char results[600];
+    char output[600];
 } place;
 
 typedef struct outcome {
@@ -61,22 +62,20 @@ static void assert_says(const outcome *result, const char *text) {
 }
 
 static int set_up(void **state) {
-    const char *root = getenv("TMPDIR");
     place *p = calloc(1, sizeof *p);
+    assert_non_null(p);
     *state = p;
-    snprintf(p->directory, sizeof p->directory, "%s/softfall-post-test-XXXXXX", root ? root : "/tmp");
-    if (!mkdtemp(p->directory))
-        return -1;
-    snprintf(p->results, sizeof p->results, "%s/results.h5", p->directory);
-    snprintf(p->output, sizeof p->output, "%s/out", p->directory);
+    program_set_up(&p->made);
+    snprintf(p->results, sizeof p->results, "%s/results.h5", p->made.folder);
+    snprintf(p->output, sizeof p->output, "%s/out", p->made.folder);
     return 0;
 }
 
 static int tear_down(void **state) {
     place *p = *state;
-    int code = run_shell("rm -rf '%s'", p->directory).code;
+    program_tear_down(&p->made);
     free(p);
-    return code;
+    return 0;
 }
 
 static void write_fixture(const place *p, fixture_options options) {
@@ -106,7 +105,7 @@ static double summary_number(const place *p, const char *key) {
 }
 
 static bool output_exists(const place *p, const char *name) {
-    char path[400];
+    char path[800];
     snprintf(path, sizeof path, "%s/%s", p->output, name);
     return access(path, F_OK) == 0;
 }
@@ -211,8 +210,8 @@ static void xdmf_loads_in_all_three_paraview_readers(void **state) {
 static void reference_adds_fits_and_the_shift(void **state) {
     place *p = *state;
     write_fixture(p, (fixture_options){0});
-    char path[400];
-    snprintf(path, sizeof path, "%s/measured.csv", p->directory);
+    char path[800];
+    snprintf(path, sizeof path, "%s/measured.csv", p->made.folder);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fputs("time_ms,acceleration_g\n", file);
@@ -221,7 +220,7 @@ static void reference_adds_fits_and_the_shift(void **state) {
         fprintf(file, "%.1f,%.6f\n", i * 0.1, x > 0 && x < 1 ? 100 * sin(M_PI * x) : 0);
     }
     fclose(file);
-    char arguments[600];
+    char arguments[1000];
     snprintf(arguments, sizeof arguments, "--reference '%s' --regions 10-20,20-30", path);
     outcome result = run_post(p, arguments);
     assert_int_equal(result.code, 0);
