@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SLAB = 256 * SF_LANES }; /* nodes on their way to a file at a time */
+
 enum { DISPLACEMENT, VELOCITY, CAUCHY, MISES, STRETCHES, COMPRESSION, ENERGY, FACTOR };
 
 static const struct {
@@ -107,41 +109,46 @@ static void take_node(const sf_model *m, const sf_operators *op, const sf_state 
     double sigma[9], mises;
     switch (kind) {
     case DISPLACEMENT:
-        take_value(m, s->d, i, &out[3 * i]);
+        take_value(m, s->d, i, out);
         break;
     case VELOCITY:
-        take_value(m, s->v, i, &out[3 * i]);
+        take_value(m, s->v, i, out);
         break;
     case CAUCHY:
-        take_stress(m, op, s, i, &out[9 * i], &mises);
+        take_stress(m, op, s, i, out, &mises);
         break;
     case MISES:
-        take_stress(m, op, s, i, sigma, &out[i]);
+        take_stress(m, op, s, i, sigma, out);
         break;
     case ENERGY:
-        out[i] = s->energy[i];
+        *out = s->energy[i];
         break;
     default:
-        out[i] = hysteresis_factor(&op->foam, s->energy[i], s->peak[i]);
+        *out = hysteresis_factor(&op->foam, s->energy[i], s->peak[i]);
     }
 }
 
-static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, double *out) {
-    int64_t blocks = (m->node_count + SF_LANES - 1) / SF_LANES;
-#pragma omp parallel for default(none) shared(m, op, s, kind, out, blocks) schedule(static)
-    for (int64_t block = 0; block < blocks; block++) {
+/* One field of `count` nodes from node `start`, the first of a block. */
+static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, int64_t start,
+                       int64_t count, double *out) {
+    int64_t first_block = start / SF_LANES, last_block = (start + count - 1) / SF_LANES;
+    int columns = fields[kind].columns;
+#pragma omp parallel for default(none) schedule(static)                                                      \
+    shared(m, op, s, kind, start, count, columns, out, first_block, last_block)
+    for (int64_t block = first_block; block <= last_block; block++) {
         int64_t first = block * SF_LANES,
-                end = first + SF_LANES < m->node_count ? first + SF_LANES : m->node_count;
+                end = first + SF_LANES < start + count ? first + SF_LANES : start + count;
         double stretch[3 * SF_LANES];
         if (kind == STRETCHES || kind == COMPRESSION)
             take_stretches(m, s, block, stretch);
         for (int64_t i = first; i < end; i++) {
+            double *row = &out[(i - start) * columns];
             if (kind == STRETCHES)
-                memcpy(&out[3 * i], &stretch[3 * (i - first)], 3 * sizeof *out);
+                memcpy(row, &stretch[3 * (i - first)], 3 * sizeof *out);
             else if (kind == COMPRESSION)
-                out[i] = 1 - stretch[3 * (i - first)];
+                *row = 1 - stretch[3 * (i - first)];
             else
-                take_node(m, op, s, kind, i, out);
+                take_node(m, op, s, kind, i, row);
         }
     }
 }
@@ -158,7 +165,7 @@ static sf_frame take_frame(const sf_model *m, const sf_state *s) {
 void sf_snapshot_take(const sf_model *m, const sf_operators *op, const sf_state *s, sf_snapshot *snapshot) {
     snapshot->frame = take_frame(m, s);
     for (int k = 0; k < SF_FRAME_FIELDS; k++)
-        take_field(m, op, s, k, snapshot->field[k]);
+        take_field(m, op, s, k, 0, m->node_count, snapshot->field[k]);
 }
 
 static sf_status write_item(sf_h5 *file, const char *group, const char *name, const char *units,
@@ -227,15 +234,32 @@ sf_status sf_snapshot_read(const sf_model *m, sf_snapshot *snapshot, const char 
     return err->status;
 }
 
+/* One field of all nodes, through a buffer for SLAB nodes. */
+static sf_status write_slabs(const sf_model *m, const sf_operators *op, const sf_state *s, int kind,
+                             const char *path, double *buffer, sf_h5 *file, sf_error *err) {
+    char name[128];
+    const int64_t dims[2] = {m->node_count, fields[kind].columns};
+    sf_h5_info info = {name, fields[kind].units, fields[kind].description};
+    sf_h5_rows rows;
+    snprintf(name, sizeof name, "%s/%s", path, fields[kind].name);
+    sf_h5_rows_begin(file, &info, SF_H5_F64, dims[1] > 1 ? 2 : 1, dims, &rows, err);
+    for (int64_t start = 0; start < m->node_count && err->status == SF_OK; start += SLAB) {
+        int64_t count = start + SLAB < m->node_count ? SLAB : m->node_count - start;
+        take_field(m, op, s, kind, start, count, buffer);
+        sf_h5_rows_add(&rows, count, buffer, err);
+    }
+    return sf_h5_rows_end(&rows, err);
+}
+
 sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, const char *path,
                          sf_h5 *file, sf_error *err) {
     sf_frame frame = take_frame(m, s);
-    write_frame(&frame, path, file, err);
-    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++) {
-        if (!(m->run.output_fields >> k & 1))
-            continue;
-        take_field(m, op, s, k, s->scratch);
-        write_field(m, k, path, s->scratch, file, err);
-    }
+    double *buffer = sf_alloc(err, SLAB, 9 * sizeof *buffer, "fields of a frame");
+    if (buffer)
+        write_frame(&frame, path, file, err);
+    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
+        if (m->run.output_fields >> k & 1)
+            write_slabs(m, op, s, k, path, buffer, file, err);
+    free(buffer);
     return err->status;
 }

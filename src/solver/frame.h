@@ -40,8 +40,8 @@ sf_status sf_snapshot_write(const sf_model *model, const sf_snapshot *snapshot, 
 sf_status sf_snapshot_read(const sf_model *model, sf_snapshot *snapshot, const char *path, const sf_h5 *file,
                            sf_error *err);
 
-/* Writes the present state's run.output_fields to the group `path`, one field at a time through
- * state->scratch. */
+/* Writes the present state's run.output_fields to the group `path`, some thousand nodes of a field at a time.
+ */
 sf_status sf_frame_write(const sf_model *model, const sf_operators *operators, const sf_state *state,
                          const char *path, sf_h5 *file, sf_error *err);
 
