@@ -80,8 +80,8 @@ sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *n
 sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const char *name, int64_t *value,
                                   sf_error *err);
 
-/* Copies an object (a dataset, or a group with all it holds) to the same path of another file, with no more
- * than about a megabyte of it in memory. */
+/* Copies an object (a dataset, or a group with all it holds) to the same path of another file, 64 kB (or one
+ * row) at a time. */
 sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *err);
 /* Makes `path` stand for the object of the same path in another file, named relative to the folder of this
  * one.
