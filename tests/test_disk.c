@@ -101,6 +101,37 @@ static void folder_that_may_not_be_written_is_told(void **state) {
     }
 }
 
+/* One sentence and the code of a file that failed. */
+static void assert_file_fails(const program_result *r, const char *sentence) {
+    assert_int_equal(r->code, SF_ERR_IO);
+    if (strncmp(r->err, sentence, strlen(sentence)) != 0 || strchr(r->err, '\n') != strrchr(r->err, '\n'))
+        fail_msg("no sentence \"%s...\": %s", sentence, r->err);
+}
+
+/* The first fields at the peak, and later ones, which must fit on the disk beside those before. */
+static void peak_that_cannot_be_written_is_told(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        int kilobytes;
+        const char *left;
+    } rows[] = {{120, "base.h5\n"}, {330, "base.h5\nframe-000000.h5\npeak.h5\n"}};
+    program_shell(p, "mkdir -p blocked.h5.run/peak.h5.partial");
+    program_result blocked = program_run(p, "solve", "model.h5 -o blocked.h5 --threads 1");
+    assert_file_fails(&blocked,
+                      "softfall-solve: cannot create blocked.h5.run/peak.h5.partial: Is a directory");
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+        program_result result, seen;
+        if (!run_on_small_disk(p, rows[k].kilobytes, "true", "solve",
+                               "model.h5 -o full/results.h5 --threads 1", "ls full/results.h5.run", &result,
+                               &seen)) {
+            print_message("skipped: a tmpfs of one's own needs root\n");
+            skip();
+        }
+        assert_file_fails(&result, "softfall-solve: full/results.h5.run/peak.h5.partial: writing /peak/");
+        assert_string_equal(seen.out, rows[k].left);
+    }
+}
+
 /* The model may be removed as soon as it has been read: the run does not need it. */
 static void input_that_vanishes_does_no_harm(void **state) {
     const program_place *p = *state;
@@ -170,6 +201,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(full_disk_is_told_and_spares_the_earlier_files),
         cmocka_unit_test(folder_that_may_not_be_written_is_told),
+        cmocka_unit_test(peak_that_cannot_be_written_is_told),
         cmocka_unit_test(input_that_vanishes_does_no_harm),
         cmocka_unit_test(closed_pipe_does_not_cost_the_files),
         cmocka_unit_test(leavings_of_killed_runs_are_removed),

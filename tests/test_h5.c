@@ -62,6 +62,58 @@ static void plain_data_are_read(void **state) {
     sf_h5_close(&opened, &err);
 }
 
+/* A table in slabs of 1, 2, 4, 8 ... rows is the table written as a whole, and so is its copy; one with a row
+ * too few or too many is an error. Of 300 rows of 1,000 numbers a copy takes more than one piece. */
+static void rows_in_slabs_make_the_whole(void **state) {
+    enum { ROWS = 300, COLUMNS = 1000 };
+    const program_place *p = *state;
+    const int64_t dims[2] = {ROWS, COLUMNS};
+    const sf_h5_info whole = {"/whole", "m", "one"}, slabs = {"/group/slabs", "m", "two"},
+                     cut = {"/cut", "m", "three"};
+    sf_error err = SF_ERROR_INIT, few = SF_ERROR_INIT, many = SF_ERROR_INIT;
+    sf_h5 *file = NULL, *copy = NULL;
+    sf_h5_rows rows;
+    double *data = malloc(ROWS * COLUMNS * sizeof *data);
+    assert_non_null(data);
+    for (int k = 0; k < ROWS * COLUMNS; k++)
+        data[k] = 1 / (1.0 + k);
+    sf_h5_create(program_path(p, "slabs.h5"), &file, &err);
+    sf_h5_write(file, &whole, SF_H5_F64, 2, dims, data, &err);
+    sf_h5_rows_begin(file, &slabs, SF_H5_F64, 2, dims, &rows, &err);
+    for (int64_t first = 0, count = 1; first < ROWS; first += count, count *= 2) {
+        count = count < ROWS - first ? count : ROWS - first;
+        assert_int_equal(sf_h5_rows_add(&rows, count, &data[first * COLUMNS], &err), SF_OK);
+    }
+    assert_int_equal(sf_h5_rows_end(&rows, &err), SF_OK);
+
+    sf_h5_rows_begin(file, &cut, SF_H5_F64, 2, dims, &rows, &few);
+    assert_int_equal(sf_h5_rows_add(&rows, ROWS - 1, data, &few), SF_OK);
+    assert_int_equal(sf_h5_rows_add(&rows, 2, data, &many), SF_ERR_IO);
+    assert_int_equal(sf_h5_rows_end(&rows, &few), SF_ERR_IO);
+    assert_non_null(strstr(few.text, "slabs.h5: /cut was given 299 of its 300 rows"));
+    sf_h5_close(&file, &err);
+
+    sf_h5_open(program_path(p, "slabs.h5"), &file, &err);
+    sf_h5_create(program_path(p, "copy.h5"), &copy, &err);
+    assert_int_equal(sf_h5_copy(file, "/group", copy, &err), SF_OK);
+    sf_h5_close(&copy, &err);
+    assert_int_equal(sf_h5_open(program_path(p, "copy.h5"), &copy, &err), SF_OK);
+    const struct {
+        const sf_h5 *file;
+        const char *path;
+    } read[] = {{file, "/whole"}, {file, "/group/slabs"}, {copy, "/group/slabs"}};
+    for (size_t k = 0; k < sizeof read / sizeof read[0]; k++) {
+        int64_t found[2] = {ROWS, COLUMNS};
+        void *back = NULL;
+        assert_int_equal(sf_h5_read(read[k].file, read[k].path, SF_H5_F64, 2, found, &back, &err), SF_OK);
+        assert_memory_equal(back, data, ROWS * COLUMNS * sizeof *data);
+        free(back);
+    }
+    sf_h5_close(&file, &err);
+    sf_h5_close(&copy, &err);
+    free(data);
+}
+
 static void links_are_not_followed(void **state) {
     const program_place *p = *state;
     sf_h5 *opened = NULL;
@@ -184,6 +236,7 @@ static void what_is_no_file_is_refused_at_once(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plain_data_are_read),
+        cmocka_unit_test(rows_in_slabs_make_the_whole),
         cmocka_unit_test(links_are_not_followed),
         cmocka_unit_test(data_of_other_files_are_not_read),
         cmocka_unit_test(claims_are_checked_before_anything_is_allocated),

@@ -283,6 +283,93 @@ static void checkpoints_by_simulated_time_can_be_left_out(void **state) {
     assert_same_results(p, "full.h5", "timed.h5");
 }
 
+/* ---- the fields at the peak ---- */
+
+/* A number of a file that may not be there yet: then NAN. */
+static double number_of(const program_place *p, const char *name, const char *path) {
+    sf_error err = SF_ERROR_INIT;
+    sf_h5 *file = NULL;
+    double value = NAN;
+    if (is_there(p, name) && sf_h5_open(program_path(p, name), &file, &err) == SF_OK)
+        sf_h5_read_scalar(file, path, &value, &err);
+    sf_h5_close(&file, &err);
+    return value;
+}
+
+static void assert_same_peak(const program_place *p, const char *first, const char *second) {
+    sf_error err = SF_ERROR_INIT;
+    sf_h5 *a = program_open_h5(p, first), *b = program_open_h5(p, second);
+    assert_int_equal(sf_h5_group_size(a, "/peak"), 12); /* time, missile; all fields always */
+    assert_same_group(a, b, "/peak");
+    sf_h5_close(&a, &err);
+    sf_h5_close(&b, &err);
+}
+
+/* A run is killed when its folder holds a later peak than its checkpoint. What goes on from there has the
+ * peak of the checkpoint, and then that of one run. */
+static void restart_takes_the_peak_of_its_checkpoint(void **state) {
+    const program_place *p = *state;
+    const char *const words[] = {"model.h5", "-o", "late.h5", "--checkpoint-time", "11 ms", NULL};
+    int status = 0;
+    pid_t child = start_solver(p, words);
+    while (waitpid(child, &status, WNOHANG) == 0 && !(number_of(p, "late.h5.run/peak.h5", "/peak/time") >
+                                                      number_of(p, "late.h5.restart", "/peak/time")))
+        sleep_for(0.001);
+    assert_int_equal(kill(child, SIGKILL), 0);
+    waitpid(child, &status, 0);
+    assert_true(number_of(p, "late.h5.restart", "/peak/time") > 0);
+
+    double end = number_of(p, "late.h5.restart", "/time_before") + 1e-9; /* the step that it holds */
+    program_shell(p, "cp late.h5.restart killed.restart");
+    program_succeed(p, "solve", "model.h5 -o short.h5 --end-time '%.17g s' --threads 1", end);
+    program_succeed(p, "solve", "--restart late.h5 --end-time '%.17g s' --threads 1", end);
+    assert_same_peak(p, "killed.restart", "late.h5.restart");
+    assert_same_results(p, "short.h5", "late.h5");
+    program_succeed(p, "solve", "--restart late.h5 --end-time '20 ms' --threads 1");
+    assert_same_results(p, "full.h5", "late.h5");
+}
+
+/* The results of a failed run have its last peak; its checkpoint has that of the step before, whether the
+ * steps were repeated from the beginning or from a checkpoint. */
+static void failed_run_keeps_two_peaks(void **state) {
+    static const char *const options[] = {"--no-checkpoint", "", "--checkpoint-time '1.9 ms'"};
+    const program_place *p = *state;
+    program_succeed(
+        p, "pre",
+        "'%s' -o rising.h5 %s --set missile.velocity='\"25 m/s\"' --set output.fields='[\"velocity\"]'",
+        fixture_source(EXAMPLE), program_coarse(20));
+    for (int k = 0; k < 3; k++) {
+        program_result result = program_run(p, "solve", "rising.h5 -o rising_%d.h5 -t 1 %s", k, options[k]);
+        assert_int_equal(result.code, SF_ERR_NUMERIC);
+    }
+    program_succeed(p, "solve", "rising.h5 -o held.h5 -t 1 --end-time '%.17g s'",
+                    number_of(p, "rising_1.h5.restart", "/time_before") + 1e-9);
+    assert_true(number_of(p, "rising_0.h5", "/peak/time") > number_of(p, "held.h5.restart", "/peak/time"));
+    assert_same_peak(p, "rising_0.h5", "rising_1.h5");
+    assert_same_peak(p, "rising_0.h5", "rising_2.h5");
+    assert_same_peak(p, "held.h5.restart", "rising_1.h5.restart");
+    assert_same_peak(p, "held.h5.restart", "rising_2.h5.restart");
+}
+
+/* With a stable step below the least that is allowed: results without history, with the frame of the failure,
+ * which stands for the peak, and no checkpoint. */
+static void failure_in_the_first_step_has_results(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "pre",
+                    "'%s' -o stiff.h5 %s --set material.E='\"9 GPa\"' --set solver.end_time='\"1000 s\"' "
+                    "--set output.frame_interval='\"1 s\"'",
+                    fixture_source(EXAMPLE), program_coarse(20));
+    program_result result = program_run(p, "solve", "stiff.h5 -o stiff_results.h5 -t 1");
+    assert_int_equal(result.code, SF_ERR_NUMERIC);
+    assert_non_null(strstr(result.err, "at t = 0 s the stable time step fell to"));
+    assert_false(is_there(p, "stiff_results.h5.restart") || is_there(p, "stiff_results.h5.run"));
+    assert_true(number_of(p, "stiff_results.h5", "/peak/time") == 0);
+    sf_error err = SF_ERROR_INIT;
+    sf_h5 *file = program_open_h5(p, "stiff_results.h5");
+    assert_int_equal(sf_h5_group_size(file, "/frames"), 1);
+    sf_h5_close(&file, &err);
+}
+
 /* ---- what cannot go on ---- */
 
 /* One sentence that has `part`, the exit code, and files as they were. */
@@ -483,6 +570,9 @@ int main(void) {
         cmocka_unit_test(killed_run_loses_nothing),
         cmocka_unit_test(interruption_at_once_leaves_a_checkpoint),
         cmocka_unit_test(checkpoints_by_simulated_time_can_be_left_out),
+        cmocka_unit_test(restart_takes_the_peak_of_its_checkpoint),
+        cmocka_unit_test(failed_run_keeps_two_peaks),
+        cmocka_unit_test(failure_in_the_first_step_has_results),
         cmocka_unit_test(damaged_or_foreign_checkpoint_is_refused),
         cmocka_unit_test(nothing_is_replaced_without_force),
         cmocka_unit_test(failed_run_leaves_its_state),

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536 };
+enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536, SF_H5_COPY_SIZE = 1 << 16 };
 
 struct sf_h5 {
     hid_t id;
@@ -210,24 +210,65 @@ static sf_status create_dataset(sf_h5 *file, const sf_h5_info *info, hid_t type,
     return SF_OK;
 }
 
+/* Reads rows of an open dataset into `out`, or writes them from `in`. A scalar is one row. */
+static bool move_rows(hid_t set, hid_t type, int64_t first, int64_t rows, void *out, const void *in) {
+    hid_t space = H5Dget_space(set);
+    hsize_t start[H5S_MAX_RANK] = {(hsize_t)first}, count[H5S_MAX_RANK];
+    int rank = H5Sget_simple_extent_dims(space, count, NULL);
+    count[0] = (hsize_t)rows;
+    hid_t memory = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, count, NULL);
+    herr_t result = 0;
+    if (H5Sget_simple_extent_npoints(memory) > 0) {
+        if (rank > 0)
+            result = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
+        if (result >= 0)
+            result = out ? H5Dread(set, type, memory, space, H5P_DEFAULT, out)
+                         : H5Dwrite(set, type, memory, space, H5P_DEFAULT, in);
+    }
+    H5Sclose(memory);
+    H5Sclose(space);
+    return result >= 0;
+}
+
+sf_status sf_h5_rows_begin(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank,
+                           const int64_t *dims, sf_h5_rows *rows, sf_error *err) {
+    hsize_t extent[SF_H5_MAX_RANK];
+    hid_t set = -1;
+    for (int k = 0; k < rank; k++)
+        extent[k] = (hsize_t)dims[k];
+    hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
+    sf_status status = create_dataset(file, info, native_type(type), space, &set, err);
+    H5Sclose(space);
+    *rows = (sf_h5_rows){
+        .file = file, .path = info->path, .type = type, .count = rank == 0 ? 1 : dims[0], .set = set};
+    return status;
+}
+
+sf_status sf_h5_rows_add(sf_h5_rows *rows, int64_t count, const void *data, sf_error *err) {
+    if (!move_rows(rows->set, native_type(rows->type), rows->next, count, NULL, data))
+        return SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", rows->file->path, rows->path);
+    rows->next += count;
+    return SF_OK;
+}
+
+sf_status sf_h5_rows_end(sf_h5_rows *rows, sf_error *err) {
+    if (rows->set < 0)
+        return err->status;
+    if (H5Dclose(rows->set) < 0) /* small pieces wait in the library until now */
+        SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", rows->file->path, rows->path);
+    rows->set = -1;
+    if (err->status == SF_OK && rows->next != rows->count)
+        SF_FAIL(err, SF_ERR_IO, "%s: %s was given %lld of its %lld rows", rows->file->path, rows->path,
+                (long long)rows->next, (long long)rows->count);
+    return err->status;
+}
+
 sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank, const int64_t *dims,
                       const void *data, sf_error *err) {
-    hsize_t extent[SF_H5_MAX_RANK];
-    bool empty = false;
-    for (int k = 0; k < rank; k++) {
-        extent[k] = (hsize_t)dims[k];
-        empty = empty || dims[k] == 0;
-    }
-    hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
-    hid_t set = -1;
-    sf_status status = create_dataset(file, info, native_type(type), space, &set, err);
-    if (status == SF_OK && !empty &&
-        H5Dwrite(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
-        status = SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
-    if (set >= 0)
-        H5Dclose(set);
-    H5Sclose(space);
-    return status;
+    sf_h5_rows rows;
+    if (sf_h5_rows_begin(file, info, type, rank, dims, &rows, err) == SF_OK)
+        sf_h5_rows_add(&rows, rows.count, data, err);
+    return sf_h5_rows_end(&rows, err);
 }
 
 sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, sf_error *err) {
@@ -463,29 +504,44 @@ sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const c
     return err->status;
 }
 
+/* All rows of a dataset of `items` items to one of the same shape, some of them at a time. */
+static sf_status copy_rows(const sf_h5 *from, const char *path, hid_t set, hid_t type, int64_t items,
+                           sf_h5 *to, hid_t made, sf_error *err) {
+    hid_t space = H5Dget_space(set);
+    hsize_t extent[H5S_MAX_RANK] = {1};
+    H5Sget_simple_extent_dims(space, extent, NULL);
+    H5Sclose(space);
+    int64_t rows = (int64_t)extent[0], row_size = items / rows * (int64_t)H5Tget_size(type);
+    int64_t piece = row_size < SF_H5_COPY_SIZE ? SF_H5_COPY_SIZE / row_size : 1;
+    piece = piece < rows ? piece : rows;
+    void *data = sf_alloc(err, (unsigned long)piece, (unsigned long)row_size, path);
+    for (int64_t first = 0; first < rows && err->status == SF_OK; first += piece) {
+        int64_t count = piece < rows - first ? piece : rows - first;
+        if (!move_rows(set, type, first, count, data, NULL))
+            SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", from->path, path);
+        else if (!move_rows(made, type, first, count, NULL, data))
+            SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);
+    }
+    free(data);
+    return err->status;
+}
+
 /* One plain dataset with its two attributes. */
 static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf_h5 *to, sf_error *err) {
     char units[128], description[512];
     hid_t type = H5Dget_type(set), space = H5Dget_space(set), made = -1;
     hssize_t items = H5Sget_simple_extent_npoints(space);
     size_t size = H5Tget_size(type);
-    void *data = NULL;
     if (check_storage(from, path, set, err) == SF_OK &&
         sf_h5_get_attribute(from, path, "units", units, sizeof units, err) == SF_OK &&
         sf_h5_get_attribute(from, path, "description", description, sizeof description, err) == SF_OK &&
         (items < 0 || size == 0 || (uint64_t)items > size_of_file(set) / size))
         SF_FAIL(err, SF_ERR_IO, "%s: %s claims more than its file can hold", from->path, path);
-    if (err->status == SF_OK)
-        data = sf_alloc(err, (unsigned long)items, size, path);
-    if (data && items > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
-        SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", from->path, path);
     sf_h5_info info = {path, units, description};
-    if (err->status == SF_OK && create_dataset(to, &info, type, space, &made, err) == SF_OK && items > 0 &&
-        H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+    if (err->status == SF_OK && create_dataset(to, &info, type, space, &made, err) == SF_OK && items > 0)
+        copy_rows(from, path, set, type, items, to, made, err);
+    if (made >= 0 && H5Dclose(made) < 0)
         SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);
-    if (made >= 0)
-        H5Dclose(made);
-    free(data);
     H5Sclose(space);
     H5Tclose(type);
     return err->status;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/checkpoint.h"
 
-#include "io/replace.h"
 #include "io/seal.h"
 #include "solver/state_io.h"
 #include <errno.h>
@@ -11,22 +10,22 @@
 
 static const char FORMAT[] = "softfall-checkpoint";
 
-sf_status sf_checkpoint_write(const char *path, const sf_provenance *provenance, const sf_model *m,
+sf_status sf_checkpoint_write(const sf_output *o, const sf_provenance *provenance, const sf_model *m,
                               const sf_state *s, const sf_recorder *r, sf_error *err) {
     static const sf_h5_info end = {"/end_time", "s", "end of the simulated time"},
                             before = {"/time_before", "s", "of the step before the one held"};
     char partial[SF_PATH_SIZE];
     sf_h5 *file = NULL;
-    if (sf_replace_begin(path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
+    if (sf_replace_begin(o->checkpoint, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
     if (sf_provenance_write(file, FORMAT, provenance, err) == SF_OK &&
         sf_h5_write_scalar(file, &end, m->run.end_time, err) == SF_OK &&
         sf_h5_write_scalar(file, &before, s->time - s->dt_old, err) == SF_OK &&
-        sf_state_write(m, s, file, err) == SF_OK)
-        sf_recorder_write(r, m, file, err);
+        sf_state_write(m, s, file, err) == SF_OK && sf_recorder_write(r, file, err) == SF_OK)
+        sf_output_copy_peak(o, file, err);
     sf_h5_close(&file, err);
     if (err->status == SF_OK && sf_seal_add(partial, err) == SF_OK)
-        return sf_replace_commit(partial, path, err);
+        return sf_replace_commit(partial, o->checkpoint, err);
     unlink(partial);
     return err->status;
 }
@@ -64,9 +63,9 @@ void sf_checkpoint_close(sf_checkpoint *c) {
     memset(c, 0, sizeof *c);
 }
 
-sf_status sf_checkpoint_read(const sf_checkpoint *c, const sf_model *m, sf_state *s, sf_recorder *r,
-                             sf_error *err) {
-    if (sf_state_read(m, s, c->file, err) != SF_OK)
+sf_status sf_checkpoint_read(const sf_checkpoint *c, const sf_model *m, const sf_output *o, sf_state *s,
+                             sf_recorder *r, sf_error *err) {
+    if (sf_state_read(m, s, c->file, err) != SF_OK || sf_recorder_read(r, m, s, c->file, err) != SF_OK)
         return err->status;
-    return sf_recorder_read(r, m, s, c->file, err);
+    return sf_output_recover_peak(o, c->file, err);
 }

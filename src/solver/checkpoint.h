@@ -5,6 +5,7 @@
 #define SF_SOLVER_CHECKPOINT_H
 
 #include "io/provenance.h"
+#include "solver/output.h"
 #include "solver/recorder.h"
 
 /* What the run was about. */
@@ -16,16 +17,17 @@ typedef struct sf_checkpoint {
     double time_before; /* s, of the step before the one that it holds */
 } sf_checkpoint;
 
-/* Replaces the file at `path`, whole or not at all. The provenance names the model. */
-sf_status sf_checkpoint_write(const char *path, const sf_provenance *provenance, const sf_model *model,
+/* Replaces the checkpoint of `output`, whole or not at all; /peak comes from the folder. The provenance names
+ * the model. */
+sf_status sf_checkpoint_write(const sf_output *output, const sf_provenance *provenance, const sf_model *model,
                               const sf_state *state, const sf_recorder *recorder, sf_error *err);
 
 /* Opens and checks a checkpoint. On success release with sf_checkpoint_close. */
 sf_status sf_checkpoint_open(const char *path, sf_checkpoint *checkpoint, sf_error *err);
 void sf_checkpoint_close(sf_checkpoint *checkpoint);
 
-/* State and recorder, both freshly created for the same model. */
-sf_status sf_checkpoint_read(const sf_checkpoint *checkpoint, const sf_model *model, sf_state *state,
-                             sf_recorder *recorder, sf_error *err);
+/* State and recorder, both new, of the same model; /peak goes back into the folder of `output`. */
+sf_status sf_checkpoint_read(const sf_checkpoint *checkpoint, const sf_model *model, const sf_output *output,
+                             sf_state *state, sf_recorder *recorder, sf_error *err);
 
 #endif

@@ -7,12 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DISPLACEMENT, VELOCITY, CAUCHY, MISES, STRETCHES, COMPRESSION, ENERGY, FACTOR };
+enum { SLAB = 256 * SF_LANES }; /* nodes on their way to a file at a time */
+
+enum { DISPLACEMENT, VELOCITY, CAUCHY, MISES, STRETCHES, COMPRESSION, ENERGY, FACTOR, FIELDS };
 
 static const struct {
     const char *name, *units, *description;
     int columns;
-} fields[SF_FRAME_FIELDS] = {
+} fields[FIELDS] = {
     {"displacement", "m", "u_h at the nodes", 3},
     {"velocity", "m s-1", "time derivative of u_h, half a step later", 3},
     {"cauchy_stress", "Pa", "Cauchy stress xx xy xz yx yy yz zx zy zz of the smoothing domain", 9},
@@ -22,22 +24,6 @@ static const struct {
     {"energy_density", "J m-3", "W of the loading curve per reference volume", 1},
     {"hysteresis_factor", "1", "factor on the curve's stress", 1},
 };
-
-sf_status sf_snapshot_create(const sf_model *m, sf_snapshot *snapshot, sf_error *err) {
-    memset(snapshot, 0, sizeof *snapshot);
-    for (int k = 0; k < SF_FRAME_FIELDS; k++)
-        snapshot->field[k] = sf_alloc(err, (unsigned long)m->node_count * (unsigned long)fields[k].columns,
-                                      sizeof(double), fields[k].name);
-    if (err->status != SF_OK)
-        sf_snapshot_free(snapshot);
-    return err->status;
-}
-
-void sf_snapshot_free(sf_snapshot *snapshot) {
-    for (int k = 0; k < SF_FRAME_FIELDS; k++)
-        free(snapshot->field[k]);
-    memset(snapshot, 0, sizeof *snapshot);
-}
 
 static double determinant(const double *f) {
     return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
@@ -107,58 +93,48 @@ static void take_node(const sf_model *m, const sf_operators *op, const sf_state 
     double sigma[9], mises;
     switch (kind) {
     case DISPLACEMENT:
-        take_value(m, s->d, i, &out[3 * i]);
+        take_value(m, s->d, i, out);
         break;
     case VELOCITY:
-        take_value(m, s->v, i, &out[3 * i]);
+        take_value(m, s->v, i, out);
         break;
     case CAUCHY:
-        take_stress(m, op, s, i, &out[9 * i], &mises);
+        take_stress(m, op, s, i, out, &mises);
         break;
     case MISES:
-        take_stress(m, op, s, i, sigma, &out[i]);
+        take_stress(m, op, s, i, sigma, out);
         break;
     case ENERGY:
-        out[i] = s->energy[i];
+        *out = s->energy[i];
         break;
     default:
-        out[i] = hysteresis_factor(&op->foam, s->energy[i], s->peak[i]);
+        *out = hysteresis_factor(&op->foam, s->energy[i], s->peak[i]);
     }
 }
 
-static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, double *out) {
-    int64_t blocks = (m->node_count + SF_LANES - 1) / SF_LANES;
-#pragma omp parallel for default(none) shared(m, op, s, kind, out, blocks) schedule(static)
-    for (int64_t block = 0; block < blocks; block++) {
+/* One field of `count` nodes from node `start`, the first of a block. */
+static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, int64_t start,
+                       int64_t count, double *out) {
+    int64_t first_block = start / SF_LANES, last_block = (start + count - 1) / SF_LANES;
+    int columns = fields[kind].columns;
+#pragma omp parallel for default(none) schedule(static)                                                      \
+    shared(m, op, s, kind, start, count, columns, out, first_block, last_block)
+    for (int64_t block = first_block; block <= last_block; block++) {
         int64_t first = block * SF_LANES,
-                end = first + SF_LANES < m->node_count ? first + SF_LANES : m->node_count;
+                end = first + SF_LANES < start + count ? first + SF_LANES : start + count;
         double stretch[3 * SF_LANES];
         if (kind == STRETCHES || kind == COMPRESSION)
             take_stretches(m, s, block, stretch);
         for (int64_t i = first; i < end; i++) {
+            double *row = &out[(i - start) * columns];
             if (kind == STRETCHES)
-                memcpy(&out[3 * i], &stretch[3 * (i - first)], 3 * sizeof *out);
+                memcpy(row, &stretch[3 * (i - first)], 3 * sizeof *out);
             else if (kind == COMPRESSION)
-                out[i] = 1 - stretch[3 * (i - first)];
+                *row = 1 - stretch[3 * (i - first)];
             else
-                take_node(m, op, s, kind, i, out);
+                take_node(m, op, s, kind, i, row);
         }
     }
-}
-
-static sf_frame take_frame(const sf_model *m, const sf_state *s) {
-    sf_frame frame = {.time = s->time, .acceleration = -s->missile.acceleration};
-    for (int c = 0; c < 3; c++) {
-        frame.displacement[c] = s->missile.displacement * m->missile.direction[c];
-        frame.base_reaction[c] = (double)m->symmetry_factor * s->base_reaction[c];
-    }
-    return frame;
-}
-
-void sf_snapshot_take(const sf_model *m, const sf_operators *op, const sf_state *s, sf_snapshot *snapshot) {
-    snapshot->frame = take_frame(m, s);
-    for (int k = 0; k < SF_FRAME_FIELDS; k++)
-        take_field(m, op, s, k, snapshot->field[k]);
 }
 
 static sf_status write_item(sf_h5 *file, const char *group, const char *name, const char *units,
@@ -170,72 +146,50 @@ static sf_status write_item(sf_h5 *file, const char *group, const char *name, co
     return sf_h5_write(file, &info, SF_H5_F64, rank, dims, data, err);
 }
 
-static sf_status write_frame(const sf_frame *frame, const char *path, sf_h5 *file, sf_error *err) {
-    const int64_t three = 3;
-    if (write_item(file, path, "time", "s", "time", 0, NULL, &frame->time, err) != SF_OK ||
-        write_item(file, path, "acceleration", "m s-2", "of the missile, against its direction of motion", 0,
-                   NULL, &frame->acceleration, err) != SF_OK ||
-        write_item(file, path, "missile_displacement", "m", "translation of the missile since t = 0", 1,
-                   &three, frame->displacement, err) != SF_OK)
-        return err->status;
-    return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three,
-                      frame->base_reaction, err);
-}
-
-static sf_status write_field(const sf_model *m, int kind, const char *path, const double *data, sf_h5 *file,
-                             sf_error *err) {
-    int64_t dims[2] = {m->node_count, fields[kind].columns};
-    return write_item(file, path, fields[kind].name, fields[kind].units, fields[kind].description,
-                      fields[kind].columns > 1 ? 2 : 1, dims, data, err);
-}
-
-sf_status sf_snapshot_write(const sf_model *m, const sf_snapshot *snapshot, const char *path, sf_h5 *file,
+/* What a frame holds beside its fields. */
+static sf_status write_head(const sf_model *m, const sf_state *s, const char *path, sf_h5 *file,
                             sf_error *err) {
-    write_frame(&snapshot->frame, path, file, err);
-    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
-        write_field(m, k, path, snapshot->field[k], file, err);
-    return err->status;
-}
-
-/* The numbers of group/name into `out`. */
-static sf_status read_item(const sf_h5 *file, const char *group, const char *name, int rank, int64_t *dims,
-                           double *out, sf_error *err) {
-    char path[128];
-    void *data = NULL;
-    size_t count = 1;
-    for (int k = 0; k < rank; k++)
-        count *= (size_t)dims[k];
-    snprintf(path, sizeof path, "%s/%s", group, name);
-    if (sf_h5_read(file, path, SF_H5_F64, rank, dims, &data, err) == SF_OK)
-        memcpy(out, data, count * sizeof *out);
-    free(data);
-    return err->status;
-}
-
-sf_status sf_snapshot_read(const sf_model *m, sf_snapshot *snapshot, const char *path, const sf_h5 *file,
-                           sf_error *err) {
-    int64_t three = 3;
-    sf_frame *frame = &snapshot->frame;
-    read_item(file, path, "time", 0, NULL, &frame->time, err);
-    read_item(file, path, "acceleration", 0, NULL, &frame->acceleration, err);
-    read_item(file, path, "missile_displacement", 1, &three, frame->displacement, err);
-    read_item(file, path, "base_reaction", 1, &three, frame->base_reaction, err);
-    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++) {
-        int64_t dims[2] = {m->node_count, fields[k].columns};
-        read_item(file, path, fields[k].name, fields[k].columns > 1 ? 2 : 1, dims, snapshot->field[k], err);
+    const int64_t three = 3;
+    double acceleration = -s->missile.acceleration, displacement[3], reaction[3];
+    for (int c = 0; c < 3; c++) {
+        displacement[c] = s->missile.displacement * m->missile.direction[c];
+        reaction[c] = (double)m->symmetry_factor * s->base_reaction[c];
     }
-    return err->status;
+    if (write_item(file, path, "time", "s", "time", 0, NULL, &s->time, err) != SF_OK ||
+        write_item(file, path, "acceleration", "m s-2", "of the missile, against its direction of motion", 0,
+                   NULL, &acceleration, err) != SF_OK ||
+        write_item(file, path, "missile_displacement", "m", "translation of the missile since t = 0", 1,
+                   &three, displacement, err) != SF_OK)
+        return err->status;
+    return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three, reaction,
+                      err);
 }
 
-sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, const char *path,
-                         sf_h5 *file, sf_error *err) {
-    sf_frame frame = take_frame(m, s);
-    write_frame(&frame, path, file, err);
-    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++) {
-        if (!(m->run.output_fields >> k & 1))
-            continue;
-        take_field(m, op, s, k, s->scratch);
-        write_field(m, k, path, s->scratch, file, err);
+/* One field of all nodes, through a buffer for SLAB nodes. */
+static sf_status write_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind,
+                             const char *path, double *buffer, sf_h5 *file, sf_error *err) {
+    char name[128];
+    const int64_t dims[2] = {m->node_count, fields[kind].columns};
+    sf_h5_info info = {name, fields[kind].units, fields[kind].description};
+    sf_h5_rows rows;
+    snprintf(name, sizeof name, "%s/%s", path, fields[kind].name);
+    sf_h5_rows_begin(file, &info, SF_H5_F64, dims[1] > 1 ? 2 : 1, dims, &rows, err);
+    for (int64_t start = 0; start < m->node_count && err->status == SF_OK; start += SLAB) {
+        int64_t count = start + SLAB < m->node_count ? SLAB : m->node_count - start;
+        take_field(m, op, s, kind, start, count, buffer);
+        sf_h5_rows_add(&rows, count, buffer, err);
     }
+    return sf_h5_rows_end(&rows, err);
+}
+
+sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t wanted,
+                         const char *path, sf_h5 *file, sf_error *err) {
+    double *buffer = sf_alloc(err, SLAB, 9 * sizeof *buffer, "fields of a frame");
+    if (buffer)
+        write_head(m, s, path, file, err);
+    for (int k = 0; k < FIELDS && err->status == SF_OK; k++)
+        if (wanted >> k & 1)
+            write_field(m, op, s, k, path, buffer, file, err);
+    free(buffer);
     return err->status;
 }

@@ -14,7 +14,7 @@
 
 enum { NAME_SIZE = SF_PATH_SIZE + 32 };
 
-static const char BASE[] = "base.h5";
+static const char BASE[] = "base.h5", PEAK[] = "peak.h5", PEAK_GROUP[] = "/peak";
 
 static void frame_group(char group[32], int64_t index) {
     snprintf(group, 32, "/frames/%06lld", (long long)index);
@@ -43,8 +43,13 @@ sf_status sf_output_name(sf_output *o, const char *results, sf_error *err) {
     return SF_OK;
 }
 
+/* Under its own name or as `.partial`. */
 static bool is_ours(const char *name) {
-    return strncmp(name, "frame-", 6) == 0 || strncmp(name, BASE, strlen(BASE)) == 0;
+    static const char *const begin[] = {"frame-", BASE, PEAK};
+    for (size_t k = 0; k < sizeof begin / sizeof begin[0]; k++)
+        if (strncmp(name, begin[k], strlen(begin[k])) == 0)
+            return true;
+    return false;
 }
 
 static void remove_files(const sf_output *o) {
@@ -101,41 +106,62 @@ sf_status sf_output_base(const sf_output *o, const sf_model *m, const sf_h5 *mod
     return commit(&file, partial, path, err);
 }
 
-sf_status sf_output_frame(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
-                          int64_t index, sf_error *err) {
-    char name[32], group[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
+/* The present state as the group of a file of the folder. */
+static sf_status write_state(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
+                             int64_t fields, const char *name, const char *group, sf_error *err) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
     sf_h5 *file = NULL;
-    frame_name(name, index);
-    frame_group(group, index);
     if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
-    sf_frame_write(m, op, s, group, file, err);
+    sf_frame_write(m, op, s, fields, group, file, err);
     return commit(&file, partial, path, err);
 }
 
-static sf_status recover_frame(const sf_output *o, const sf_h5 *results, int64_t index, const char *path,
-                               const char *partial, sf_error *err) {
-    char group[32];
-    sf_h5 *file = NULL;
+sf_status sf_output_frame(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
+                          int64_t index, sf_error *err) {
+    char name[32], group[32];
+    frame_name(name, index);
     frame_group(group, index);
+    return write_state(o, m, op, s, m->run.output_fields, name, group, err);
+}
+
+sf_status sf_output_peak(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
+                         sf_error *err) {
+    return write_state(o, m, op, s, SF_FIELD_ALL, PEAK, PEAK_GROUP, err);
+}
+
+/* The group of another file as a file of the folder. */
+static sf_status recover(const sf_h5 *from, const char *group, const char *path, const char *partial,
+                         sf_error *err) {
+    sf_h5 *file = NULL;
     if (sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
-    sf_error lost = SF_ERROR_INIT;
-    if (sf_h5_copy(results, group, file, &lost) != SF_OK)
-        SF_FAIL(err, SF_ERR_IO, "%s of the run so far is lost: it is neither in %s nor in %s", group,
-                o->results, o->folder);
+    sf_h5_copy(from, group, file, err);
     return commit(&file, partial, path, err);
+}
+
+sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf_error *err) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
+    if (place(o, PEAK, path, partial, err) != SF_OK)
+        return err->status;
+    return recover(checkpoint, PEAK_GROUP, path, partial, err);
 }
 
 sf_status sf_output_recover(const sf_output *o, int64_t count, sf_error *err) {
     sf_h5 *results = NULL;
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
-        char name[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
+        char name[32], group[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
         frame_name(name, k);
         if (place(o, name, path, partial, err) != SF_OK || access(path, R_OK) == 0)
             continue;
-        if (results || sf_h5_open(o->results, &results, err) == SF_OK)
-            recover_frame(o, results, k, path, partial, err);
+        if (!results && sf_h5_open(o->results, &results, err) != SF_OK)
+            break;
+        frame_group(group, k);
+        if (sf_h5_exists(results, group))
+            recover(results, group, path, partial, err);
+        else
+            SF_FAIL(err, SF_ERR_IO, "%s of the run so far is lost: it is neither in %s nor in %s", group,
+                    o->results, o->folder);
     }
     sf_h5_close(&results, err);
     return err->status;
@@ -158,6 +184,10 @@ static sf_status take(const sf_output *o, bool copied, const char *name, const c
     }
     sf_h5_close(&part, err);
     return err->status;
+}
+
+sf_status sf_output_copy_peak(const sf_output *o, sf_h5 *file, sf_error *err) {
+    return take(o, true, PEAK, (const char *const[]){PEAK_GROUP, NULL}, file, err);
 }
 
 sf_status sf_output_begin(sf_output *o, bool copied, int64_t count, sf_h5 **file, sf_error *err) {

@@ -2,7 +2,8 @@
 /* results.h5 while it grows (docs/formats.md, section "While a run goes on"). Every file is written under
  * another name and renamed, so that results.h5 is whole at any instant. While the run goes on, results.h5
  * holds the history and links to the model and the frames, which are files of their own in the folder
- * results.h5.run; in the end everything is copied into results.h5 and the folder removed. */
+ * results.h5.run, like the fields at the peak; in the end everything is copied into results.h5 and the folder
+ * removed. */
 #ifndef SF_SOLVER_OUTPUT_H
 #define SF_SOLVER_OUTPUT_H
 
@@ -35,6 +36,14 @@ sf_status sf_output_base(const sf_output *output, const sf_model *model, const s
 /* The present state as frame `index`. */
 sf_status sf_output_frame(const sf_output *output, const sf_model *model, const sf_operators *operators,
                           const sf_state *state, int64_t index, sf_error *err);
+
+/* The present state as that at the peak, with all fields, in place of an earlier one. */
+sf_status sf_output_peak(const sf_output *output, const sf_model *model, const sf_operators *operators,
+                         const sf_state *state, sf_error *err);
+/* Adds it as /peak to a results.h5 or a checkpoint, and takes it back from a checkpoint: a folder that is
+ * there may hold a later one. */
+sf_status sf_output_copy_peak(const sf_output *output, sf_h5 *file, sf_error *err);
+sf_status sf_output_recover_peak(const sf_output *output, const sf_h5 *checkpoint, sf_error *err);
 
 /* Frames 0 to count - 1 of an ended run go from results.h5 back into the folder, unless they are there. */
 sf_status sf_output_recover(const sf_output *output, int64_t count, sf_error *err);

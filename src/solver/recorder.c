@@ -9,15 +9,13 @@
 
 static const double PEAK_GROWTH = 1.001; /* of the acceleration from one kept maximum to the next */
 
-sf_status sf_recorder_create(const sf_model *m, sf_recorder *r, sf_error *err) {
+void sf_recorder_begin(sf_recorder *r) {
     memset(r, 0, sizeof *r);
     r->frame_step = -1;
-    return sf_snapshot_create(m, &r->peak, err);
 }
 
 void sf_recorder_free(sf_recorder *r) {
     sf_history_free(&r->history);
-    sf_snapshot_free(&r->peak);
     memset(r, 0, sizeof *r);
 }
 
@@ -41,23 +39,29 @@ static void watch(sf_extremes *x, const sf_model *m, const sf_state *s) {
     }
 }
 
-sf_status sf_recorder_add(sf_recorder *r, const sf_model *m, const sf_operators *op, const sf_state *s,
-                          sf_error *err) {
+sf_status sf_recorder_add(sf_recorder *r, const sf_model *m, const sf_state *s, sf_error *err) {
     double value = sf_recorder_measure(m, s);
     watch(&r->extremes, m, s);
     if (value > r->extremes.peak_value) {
         r->extremes.peak_value = value;
         r->extremes.peak_time = s->time;
-    } else if (r->extremes.peak_value > PEAK_GROWTH * r->peak_kept) { /* one step past a maximum */
-        r->peak_kept = r->extremes.peak_value;
-        sf_snapshot_take(m, op, s, &r->peak);
     }
     return sf_history_add(&r->history, m, s, err);
 }
 
-void sf_recorder_end(sf_recorder *r, const sf_model *m, const sf_operators *op, const sf_state *s) {
-    if (r->extremes.peak_value > PEAK_GROWTH * r->peak_kept)
-        sf_snapshot_take(m, op, s, &r->peak);
+static bool has_grown(const sf_recorder *r) {
+    return r->extremes.peak_value > PEAK_GROWTH * r->peak_kept;
+}
+
+bool sf_recorder_peak_due(sf_recorder *r, const sf_state *s) {
+    bool due = has_grown(r) && s->time > r->extremes.peak_time;
+    if (due)
+        r->peak_kept = r->extremes.peak_value;
+    return due || s->step == 0;
+}
+
+bool sf_recorder_peak_ahead(const sf_recorder *r) {
+    return has_grown(r) || r->history.rows == 0;
 }
 
 bool sf_recorder_frame_due(sf_recorder *r, const sf_model *m, const sf_state *s) {
@@ -100,18 +104,15 @@ static const sf_member members[] = {
 };
 enum { MEMBERS = sizeof members / sizeof members[0] };
 
-sf_status sf_recorder_write(const sf_recorder *r, const sf_model *m, sf_h5 *file, sf_error *err) {
-    if (sf_members_write(file, "/recorder", members, MEMBERS, r, err) != SF_OK ||
-        sf_history_write(&r->history, file, err) != SF_OK)
-        return err->status;
-    return sf_snapshot_write(m, &r->peak, "/peak", file, err);
+sf_status sf_recorder_write(const sf_recorder *r, sf_h5 *file, sf_error *err) {
+    sf_members_write(file, "/recorder", members, MEMBERS, r, err);
+    return err->status == SF_OK ? sf_history_write(&r->history, file, err) : err->status;
 }
 
 sf_status sf_recorder_read(sf_recorder *r, const sf_model *m, const sf_state *s, const sf_h5 *file,
                            sf_error *err) {
     if (sf_members_read(file, "/recorder", members, MEMBERS, r, err) != SF_OK ||
-        sf_history_read(&r->history, file, err) != SF_OK ||
-        sf_snapshot_read(m, &r->peak, "/peak", file, err) != SF_OK)
+        sf_history_read(&r->history, file, err) != SF_OK)
         return err->status;
     bool whole = r->history.rows == s->step + 1 && r->frames >= 0 && r->frames <= r->history.rows &&
                  r->next_frame > s->time && r->next_extra >= 0 && r->next_extra <= m->frame_time_count;

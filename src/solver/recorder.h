@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a run carries from step to step beside the state: the history, the peak, the schedule of frames. */
+/* What a run carries from step to step beside the state: the history, the extremes, and when
+ * the fields are due for a file: as a frame, or as those at the peak (output.h writes them). */
 #ifndef SF_SOLVER_RECORDER_H
 #define SF_SOLVER_RECORDER_H
 
-#include "solver/frame.h"
 #include "solver/history.h"
 
 /* Extremes over the run. */
@@ -22,9 +22,8 @@ typedef struct sf_extremes {
 
 typedef struct sf_recorder {
     sf_history history;
-    sf_snapshot peak;
     sf_extremes extremes;
-    double peak_kept;   /* the peak_value that `peak` follows */
+    double peak_kept;   /* the peak_value that the fields written last follow */
     int64_t frames;     /* due so far */
     int64_t frame_step; /* step of the last of them, -1: none */
     double next_frame;  /* s */
@@ -33,27 +32,32 @@ typedef struct sf_recorder {
     int64_t restarts;
 } sf_recorder;
 
-sf_status sf_recorder_create(const sf_model *model, sf_recorder *recorder, sf_error *err);
+/* An empty one; release with sf_recorder_free. */
+void sf_recorder_begin(sf_recorder *recorder);
 void sf_recorder_free(sf_recorder *recorder);
 
 /* What a run is watched for: deceleration, m s-2, or the contact force, N, on a missile whose motion is
  * prescribed. */
 double sf_recorder_measure(const sf_model *model, const sf_state *state);
 
-/* Adds the state after sf_step_evaluate: a row of history, the extremes, the fields at the peak. */
-sf_status sf_recorder_add(sf_recorder *recorder, const sf_model *model, const sf_operators *operators,
-                          const sf_state *state, sf_error *err);
+/* Adds the state after sf_step_evaluate: a row of history, the extremes. */
+sf_status sf_recorder_add(sf_recorder *recorder, const sf_model *model, const sf_state *state, sf_error *err);
 
-/* At the end of a run: the peak, if the curve was still rising. */
-void sf_recorder_end(sf_recorder *recorder, const sf_model *model, const sf_operators *operators,
-                     const sf_state *state);
+/* Are the fields of the state just added due as those at the peak? One step past every maximum that exceeds
+ * the one before by 0.1 %, which then counts as kept; and in the first step, so that a run always has them.
+ */
+bool sf_recorder_peak_due(sf_recorder *recorder, const sf_state *state);
+
+/* At the end of a run: is the curve still rising, or has the first step failed, so that the present state is
+ * the peak? */
+bool sf_recorder_peak_ahead(const sf_recorder *recorder);
 
 /* Is a frame due? Then it is counted, and both schedules move past the present time. */
 bool sf_recorder_frame_due(sf_recorder *recorder, const sf_model *model, const sf_state *state);
 
 /* To and from a checkpoint; a recorder that is read must be new. SF_ERR_IO if what is read does not belong to
  * `state`. */
-sf_status sf_recorder_write(const sf_recorder *recorder, const sf_model *model, sf_h5 *file, sf_error *err);
+sf_status sf_recorder_write(const sf_recorder *recorder, sf_h5 *file, sf_error *err);
 sf_status sf_recorder_read(sf_recorder *recorder, const sf_model *model, const sf_state *state,
                            const sf_h5 *file, sf_error *err);
 

@@ -59,7 +59,7 @@ static sf_status publish(drop *d, sf_error *err) {
 static sf_status save(drop *d, sf_error *err) {
     double before = d->r.wall_time;
     d->r.wall_time += sf_clock() - d->start;
-    sf_checkpoint_write(d->out->checkpoint, d->run->provenance, d->m, d->s, &d->r, err);
+    sf_checkpoint_write(d->out, d->run->provenance, d->m, d->s, &d->r, err);
     d->r.wall_time = before;
     d->last_checkpoint = sf_clock();
     d->next_checkpoint = d->s->time + d->run->checkpoint_time;
@@ -77,10 +77,11 @@ static bool has_rebounded(const sf_model *m, const sf_state *s) {
            s->contact_count == 0 && s->time - s->missile.release_time > REBOUND_WAIT;
 }
 
-/* A new step: forces, a row of history, a frame if one is due. */
+/* A new step: forces, a row of history, the fields at the peak and a frame if they are due. */
 static sf_status take_step(drop *d, sf_error *err) {
-    if (sf_step_evaluate(d->m, d->op, d->s, err) != SF_OK ||
-        sf_recorder_add(&d->r, d->m, d->op, d->s, err) != SF_OK)
+    if (sf_step_evaluate(d->m, d->op, d->s, err) != SF_OK || sf_recorder_add(&d->r, d->m, d->s, err) != SF_OK)
+        return err->status;
+    if (sf_recorder_peak_due(&d->r, d->s) && sf_output_peak(d->out, d->m, d->op, d->s, err) != SF_OK)
         return err->status;
     if (!sf_recorder_frame_due(&d->r, d->m, d->s) || d->replay)
         return SF_OK;
@@ -155,18 +156,20 @@ static sf_status conclude(drop *d, const char *status, sf_error *err) {
     int64_t frames = d->r.frames;
     if (d->r.frame_step != d->s->step)
         sf_output_frame(d->out, d->m, d->op, d->s, frames++, err);
-    sf_recorder_end(&d->r, d->m, d->op, d->s);
+    if (err->status == SF_OK && sf_recorder_peak_ahead(&d->r))
+        sf_output_peak(d->out, d->m, d->op, d->s, err);
     if (err->status == SF_OK && sf_output_begin(d->out, true, frames, &file, err) == SF_OK &&
         sf_history_write(&d->r.history, file, err) == SF_OK &&
-        sf_snapshot_write(d->m, &d->r.peak, "/peak", file, err) == SF_OK)
+        sf_output_copy_peak(d->out, file, err) == SF_OK)
         write_summary(d, status, file, err);
     return file ? sf_output_commit(d->out, &file, err) : err->status;
 }
 
 /* State and recorder from a checkpoint, or at t = 0. */
 static sf_status load(drop *d, const sf_checkpoint *from, sf_error *err) {
-    if (sf_recorder_create(d->m, &d->r, err) == SF_OK && from)
-        sf_checkpoint_read(from, d->m, d->s, &d->r, err);
+    sf_recorder_begin(&d->r);
+    if (from)
+        sf_checkpoint_read(from, d->m, d->out, d->s, &d->r, err);
     d->first_time = d->s->time;
     return err->status;
 }
