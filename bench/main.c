@@ -302,8 +302,7 @@ static sf_status run_model(const options *o, sf_model *model, double spacing, co
     struct rusage usage;
     sf_model_drop_mesh(model);
     double before = resident_bytes() - model_bytes(model);
-    if (sf_operators_build(model, &operators, err) == SF_OK && sf_state_create(model, &state, err) == SF_OK) {
-        sf_model_drop_domain_nodes(model);
+    if (sf_operators_take(model, &operators, err) == SF_OK && sf_state_create(model, &state, err) == SF_OK) {
         double held = resident_bytes() - before;
         sf_state_free(&state);
         sf_json_open(json, NULL, '{');

@@ -260,6 +260,28 @@ void fixture_forces(fixture *f) {
     }
 }
 
+double fixture_pair_weight(const sf_model *m, int64_t i, int64_t j) {
+    double square = 0, share = m->volume[i] / (double)(m->edge_ptr[i + 1] - m->edge_ptr[i]) +
+                               m->volume[j] / (double)(m->edge_ptr[j + 1] - m->edge_ptr[j]);
+    for (int c = 0; c < 3; c++)
+        square += pow(m->position[3 * j + c] - m->position[3 * i + c], 2);
+    return m->run.stabilisation * share / (2 * square);
+}
+
+double fixture_pairs(const fixture *f, const double *stiffness, int64_t i, double force[3],
+                     double couple[9]) {
+    sf_pair_sums sums;
+    int64_t place = i % SF_GROUP;
+    sf_stabilisation_group(&f->model, &f->operators.pairs, f->state.d, f->state.f, stiffness, i / SF_GROUP,
+                           &sums);
+    for (int r = 0; r < 3; r++) {
+        force[r] = sums.force[place][r];
+        for (int c = 0; c < 3; c++)
+            couple[3 * r + c] = sums.couple[place][c][r];
+    }
+    return sf_stabilisation_energy(&sums, place);
+}
+
 void fixture_set_affine(fixture *f, const double gradient[9], const double shift[3]) {
     for (int64_t i = 0; i < f->model.node_count; i++)
         for (int r = 0; r < 3; r++) {

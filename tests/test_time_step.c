@@ -100,7 +100,7 @@ static double scalar_eigenvalue(const fixture *f) {
                     row[q] -= 0.5 * (gradient[(3 * i + c) * n + q] + gradient[(3 * j + c) * n + q]) *
                               (m->position[3 * j + c] - m->position[3 * i + c]);
             }
-            add_product(a, n, f->operators.pair[k] * (s->stiffness[i] + s->stiffness[j]), row, row);
+            add_product(a, n, fixture_pair_weight(m, i, j) * (s->stiffness[i] + s->stiffness[j]), row, row);
         }
     for (int64_t i = 0; i < n; i++)
         for (int64_t j = 0; j < n; j++)
@@ -221,7 +221,7 @@ static void partition_bound_is_never_below_the_exact_frequency(void **state) {
                 trial > 1 ? pow(10, fixture_random(&seed)) : 1; /* any field: up to a hundred between nodes */
             f.state.tangent[i] *= factor;
             for (int k = 0; k < 6; k++)
-                f.state.directional[6 * i + k] *= factor;
+                f.state.directional[6 * i + k] *= (float)factor;
             bound = fmax(bound, f.operators.stability[i] * f.state.tangent[i]);
         }
         double exact = scalar_eigenvalue(&f);

@@ -100,6 +100,10 @@ static double *copy(const double *from, size_t count) {
     return to;
 }
 
+static size_t maxwell_size(const fixture *f) {
+    return 6 * SF_LANES * (size_t)sf_state_rows(&f->model, 'm');
+}
+
 /* Domains on the loading curve stay on it: a largest W of zero is exceeded by whatever comes. */
 static probe probe_begin(fixture *f) {
     const sf_state *s = &f->state;
@@ -109,11 +113,15 @@ static probe probe_begin(fixture *f) {
                copy(s->d, 3 * n),
                copy(s->f, 9 * n),
                copy(s->peak, blocks * SF_LANES),
-               copy(s->maxwell, 6 * blocks * SF_LANES),
+               copy(s->maxwell, maxwell_size(f)),
                copy(s->stiffness, n)};
-    for (size_t i = 0; i < n; i++)
-        if (s->energy[i] >= p.peak[i])
-            p.peak[i] = 0;
+    for (size_t block = 0; block < blocks; block++) {
+        sf_foam_batch b;
+        sf_domain_law(&f->model, &f->operators, s, (int64_t)block, &b);
+        for (int l = 0; l < SF_LANES; l++)
+            if (b.energy[l] >= p.peak[block * SF_LANES + (size_t)l])
+                p.peak[block * SF_LANES + (size_t)l] = 0;
+    }
     return p;
 }
 
@@ -130,7 +138,7 @@ static void restore(const probe *p) {
     size_t n = p->size / 3, blocks = (n + SF_LANES - 1) / SF_LANES;
     memcpy(s->f, p->gradient, 9 * n * sizeof *s->f);
     memcpy(s->peak, p->peak, blocks * SF_LANES * sizeof *s->peak);
-    memcpy(s->maxwell, p->maxwell, 6 * blocks * SF_LANES * sizeof *s->maxwell);
+    memcpy(s->maxwell, p->maxwell, maxwell_size(p->f) * sizeof *s->maxwell);
 }
 
 /* Forces at the state's d after a step of dt from the kept state; the pairs keep their stiffness. */
@@ -414,8 +422,7 @@ static double limit_of(const fixture *drop, fixture *twin, gsl_matrix *k, gsl_ma
     memcpy(to->d, from->d, 3 * n * sizeof *to->d);
     memcpy(to->f, from->f, 9 * n * sizeof *to->f);
     memcpy(to->peak, from->peak, lanes * sizeof *to->peak);
-    memcpy(to->maxwell, from->maxwell, 6 * lanes * sizeof *to->maxwell);
-    memcpy(to->energy, from->energy, n * sizeof *to->energy);
+    memcpy(to->maxwell, from->maxwell, maxwell_size(twin) * sizeof *to->maxwell);
     memcpy(to->stiffness, from->stiffness, n * sizeof *to->stiffness);
     probe p = probe_begin(twin);
     assemble(&p, k, c);

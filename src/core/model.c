@@ -138,5 +138,14 @@ void sf_model_drop_mesh(sf_model *model) {
 
 void sf_model_drop_domain_nodes(sf_model *model) {
     free(model->domain_node);
+    free(model->support);
     model->domain_node = NULL;
+    model->support = NULL;
+}
+
+void sf_model_drop_edges(sf_model *model) {
+    free(model->edge_ptr);
+    free(model->edge_node);
+    model->edge_ptr = NULL;
+    model->edge_node = NULL;
 }

@@ -168,8 +168,11 @@ void sf_model_drop_mesh(sf_model *model);
 /* A hash of every field, with the mesh: are two models the same? */
 uint64_t sf_model_hash(const sf_model *model);
 
-/* Releases domain_node: the solver's groups have numbers of their own for what its domains see. */
+/* Releases domain_node and support: the solver's groups have numbers of their own for what domains see. */
 void sf_model_drop_domain_nodes(sf_model *model);
+
+/* Releases the edges: the solver has its pairs. */
+void sf_model_drop_edges(sf_model *model);
 
 /* True if sizes, index ranges, finiteness, CSR monotonicity and the physical bounds of the cards hold;
  * otherwise records SF_ERR_MODEL with the first violation. Everything that reads a model.h5 calls it. */

@@ -26,10 +26,13 @@ static inline void displacement_gradient(const sf_vec *restrict d, const uint16_
     }
 }
 
-/* The coefficients that group g sees, into its array. */
-static SF_KERNEL void gather_group(const sf_halo *h, int64_t g, const double *d) {
+/* The coefficients that group g sees. */
+static SF_KERNEL void gather_group(const sf_model *m, const sf_halo *h, int64_t g, const double *d,
+                                   sf_vec *seen) {
+    for (int64_t i = sf_halo_first(g); i < sf_halo_end(m, g); i++)
+        *seen++ = sf_vec_load(&d[3 * i]);
     for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
-        h->work[q] = sf_vec_load(&d[3 * (int64_t)h->node[q]]);
+        *seen++ = sf_vec_load(&d[3 * (int64_t)h->node[q]]);
 }
 
 /* Lanes first .. first + count - 1 of a batch from the state and the gathered coefficients `d`; spare lanes
@@ -50,11 +53,17 @@ static void load_batch(const sf_model *m, const sf_operators *op, const sf_state
                 b->f[3 * r + c][l] = (r == c) + g[c][r];
         for (int k = 0; k < 9; k++)
             b->f_old[k][l] = old[k];
-        b->length[l] = l < count ? op->damp_length[first + l] : 1;
+        b->length[l] = l >= count ? 1 : m->foam.damp_length > 0 ? m->foam.damp_length : m->spacing[first + l];
     }
-    memcpy(b->maxwell, &s->maxwell[block * 6 * SF_LANES], sizeof b->maxwell);
+    if (op->foam.maxwell > 0)
+        memcpy(b->maxwell, &s->maxwell[block * 6 * SF_LANES], sizeof b->maxwell);
+    else
+        memset(b->maxwell, 0, sizeof b->maxwell);
     memcpy(b->peak, &s->peak[block * SF_LANES], sizeof b->peak);
-    memcpy(b->rate, &s->rate[block * SF_LANES], sizeof b->rate);
+    if (op->foam.curve_count > 1)
+        memcpy(b->rate, &s->rate[block * SF_LANES], sizeof b->rate);
+    else
+        memset(b->rate, 0, sizeof b->rate);
 }
 
 /* Sums and extremes of a chunk, lane by lane, so that one batch does not wait for the one before. */
@@ -132,10 +141,11 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
     memcpy(w.stability, &op->stability[first], (size_t)count * sizeof *w.stability);
     bound_steps(&w, s->tightness, s->dt_old, b, tangent, sum);
     add_batch(&w, (double)(block % (SF_CHUNK / SF_LANES)), b, sum);
-    memcpy(&s->maxwell[block * 6 * SF_LANES], b->maxwell, sizeof b->maxwell);
+    if (op->foam.maxwell > 0)
+        memcpy(&s->maxwell[block * 6 * SF_LANES], b->maxwell, sizeof b->maxwell);
     memcpy(&s->peak[block * SF_LANES], b->peak, sizeof b->peak);
-    memcpy(&s->rate[block * SF_LANES], b->rate, sizeof b->rate);
-    memcpy(&s->energy[first], b->energy, (size_t)count * sizeof *b->energy);
+    if (op->foam.curve_count > 1)
+        memcpy(&s->rate[block * SF_LANES], b->rate, sizeof b->rate);
     memcpy(&s->stiffness[first], b->stiffness, (size_t)count * sizeof *b->stiffness);
     memcpy(&s->tangent[first], tangent, (size_t)count * sizeof *tangent);
     for (int l = 0; l < count; l++) {
@@ -146,7 +156,7 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
             s->stress[9 * i + k] = v * b->p[k][l];
         }
         for (int k = 0; k < 6 && b->directions; k++)
-            s->directional[6 * i + k] = b->directional[k][l];
+            s->directional[6 * i + k] = (float)b->directional[k][l];
     }
 }
 
@@ -170,13 +180,27 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
     merge_lanes(&sum, chunk * SF_CHUNK, &s->partial[chunk]);
 }
 
+void sf_domain_law(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t block,
+                   sf_foam_batch *b) {
+    memset(b, 0, sizeof *b);
+    memcpy(b->peak, &s->peak[block * SF_LANES], sizeof b->peak);
+    for (int l = 0; l < SF_LANES; l++) {
+        int64_t i = block * SF_LANES + l;
+        for (int k = 0; k < 9; k++)
+            b->f[k][l] = b->f_old[k][l] = i < m->node_count ? s->f[9 * i + k] : k % 4 == 0;
+        b->length[l] = 1;
+    }
+    sf_foam_update(&op->foam, 0, b);
+}
+
 void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {
     static const int64_t chunks = SF_GROUP / SF_CHUNK;
     const sf_halo *h = &op->halo;
 #pragma omp for schedule(static)
     for (int64_t g = 0; g < h->group_count; g++) {
-        gather_group(h, g, s->d);
+        sf_vec d[SF_GROUP_SEES];
+        gather_group(m, h, g, s->d, d);
         for (int64_t chunk = g * chunks; chunk < (g + 1) * chunks && chunk < s->chunk_count; chunk++)
-            update_chunk(m, op, s, &h->work[h->ptr[g]], chunk);
+            update_chunk(m, op, s, d, chunk);
     }
 }

@@ -11,4 +11,9 @@
  * must call it and share the work; it ends with a barrier. */
 void sf_domain_stress(const sf_model *model, const sf_operators *operators, sf_state *state);
 
+/* The foam law once more, at rest, at the F and the largest W of a block of SF_LANES domains: stretches, W
+ * and hysteresis factor. */
+void sf_domain_law(const sf_model *model, const sf_operators *operators, const sf_state *state, int64_t block,
+                   sf_foam_batch *batch);
+
 #endif

@@ -2,6 +2,7 @@
 #include "solver/frame.h"
 
 #include "core/mat3.h"
+#include "solver/domain_stress.h"
 #include "solver/stabilisation.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,14 +32,13 @@ static double determinant(const double *f) {
 }
 
 /* sigma = P F^T / J of one domain, with the stabilisation's couple taken out of the stored stress. */
-static void take_stress(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t i,
+static void take_stress(const sf_model *m, const sf_state *s, const sf_pair_sums *pairs, int64_t i,
                         double sigma[9], double *mises) {
-    double force[3], couple[9], p[9];
+    double p[9];
     const double *f = &s->f[9 * i];
     double j = determinant(f), square = 0, mean;
-    sf_stabilisation_node(m, op->pair, s->d, s->f, s->stiffness, i, force, couple);
     for (int k = 0; k < 9; k++)
-        p[k] = (s->stress[9 * i + k] - couple[k]) / m->volume[i];
+        p[k] = (s->stress[9 * i + k] - pairs->couple[i % SF_GROUP][k % 3][k / 3]) / m->volume[i];
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             sigma[3 * r + c] =
@@ -51,27 +51,11 @@ static void take_stress(const sf_model *m, const sf_operators *op, const sf_stat
     *mises = sqrt(1.5 * square);
 }
 
-/* Principal stretches of a block of domains, ascending. */
-static void take_stretches(const sf_model *m, const sf_state *s, int64_t block, double out[3 * SF_LANES]) {
-    static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
-    double c[6][SF_LANES], v[9][SF_LANES];
-    int64_t first = block * SF_LANES;
-    for (int l = 0; l < SF_LANES; l++) {
-        const double *f = &s->f[9 * (first + l < m->node_count ? first + l : first)];
-        for (int k = 0; k < 6; k++) {
-            int a = pair[k][0], b = pair[k][1];
-            c[k][l] = f[a] * f[b] + f[3 + a] * f[3 + b] + f[6 + a] * f[6 + b];
-        }
-    }
-    sf_foam_eigen(c, v);
-    for (int l = 0; l < SF_LANES; l++) {
-        double x = sqrt(c[0][l]), y = sqrt(c[1][l]), z = sqrt(c[2][l]);
-        double low = fmin(x, fmin(y, z)), high = fmax(x, fmax(y, z));
-        double *stretch = &out[3 * l];
-        stretch[0] = low;
-        stretch[1] = fmax(fmin(x, y), fmin(fmax(x, y), z));
-        stretch[2] = high;
-    }
+static void sort_stretches(const sf_foam_batch *b, int lane, double out[3]) {
+    double x = b->stretch[0][lane], y = b->stretch[1][lane], z = b->stretch[2][lane];
+    out[0] = fmin(x, fmin(y, z));
+    out[1] = fmax(fmin(x, y), fmin(fmax(x, y), z));
+    out[2] = fmax(x, fmax(y, z));
 }
 
 /* The approximation of a coefficient field at node i. */
@@ -83,57 +67,55 @@ static void take_value(const sf_model *m, const double *coefficient, int64_t i, 
     memcpy(out, sum, sizeof sum);
 }
 
-static double hysteresis_factor(const sf_foam *foam, double energy, double peak) {
-    return energy < peak ? 1 - (1 - foam->hu) * (1 - pow(energy / peak, foam->shape)) : 1;
-}
-
-/* One field at one node; the stretches' fields come by block (take_stretches). */
-static void take_node(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, int64_t i,
-                      double *out) {
+/* Cauchy or von Mises stress of nodes of one group. */
+static void take_stresses(const sf_model *m, const sf_operators *op, const sf_state *s, int kind,
+                          int64_t first, int64_t end, double *out) {
+    sf_pair_sums pairs;
     double sigma[9], mises;
-    switch (kind) {
-    case DISPLACEMENT:
-        take_value(m, s->d, i, out);
-        break;
-    case VELOCITY:
-        take_value(m, s->v, i, out);
-        break;
-    case CAUCHY:
-        take_stress(m, op, s, i, out, &mises);
-        break;
-    case MISES:
-        take_stress(m, op, s, i, sigma, out);
-        break;
-    case ENERGY:
-        *out = s->energy[i];
-        break;
-    default:
-        *out = hysteresis_factor(&op->foam, s->energy[i], s->peak[i]);
+    sf_stabilisation_group(m, &op->pairs, s->d, s->f, s->stiffness, first / SF_GROUP, &pairs);
+    for (int64_t i = first; i < end; i++) {
+        take_stress(m, s, &pairs, i, sigma, &mises);
+        if (kind == CAUCHY)
+            memcpy(&out[9 * (i - first)], sigma, sizeof sigma);
+        else
+            out[i - first] = mises;
     }
 }
 
-/* One field of `count` nodes from node `start`, the first of a block. */
+/* A field of the law of nodes from the first of a block. */
+static void take_law_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind,
+                           int64_t first, int64_t end, double *out) {
+    sf_foam_batch b;
+    double stretch[3];
+    for (int64_t i = first; i < end; i++) {
+        int lane = (int)(i % SF_LANES);
+        if (lane == 0)
+            sf_domain_law(m, op, s, i / SF_LANES, &b);
+        sort_stretches(&b, lane, stretch);
+        if (kind == STRETCHES)
+            memcpy(&out[3 * (i - first)], stretch, sizeof stretch);
+        else
+            out[i - first] = kind == COMPRESSION ? 1 - stretch[0]
+                             : kind == ENERGY    ? b.energy[lane]
+                                                 : b.factor[lane];
+    }
+}
+
+/* One field of `count` nodes from node `start`, the first of a group. */
 static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind, int64_t start,
                        int64_t count, double *out) {
-    int64_t first_block = start / SF_LANES, last_block = (start + count - 1) / SF_LANES;
     int columns = fields[kind].columns;
-#pragma omp parallel for default(none) schedule(static)                                                      \
-    shared(m, op, s, kind, start, count, columns, out, first_block, last_block)
-    for (int64_t block = first_block; block <= last_block; block++) {
-        int64_t first = block * SF_LANES,
-                end = first + SF_LANES < start + count ? first + SF_LANES : start + count;
-        double stretch[3 * SF_LANES];
-        if (kind == STRETCHES || kind == COMPRESSION)
-            take_stretches(m, s, block, stretch);
-        for (int64_t i = first; i < end; i++) {
-            double *row = &out[(i - start) * columns];
-            if (kind == STRETCHES)
-                memcpy(row, &stretch[3 * (i - first)], 3 * sizeof *out);
-            else if (kind == COMPRESSION)
-                *row = 1 - stretch[3 * (i - first)];
-            else
-                take_node(m, op, s, kind, i, row);
-        }
+#pragma omp parallel for default(none) schedule(static) shared(m, op, s, kind, start, count, columns, out)
+    for (int64_t first = start; first < start + count; first += SF_GROUP) {
+        int64_t end = first + SF_GROUP < start + count ? first + SF_GROUP : start + count;
+        double *rows = &out[(first - start) * columns];
+        if (kind == CAUCHY || kind == MISES)
+            take_stresses(m, op, s, kind, first, end, rows);
+        else if (kind == DISPLACEMENT || kind == VELOCITY)
+            for (int64_t i = first; i < end; i++)
+                take_value(m, kind == DISPLACEMENT ? s->d : s->v, i, &rows[3 * (i - first)]);
+        else
+            take_law_field(m, op, s, kind, first, end, rows);
     }
 }
 

@@ -4,16 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lists the nodes of group g, marked in `seen` (zero on entry and exit), into `list` if that is not NULL and
- * returns how many. */
-static int64_t list_group(const sf_model *m, int64_t g, uint8_t *seen, int32_t *list) {
-    int64_t first = m->node_count, last = 0, count = 0;
-    for (int64_t k = m->domain_ptr[g * SF_GROUP]; k < m->domain_ptr[sf_halo_end(m, g)]; k++) {
+/* Lists the nodes of other groups that group g sees, marked in `seen` (zero on entry and exit), into `list`
+ * if that is not NULL, and returns how many. */
+static int64_t list_others(const sf_model *m, int64_t g, uint8_t *seen, int32_t *list) {
+    int64_t own = sf_halo_first(g), end = sf_halo_end(m, g), first = own, last = end - 1, count = 0;
+    for (int64_t k = m->domain_ptr[own]; k < m->domain_ptr[end]; k++) {
         int32_t node = m->domain_node[k];
         seen[node] = 1;
         first = node < first ? node : first;
         last = node > last ? node : last;
     }
+    memset(&seen[own], 0, (size_t)(end - own));
     for (int64_t i = first; i <= last; i++) {
         if (seen[i] && list)
             list[count] = (int32_t)i;
@@ -26,9 +27,12 @@ static int64_t list_group(const sf_model *m, int64_t g, uint8_t *seen, int32_t *
 /* `place` [n]: scratch. */
 static void number_entries(const sf_model *m, sf_halo *h, int32_t *place) {
     for (int64_t g = 0; g < h->group_count; g++) {
+        int64_t first = sf_halo_first(g), end = sf_halo_end(m, g);
+        for (int64_t i = first; i < end; i++)
+            place[i] = (int32_t)(i - first);
         for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
-            place[h->node[q]] = (int32_t)(q - h->ptr[g]);
-        for (int64_t k = m->domain_ptr[g * SF_GROUP]; k < m->domain_ptr[sf_halo_end(m, g)]; k++)
+            place[h->node[q]] = (int32_t)(end - first + q - h->ptr[g]);
+        for (int64_t k = m->domain_ptr[first]; k < m->domain_ptr[end]; k++)
             h->local[k] = (uint16_t)place[m->domain_node[k]];
     }
 }
@@ -55,21 +59,22 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
     h->slot_ptr = sf_alloc(err, n + 1, sizeof *h->slot_ptr, "group lists");
     h->local = sf_alloc(err, (unsigned long)m->domain_nnz, sizeof *h->local, "group lists");
     for (int64_t g = 0; g < h->group_count && err->status == SF_OK; g++) {
-        int64_t count = list_group(m, g, seen, NULL);
+        int64_t count = list_others(m, g, seen, NULL);
         h->ptr[g + 1] = h->ptr[g] + count;
-        if (count > UINT16_MAX + 1)
-            SF_FAIL(err, SF_ERR_MODEL, "the %d domains from node %lld see %lld nodes, more than 65536",
-                    SF_GROUP, (long long)(g * SF_GROUP), (long long)count);
+        if (count > SF_GROUP_SEES - SF_GROUP)
+            SF_FAIL(err, SF_ERR_MODEL, "the %d domains from node %lld see %lld nodes, more than %d", SF_GROUP,
+                    (long long)sf_halo_first(g), (long long)count + SF_GROUP, SF_GROUP_SEES);
     }
     if (err->status == SF_OK) {
         unsigned long total = (unsigned long)h->ptr[h->group_count];
         h->node = sf_alloc(err, total, sizeof *h->node, "group lists");
         h->slot = sf_alloc(err, total, sizeof *h->slot, "group lists");
-        h->work = sf_alloc(err, total, sizeof *h->work, "group arrays");
+        h->work = sf_alloc(err, 3 * total > SF_HALO_WORK * n ? 3 * total : SF_HALO_WORK * n, sizeof *h->work,
+                           "group sums");
     }
     if (err->status == SF_OK) {
         for (int64_t g = 0; g < h->group_count; g++)
-            list_group(m, g, seen, &h->node[h->ptr[g]]);
+            list_others(m, g, seen, &h->node[h->ptr[g]]);
         number_entries(m, h, place);
         list_slots(m, h);
     }

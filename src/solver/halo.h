@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups of consecutive nodes, and the nodes that their domains see. A group gathers the coefficients it
- * needs into its own array, and collects what its domains exert on nodes there, so that the gradient B is
- * stored once, by domain, and read in its order both ways. A node then sums what the groups hold for it, in
- * the order of the groups: the same bits for any number of threads. */
+/* Groups of consecutive nodes, and the nodes that their domains see: their own, and some of other groups. A
+ * group gathers the coefficients it needs into an array of its own, and collects what its domains exert on
+ * nodes there, so that the gradient B is stored once, by domain, and read in its order both ways. What it has
+ * collected for nodes of other groups waits for them; a node sums it in the order of the groups: the same
+ * bits for any number of threads. */
 #ifndef SF_SOLVER_HALO_H
 #define SF_SOLVER_HALO_H
 
@@ -10,7 +11,11 @@
 #include "core/lanes.h"
 #include "core/model.h"
 
-enum { SF_GROUP = 128 }; /* nodes, a multiple of SF_CHUNK (state.h) */
+enum {
+    SF_HALO_WORK = 8,     /* doubles per node that passes may count on */
+    SF_GROUP = 128,       /* nodes, a multiple of SF_CHUNK (state.h) */
+    SF_GROUP_SEES = 4096, /* nodes at most */
+};
 
 /* Numbers of B between what a kernel works on and what it asks the memory for: 4 kB, as B does not fit into
  * the caches and processors stop reading ahead at the end of a page. */
@@ -18,19 +23,23 @@ enum { SF_AHEAD = 512 };
 
 typedef struct sf_halo {
     int64_t group_count;
-    int64_t *ptr;      /* [group_count + 1] */
-    int32_t *node;     /* [ptr[group_count]] what the group sees, ascending */
-    uint16_t *local;   /* [domain_nnz] place of the model's domain_node in its group's list */
+    int64_t *ptr;    /* [group_count + 1] */
+    int32_t *node;   /* [ptr[group_count]] nodes of other groups that the group sees, ascending */
+    uint16_t *local; /* [domain_nnz] place of the model's domain_node in what its group sees: the group's own
+                        nodes, then those others */
     int64_t *slot_ptr; /* [n + 1] */
-    int32_t *slot;     /* [ptr[group_count]] where the groups hold node i, ascending */
-    sf_vec *work;      /* [ptr[group_count]] the groups' arrays, of use within one pass */
+    int32_t *slot;     /* [ptr[group_count]] where the other groups' lists hold node i, ascending */
+    double *work;      /* [SF_HALO_WORK n or 3 ptr[group_count], the larger] of use within one pass */
 } sf_halo;
 
-/* SF_ERR_MODEL if one group sees more than 65,536 nodes. */
+/* SF_ERR_MODEL if one group sees more than SF_GROUP_SEES nodes. */
 sf_status sf_halo_build(const sf_model *model, sf_halo *halo, sf_error *err);
 void sf_halo_free(sf_halo *halo);
 
-/* The end of group g's nodes; its first is g * SF_GROUP. */
+/* Group g's first node, and the end of its nodes. */
+static inline int64_t sf_halo_first(int64_t g) {
+    return g * SF_GROUP;
+}
 static inline int64_t sf_halo_end(const sf_model *model, int64_t g) {
     int64_t end = (g + 1) * SF_GROUP;
     return end < model->node_count ? end : model->node_count;

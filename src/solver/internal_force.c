@@ -13,23 +13,30 @@ static inline void add_domain(const double *restrict p, const uint16_t *restrict
     }
 }
 
-/* What the domains of group g exert, into its array. */
-static SF_KERNEL void collect_group(const sf_model *m, const sf_halo *h, const sf_state *s, int64_t g) {
-    sf_vec *sum = &h->work[h->ptr[g]];
-    memset(sum, 0, (size_t)(h->ptr[g + 1] - h->ptr[g]) * sizeof *sum);
-    for (int64_t l = g * SF_GROUP; l < sf_halo_end(m, g); l++) {
+/* What the domains of group g exert: on its own nodes at once, on others by what waits for them. */
+static SF_KERNEL void collect_group(const sf_model *m, const sf_halo *h, const double *stress, int64_t g,
+                                    double *force) {
+    int64_t own = sf_halo_first(g), end = sf_halo_end(m, g), others = h->ptr[g + 1] - h->ptr[g];
+    sf_vec seen[SF_GROUP_SEES];
+    memset(seen, 0, (size_t)(end - own + others) * sizeof *seen);
+    for (int64_t l = own; l < end; l++) {
         int64_t first = m->domain_ptr[l];
-        add_domain(&s->stress[9 * l], &h->local[first], &m->domain_b[3 * first], m->domain_ptr[l + 1] - first,
-                   sum);
+        add_domain(&stress[9 * l], &h->local[first], &m->domain_b[3 * first], m->domain_ptr[l + 1] - first,
+                   seen);
     }
+    for (int64_t i = own; i < end; i++)
+        for (int r = 0; r < 3; r++)
+            force[3 * i + r] -= seen[i - own][r];
+    for (int64_t q = 0; q < others; q++)
+        memcpy(&h->work[3 * (h->ptr[g] + q)], &seen[end - own + q], 3 * sizeof(double));
 }
 
-/* What the groups hold for the nodes of group g, from their forces. */
-static SF_KERNEL void take_from_groups(const sf_model *m, const sf_halo *h, int64_t g, double *force) {
-    for (int64_t i = g * SF_GROUP; i < sf_halo_end(m, g); i++) {
+/* What waits for the nodes of group g, from their forces. */
+static SF_KERNEL void take_waiting(const sf_model *m, const sf_halo *h, int64_t g, double *force) {
+    for (int64_t i = sf_halo_first(g); i < sf_halo_end(m, g); i++) {
         sf_vec f = {0};
         for (int64_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
-            f += h->work[h->slot[q]];
+            f += sf_vec_load(&h->work[3 * (int64_t)h->slot[q]]);
         for (int r = 0; r < 3; r++)
             force[3 * i + r] -= f[r];
     }
@@ -39,8 +46,8 @@ void sf_internal_force(const sf_model *m, const sf_operators *op, sf_state *s) {
     const sf_halo *h = &op->halo;
 #pragma omp for schedule(static)
     for (int64_t g = 0; g < h->group_count; g++)
-        collect_group(m, h, s, g);
+        collect_group(m, h, s->stress, g, s->force);
 #pragma omp for schedule(static)
     for (int64_t g = 0; g < h->group_count; g++)
-        take_from_groups(m, h, g, s->force);
+        take_waiting(m, h, g, s->force);
 }

@@ -286,12 +286,11 @@ static sf_status solve(const options *o, const char *command, sf_error *err) {
     print_model(&model, o->threads);
     if (o->restart)
         compare_builds(&from);
-    if (sf_operators_build(&model, &operators, err) != SF_OK ||
+    if (sf_operators_take(&model, &operators, err) != SF_OK ||
         sf_state_create(&model, &state, err) != SF_OK ||
         prepare_output(o, &output, &model, model_file, &provenance, err) != SF_OK)
         goto done;
     sf_model_drop_mesh(&model);
-    sf_model_drop_domain_nodes(&model);
     if (!o->restart)
         unlink(output.checkpoint); /* of an earlier run, with --force */
     sf_run run = {.stop = &stop_requested,

@@ -10,16 +10,15 @@
 #include "solver/foam.h"
 #include "solver/halo.h"
 #include "solver/missile_surface.h"
+#include "solver/pairs.h"
 
 typedef struct sf_operators {
     sf_foam foam;
-    double *damp_length; /* [n] m, L of DAMP */
-    double *stability;   /* [n] m kg-1, core/stability.h */
+    double *stability; /* [n] m kg-1, core/stability.h */
 
     sf_halo halo; /* what groups of domains see */
 
-    /* Stabilisation pairs along the model's edges: coefficient x (V_I/n_I + V_J/n_J) / (2 |X_J - X_I|^2). */
-    double *pair; /* [edge_nnz] m */
+    sf_pairs pairs;
 
     sf_constraint constraint;
     sf_contact_gram gram;
@@ -27,6 +26,9 @@ typedef struct sf_operators {
 } sf_operators;
 
 sf_status sf_operators_build(const sf_model *model, sf_operators *operators, sf_error *err);
+/* The same, and releases what of the model only operators are made of, so that both are never in memory
+ * together: domain_node, support, the edges. */
+sf_status sf_operators_take(sf_model *model, sf_operators *operators, sf_error *err);
 void sf_operators_free(sf_operators *operators);
 
 #endif

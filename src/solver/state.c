@@ -21,20 +21,15 @@ static const sf_state_array arrays[] = {
     KEPT(reaction, 'n', 3),
     KEPT(f, 'n', 9),
     KEPT(stress, 'n', 9),
-    KEPT(maxwell, 'b', 6 * SF_LANES),
+    KEPT(maxwell, 'm', 6 * SF_LANES),
     KEPT(peak, 'b', SF_LANES),
-    KEPT(rate, 'b', SF_LANES),
-    KEPT(energy, 'n', 1),
+    KEPT(rate, 'r', SF_LANES),
     KEPT(stiffness, 'n', 1),
     KEPT(tangent, 'n', 1),
-    KEPT(directional, 'n', 6),
     KEPT(pair_sum, 'n', 1),
     KEPT(pair_stiffness, 'n', 1),
     KEPT(mode, 'n', 1),
-    SCRATCH(scratch, 'n', 9 * sizeof(double)),
-    SCRATCH(mode_work, 'n', 3 * sizeof(double)),
-    SCRATCH(power_couple, 'n', 3 * sizeof(double)),
-    SCRATCH(power_out, 'n', sizeof(double)),
+    SCRATCH(directional, 'n', 6 * sizeof(float)),
     KEPT(contact_position, 'c', 3),
     KEPT(contact_motion, 'c', 3),
     KEPT(contact_step, 'c', 3),
@@ -55,11 +50,16 @@ const sf_state_array *sf_state_arrays(size_t *count) {
 }
 
 int64_t sf_state_rows(const sf_model *model, char rows) {
+    int64_t blocks = (model->node_count + SF_LANES - 1) / SF_LANES;
     switch (rows) {
     case 'n':
         return model->node_count;
     case 'b':
-        return (model->node_count + SF_LANES - 1) / SF_LANES;
+        return blocks;
+    case 'm':
+        return model->foam.maxwell_modulus > 0 ? blocks : 0;
+    case 'r':
+        return model->foam.curve_count > 1 ? blocks : 0;
     case 'c':
         return model->contact_count;
     default:

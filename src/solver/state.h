@@ -11,8 +11,6 @@
 #include "solver/stopwatch.h"
 #include <stddef.h>
 
-enum { SF_POWER_BASIS = 8 }; /* Lanczos vectors kept, at most 9 */
-
 enum { SF_CHUNK = 64 }; /* nodes per partial sum: fixes the order of every sum, whatever the threads */
 
 /* Partial results of a chunk of nodes. */
@@ -71,25 +69,21 @@ typedef struct sf_state {
     double *reaction; /* [n][3] N, constraint reactions (G^T lambda) of the last step */
 
     /* Smoothing domains. */
-    double *f;           /* [n][9] F */
-    double *stress;      /* [n][9] J, V P plus the stabilisation's couple */
-    double *maxwell;     /* [blocks][6][SF_LANES] Pa */
-    double *peak;        /* [blocks][SF_LANES] J m-3 */
-    double *rate;        /* [blocks][SF_LANES] s-1 */
-    double *energy;      /* [n] J m-3, W */
-    double *stiffness;   /* [n] Pa */
-    double *tangent;     /* [n] Pa, effective: a + 2 eta / dt of the last step */
-    double *directional; /* [n][6] Pa, the same by direction (foam.h), when sf_time_step_due */
+    double *f;         /* [n][9] F */
+    double *stress;    /* [n][9] J, V P plus the stabilisation's couple */
+    double *maxwell;   /* [blocks][6][SF_LANES] Pa; none without ED */
+    double *peak;      /* [blocks][SF_LANES] J m-3 */
+    double *rate;      /* [blocks][SF_LANES] s-1; none with one curve */
+    double *stiffness; /* [n] Pa */
+    double *tangent;   /* [n] Pa, effective: a + 2 eta / dt of the last step */
 
     /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, and the stiffness it was last used with. */
     double *pair_sum;       /* [n] m3 */
     double *pair_stiffness; /* [n] Pa */
-    double *mode;           /* [n] vector of the power iteration */
-    double
-        *scratch; /* [n][9]: the Lanczos vectors [SF_POWER_BASIS][n] of it, or a field on its way to a file */
-    double *mode_work;    /* [n][3] its gradient */
-    double *power_couple; /* [n][3] couples of the product */
-    double *power_out;    /* [n] the product */
+
+    /* Power iteration (time_step.h). */
+    double *mode;       /* [n] its vector */
+    float *directional; /* [n][6] Pa, tangent by direction (foam.h), when sf_time_step_due */
 
     /* Contact points. */
     double *contact_position; /* [contacts][3] m, physical, now */
@@ -135,7 +129,8 @@ typedef struct sf_state {
 typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
-    char rows; /* n nodes, b blocks of lanes, c contact points, k chunks */
+    char rows; /* n nodes, b blocks of lanes, m the same with a Maxwell branch, r with curves by rate, c
+                  contact points, k chunks */
     int bytes; /* of a row; doubles if it has a name */
 } sf_state_array;
 

@@ -61,6 +61,10 @@ static const sf_member members[] = {
 };
 enum { MEMBERS = sizeof members / sizeof members[0] };
 
+static bool is_kept(const sf_model *m, const sf_state_array *a) {
+    return a->name && sf_state_rows(m, a->rows) > 0;
+}
+
 static void name_array(const sf_model *m, const sf_state_array *a, char path[64], int64_t dims[2]) {
     snprintf(path, 64, "/state/%s", a->name);
     dims[0] = sf_state_rows(m, a->rows);
@@ -74,7 +78,7 @@ sf_status sf_state_write(const sf_model *m, const sf_state *s, sf_h5 *file, sf_e
     for (size_t k = 0; k < count && err->status == SF_OK; k++) {
         char path[64];
         int64_t dims[2];
-        if (!array[k].name)
+        if (!is_kept(m, &array[k]))
             continue;
         name_array(m, &array[k], path, dims);
         sf_h5_info info = {path, "1", "SI units, sf_state in src/solver/state.h"};
@@ -102,7 +106,7 @@ sf_status sf_state_read(const sf_model *m, sf_state *s, const sf_h5 *file, sf_er
         char path[64];
         int64_t dims[2];
         void *data = NULL;
-        if (!array[k].name)
+        if (!is_kept(m, &array[k]))
             continue;
         name_array(m, &array[k], path, dims);
         if (sf_h5_read(file, path, SF_H5_F64, 2, dims, &data, err) != SF_OK)

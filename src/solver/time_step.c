@@ -5,11 +5,12 @@
 #include <string.h>
 
 enum {
-    POWER_INTERVAL = 40,         /* steps between measurements at most */
-    POWER_PAUSE = 5,             /* and at least, when the bound moves */
-    POWER_FIRST = 80,            /* products of the first measurement at most */
-    POWER_WARM = SF_POWER_BASIS, /* of the later ones */
-    POWER_LEAST = 4,             /* of a cycle, before it may count as settled */
+    POWER_INTERVAL = 40, /* steps between measurements at most */
+    POWER_PAUSE = 5,     /* and at least, when the bound moves */
+    POWER_FIRST = 80,    /* products of the first measurement at most */
+    BASIS = 8,           /* Lanczos vectors kept */
+    POWER_WARM = BASIS,  /* of the later ones */
+    POWER_LEAST = 4,     /* of a cycle, before it may count as settled */
 };
 /* What the last product or cycle may still add to the frequency squared, as a share of it. */
 static const double SETTLED = 1e-4;
@@ -22,88 +23,138 @@ static const double POWER_MARGIN = 1.08;
 static const double POWER_ROUNDING = 16384;
 static const double GROWTH = 1.02;
 
-/* mode_work: gradient of the mode in every domain. */
-static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, sf_state *s, int64_t group) {
-    double *mode = (double *)h->work + h->ptr[group];
+/* Arrays of the iteration in what other passes work in (halo.h): 8 doubles per node, or more where `waiting`
+ * needs them. Single precision is far within POWER_MARGIN. */
+typedef struct power_work {
+    double *out;     /* [n] product of the stiffness and the mode, kg s-2 times it */
+    float *basis;    /* [BASIS][n] Lanczos vectors */
+    float *flux;     /* [n][3] what every domain exerts */
+    float *gradient; /* [n][3] of the mode, in every domain; then, in its place: */
+    float *waiting;  /* [others of all groups] sums for nodes of other groups */
+} power_work;
+
+static power_work use_work(const sf_model *m, const sf_halo *h) {
+    int64_t n = m->node_count;
+    power_work w = {.out = h->work, .basis = (float *)(h->work + n)};
+    w.flux = w.basis + BASIS * n;
+    w.gradient = w.waiting = w.flux + 3 * n;
+    return w;
+}
+
+/* Gradient of the mode in the domains of a group. */
+static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, const double *field, int64_t group,
+                                     float *gradient) {
+    int64_t own = sf_halo_first(group), end = sf_halo_end(m, group);
+    double seen[SF_GROUP_SEES];
+    memcpy(seen, &field[own], (size_t)(end - own) * sizeof *seen);
     for (int64_t q = h->ptr[group]; q < h->ptr[group + 1]; q++)
-        mode[q - h->ptr[group]] = s->mode[h->node[q]];
-    for (int64_t l = group * SF_GROUP; l < sf_halo_end(m, group); l++) {
+        seen[end - own + q - h->ptr[group]] = field[h->node[q]];
+    for (int64_t l = own; l < end; l++) {
         double g[3] = {0};
         for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
             const double *b = &m->domain_b[3 * k];
             __builtin_prefetch(b + SF_AHEAD);
             for (int c = 0; c < 3; c++)
-                g[c] += mode[h->local[k]] * b[c];
+                g[c] += seen[h->local[k]] * b[c];
         }
-        memcpy(&s->mode_work[3 * l], g, sizeof g);
+        for (int c = 0; c < 3; c++)
+            gradient[3 * l + c] = (float)g[c];
     }
 }
 
-/* Pair force of node i, and its couple: what the stabilisation adds for a scalar field. */
-static double mode_pairs(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t i,
-                         double couple[3]) {
-    double force = 0;
-    couple[0] = couple[1] = couple[2] = 0;
-    for (int64_t k = m->edge_ptr[i]; k < m->edge_ptr[i + 1]; k++) {
-        int64_t j = m->edge_node[k];
-        double arm[3], explained = 0, weight = op->pair[k] * (s->stiffness[i] + s->stiffness[j]);
-        for (int c = 0; c < 3; c++) {
-            arm[c] = m->position[3 * j + c] - m->position[3 * i + c];
-            explained += (s->mode_work[3 * i + c] + s->mode_work[3 * j + c]) * arm[c];
-        }
-        double e = s->mode[j] - s->mode[i] - 0.5 * explained;
-        force -= weight * e;
-        for (int c = 0; c < 3; c++)
-            couple[c] -= 0.5 * weight * e * arm[c];
+/* What one pair does for a scalar field: force on i, the opposite on j; the same couple on both. */
+static inline double pull_pair(const sf_model *m, const sf_state *s, const float *gradient, int64_t i,
+                               int64_t j, double weight, double couple[3]) {
+    double half[3], explained = 0;
+    for (int c = 0; c < 3; c++) {
+        half[c] = 0.5 * (m->position[3 * j + c] - m->position[3 * i + c]);
+        explained += (gradient[3 * i + c] + gradient[3 * j + c]) * half[c];
     }
+    double force = weight * (s->stiffness[i] + s->stiffness[j]) * (s->mode[j] - s->mode[i] - explained);
+    for (int c = 0; c < 3; c++)
+        couple[c] = force * half[c];
     return force;
 }
 
-/* Pair forces into power_out, and in power_couple what every domain exerts. */
-static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, sf_state *s, int64_t group) {
-    for (int64_t i = group * SF_GROUP; i < sf_halo_end(m, group); i++) {
-        double couple[3], flux[3];
-        const double *a = &s->directional[6 * i], *g = &s->mode_work[3 * i];
-        s->power_out[i] = mode_pairs(m, op, s, i, couple);
-        flux[0] = a[0] * g[0] + a[3] * g[1] + a[5] * g[2];
-        flux[1] = a[3] * g[0] + a[1] * g[1] + a[4] * g[2];
-        flux[2] = a[5] * g[0] + a[4] * g[1] + a[2] * g[2];
-        for (int c = 0; c < 3; c++)
-            s->power_couple[3 * i + c] = couple[c] + m->volume[i] * flux[c];
+/* Pair forces of a group into w->out, and what its domains exert into w->flux. */
+static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t group,
+                                  const power_work *w) {
+    const sf_pairs *pairs = &op->pairs;
+    int64_t own = sf_halo_first(group), end = sf_halo_end(m, group);
+    int64_t inner = pairs->inner_ptr[group], outer = pairs->outer_ptr[group];
+    double *out = w->out, flux[3 * SF_GROUP];
+    memset(&out[own], 0, (size_t)(end - own) * sizeof *out);
+    for (int64_t i = own; i < end; i++) {
+        const float *g = &w->gradient[3 * i];
+        double v = m->volume[i], *q = &flux[3 * (i - own)];
+        const float *a = &s->directional[6 * i];
+        q[0] = v * (a[0] * g[0] + a[3] * g[1] + a[5] * g[2]);
+        q[1] = v * (a[3] * g[0] + a[1] * g[1] + a[4] * g[2]);
+        q[2] = v * (a[5] * g[0] + a[4] * g[1] + a[2] * g[2]);
     }
+    for (int64_t i = own; i < end; i++) {
+        double couple[3];
+        for (; inner < pairs->inner_ptr[group] + pairs->inner_end[i]; inner++) {
+            int64_t j = own + pairs->inner_place[inner];
+            double force = pull_pair(m, s, w->gradient, i, j, pairs->inner_weight[inner], couple);
+            out[i] -= force;
+            out[j] += force;
+            for (int c = 0; c < 3; c++) {
+                flux[3 * (i - own) + c] -= couple[c];
+                flux[3 * (j - own) + c] -= couple[c];
+            }
+        }
+        for (; outer < pairs->outer_ptr[group] + pairs->outer_end[i]; outer++) {
+            out[i] -=
+                pull_pair(m, s, w->gradient, i, pairs->outer_node[outer], pairs->outer_weight[outer], couple);
+            for (int c = 0; c < 3; c++)
+                flux[3 * (i - own) + c] -= couple[c];
+        }
+    }
+    for (int64_t q = 0; q < 3 * (end - own); q++)
+        w->flux[3 * own + q] = (float)flux[q];
 }
 
-static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_halo *h, const sf_state *s, int64_t group) {
-    double *sum = (double *)h->work + h->ptr[group];
-    memset(sum, 0, (size_t)(h->ptr[group + 1] - h->ptr[group]) * sizeof *sum);
-    for (int64_t l = group * SF_GROUP; l < sf_halo_end(m, group); l++) {
-        const double *q = &s->power_couple[3 * l];
+/* What the domains of a group exert: on its own nodes at once, on others by what waits for them. */
+static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_halo *h, int64_t group,
+                                     const power_work *w) {
+    int64_t own = sf_halo_first(group), end = sf_halo_end(m, group),
+            others = h->ptr[group + 1] - h->ptr[group];
+    double sum[SF_GROUP_SEES];
+    memset(sum, 0, (size_t)(end - own + others) * sizeof *sum);
+    for (int64_t l = own; l < end; l++) {
+        const float *q = &w->flux[3 * l];
         for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
             const double *b = &m->domain_b[3 * k];
             __builtin_prefetch(b + SF_AHEAD);
             sum[h->local[k]] += q[0] * b[0] + q[1] * b[1] + q[2] * b[2];
         }
     }
+    for (int64_t i = own; i < end; i++)
+        w->out[i] += sum[i - own];
+    for (int64_t q = 0; q < others; q++)
+        w->waiting[h->ptr[group] + q] = (float)sum[end - own + q];
 }
 
-/* The product K mode, into power_out: the same sums as in the step itself. */
-static void apply_operator(const sf_model *m, const sf_operators *op, sf_state *s) {
+/* The product K mode: the same sums as in the step itself. */
+static void apply_operator(const sf_model *m, const sf_operators *op, const sf_state *s,
+                           const power_work *w) {
     const sf_halo *h = &op->halo;
-#pragma omp parallel default(none) shared(m, h, op, s)
+#pragma omp parallel default(none) shared(m, h, op, s, w)
     {
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
-            mode_gradients(m, h, s, g);
+            mode_gradients(m, h, s->mode, g, w->gradient);
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
-            mode_fluxes(m, op, s, g);
+            mode_fluxes(m, op, s, g, w);
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
-            collect_fluxes(m, h, s, g);
+            collect_fluxes(m, h, g, w);
 #pragma omp for schedule(static)
         for (int64_t i = 0; i < m->node_count; i++)
             for (int64_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
-                s->power_out[i] += ((const double *)h->work)[h->slot[q]];
+                w->out[i] += w->waiting[h->slot[q]];
     }
 }
 
@@ -111,7 +162,7 @@ static void apply_operator(const sf_model *m, const sf_operators *op, sf_state *
  * bisection on the signs of the pivots: beyond the largest eigenvalue all are negative, and back-substitution
  * is stable. */
 static double tridiagonal_top(int size, const double *alpha, const double *beta, double *z) {
-    double low = alpha[0], high = 0, pivot[SF_POWER_BASIS];
+    double low = alpha[0], high = 0, pivot[BASIS];
     for (int j = 0; j < size; j++) {
         low = fmax(low, alpha[j]);
         high = fmax(high, alpha[j] + (j > 0 ? beta[j - 1] : 0) + (j + 1 < size ? beta[j] : 0));
@@ -134,29 +185,30 @@ static double tridiagonal_top(int size, const double *alpha, const double *beta,
     return high;
 }
 
-/* Up to `products` <= SF_POWER_BASIS Lanczos steps from the mode, in the inner product of the masses; the
+/* Up to `products` <= BASIS Lanczos steps from the mode, in the inner product of the masses; the
  * mode becomes the Ritz vector of the largest Ritz value, which is returned. Ends early when a product adds
  * `settled` of the value or less. */
 static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state *s, int products,
                             double settled) {
     int64_t n = m->node_count;
-    double alpha[SF_POWER_BASIS], beta[SF_POWER_BASIS] = {0}, z[SF_POWER_BASIS], *out = s->power_out,
-                                  norm = 0, value = 0, before_last;
+    double alpha[BASIS], beta[BASIS] = {0}, z[BASIS], norm = 0, value = 0, before_last;
+    const power_work w = use_work(m, &op->halo);
+    const double *out = w.out;
     int size = 0;
     for (int64_t i = 0; i < n; i++)
         norm += m->mass[i] * s->mode[i] * s->mode[i];
     if (!(norm > 0))
         return 0;
     for (double length = sqrt(norm); size < products; length = beta[size - 1]) {
-        double *q = &s->scratch[size * n], *before = size > 0 ? q - n : NULL;
+        float *q = &w.basis[size * n], *before = size > 0 ? q - n : NULL;
         for (int64_t i = 0; i < n; i++)
-            q[i] = s->mode[i] /= length;
-        apply_operator(m, op, s);
+            q[i] = (float)(s->mode[i] /= length);
+        apply_operator(m, op, s, &w);
         alpha[size] = norm = 0;
         for (int64_t i = 0; i < n; i++)
-            alpha[size] += q[i] * out[i];
+            alpha[size] += s->mode[i] * out[i];
         for (int64_t i = 0; i < n; i++) {
-            double r = out[i] / m->mass[i] - alpha[size] * q[i] - (before ? length * before[i] : 0);
+            double r = out[i] / m->mass[i] - alpha[size] * s->mode[i] - (before ? length * before[i] : 0);
             s->mode[i] = r;
             norm += m->mass[i] * r * r;
         }
@@ -171,7 +223,7 @@ static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state 
     for (int64_t i = 0; i < n; i++) {
         s->mode[i] = 0;
         for (int j = 0; j < size; j++)
-            s->mode[i] += z[j] * s->scratch[j * n + i];
+            s->mode[i] += z[j] * w.basis[j * n + i];
     }
     return value;
 }
@@ -179,10 +231,9 @@ static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state 
 double sf_time_step_power(const sf_model *m, const sf_operators *op, sf_state *s, int products,
                           double settled) {
     double estimate = 0;
-    for (int left = products; left > 0; left -= SF_POWER_BASIS) {
+    for (int left = products; left > 0; left -= BASIS) {
         double before = estimate;
-        estimate =
-            fmax(before, lanczos_cycle(m, op, s, left < SF_POWER_BASIS ? left : SF_POWER_BASIS, settled));
+        estimate = fmax(before, lanczos_cycle(m, op, s, left < BASIS ? left : BASIS, settled));
         if (estimate - before < settled * estimate)
             break;
     }
