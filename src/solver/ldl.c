@@ -265,6 +265,31 @@ static void copy_columns(const builder *w, const int64_t *source, const int64_t 
     f->column[f->rows] = next;
 }
 
+/* Is the list of column j its next column and then that one's list? `list`: all of `place`, by column. */
+static bool ends_with_next(const sf_ldl *f, const int32_t *list, int64_t j) {
+    int64_t first = f->column[j], next = f->column[j + 1], count = next - first - 1;
+    return j + 1 < f->rows && count >= 0 && f->column[j + 2] - next == count && list[first] == j + 1 &&
+           memcmp(&list[first + 1], &list[next], (size_t)count * sizeof *list) == 0;
+}
+
+/* The lists of places, each once. */
+static sf_status share_lists(sf_ldl *f, sf_error *err) {
+    int32_t *all = f->place;
+    int64_t room = 0;
+    f->place = NULL;
+    for (int64_t j = 0; j < f->rows; j++) {
+        bool shared = j > 0 && ends_with_next(f, all, j - 1);
+        f->list[j] = shared ? f->list[j - 1] + 1 : room;
+        room += shared ? 0 : f->column[j + 1] - f->column[j];
+    }
+    f->place = sf_alloc(err, (unsigned long)room, sizeof *f->place, "factor of the constraints");
+    for (int64_t j = 0; j < f->rows && f->place; j++)
+        memcpy(&f->place[f->list[j]], &all[f->column[j]],
+               (size_t)(f->column[j + 1] - f->column[j]) * sizeof *all);
+    free(all);
+    return err->status;
+}
+
 /* Entries of l, with its diagonal, in rows from `first` on. */
 static unsigned long count_entries(const cholmod_factor *l, int64_t first) {
     const SuiteSparse_long *p = l->p, *i = l->i, *nz = l->nz;
@@ -290,6 +315,7 @@ static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
     f->order = sf_alloc(err, rows, sizeof *f->order, "factor of the constraints");
     f->column = sf_alloc(err, rows + 1, sizeof *f->column, "factor of the constraints");
     f->trunk_from = sf_alloc(err, rows, sizeof *f->trunk_from, "factor of the constraints");
+    f->list = sf_alloc(err, rows, sizeof *f->list, "factor of the constraints");
     f->place = sf_alloc(err, room, sizeof *f->place, "factor of the constraints");
     f->value = sf_alloc(err, room, sizeof *f->value, "factor of the constraints");
     f->inverse = sf_alloc(err, rows, sizeof *f->inverse, "factor of the constraints");
@@ -300,6 +326,7 @@ static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
         for (int64_t j = 0; j < f->rows; j++)
             source[place[j]] = j;
         copy_columns(w, source, place, f);
+        share_lists(f, err);
         f->carried = sf_alloc(err, SF_LDL_BRANCHES * (rows - (unsigned long)f->branch[SF_LDL_BRANCHES]),
                               sizeof *f->carried, "factor of the constraints");
     }
@@ -338,6 +365,7 @@ void sf_ldl_free(sf_ldl *f) {
     free(f->order);
     free(f->column);
     free(f->trunk_from);
+    free(f->list);
     free(f->place);
     free(f->value);
     free(f->inverse);
@@ -352,11 +380,13 @@ SF_KERNEL void sf_ldl_forward(const sf_ldl *f, int branch, sf_vec *x) {
     memset(carried, 0, (size_t)size * sizeof *carried);
     for (int64_t j = f->branch[branch]; j < f->branch[branch + 1]; j++) {
         const sf_vec known = x[j] *= f->mask[j];
-        int64_t k = f->column[j];
-        for (; k < f->trunk_from[j]; k++)
-            x[f->place[k]] -= f->value[k] * known;
-        for (; k < f->column[j + 1]; k++)
-            carried[f->place[k] - trunk] += f->value[k] * known;
+        const int32_t *place = &f->place[f->list[j]];
+        const double *value = &f->value[f->column[j]];
+        int64_t k = 0, inside = f->trunk_from[j] - f->column[j], count = f->column[j + 1] - f->column[j];
+        for (; k < inside; k++)
+            x[place[k]] -= value[k] * known;
+        for (; k < count; k++)
+            carried[place[k] - trunk] += value[k] * known;
     }
 }
 
@@ -364,13 +394,13 @@ SF_KERNEL void sf_ldl_forward(const sf_ldl *f, int branch, sf_vec *x) {
  * one before. */
 static inline void solve_row(const sf_ldl *f, int64_t j, sf_vec *x) {
     sf_vec sum[4] = {{0}, {0}, {0}, {0}};
-    const int32_t *place = f->place;
-    const double *value = f->value;
-    int64_t k = f->column[j], end = f->column[j + 1];
-    for (; k + 3 < end; k += 4)
+    const int32_t *place = &f->place[f->list[j]];
+    const double *value = &f->value[f->column[j]];
+    int64_t k = 0, count = f->column[j + 1] - f->column[j];
+    for (; k + 3 < count; k += 4)
         for (int q = 0; q < 4; q++)
             sum[q] += value[k + q] * x[place[k + q]];
-    for (; k < end; k++)
+    for (; k < count; k++)
         sum[0] += value[k] * x[place[k]];
     x[j] = f->inverse[j] * x[j] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
 }
@@ -381,8 +411,10 @@ SF_KERNEL void sf_ldl_trunk(const sf_ldl *f, sf_vec *x) {
         for (int b = 0; b < SF_LDL_BRANCHES; b++)
             x[j] -= f->carried[b * size + j - trunk];
         const sf_vec known = x[j] *= f->mask[j];
-        for (int64_t k = f->column[j]; k < f->column[j + 1]; k++)
-            x[f->place[k]] -= f->value[k] * known;
+        const int32_t *place = &f->place[f->list[j]];
+        const double *value = &f->value[f->column[j]];
+        for (int64_t k = 0; k < f->column[j + 1] - f->column[j]; k++)
+            x[place[k]] -= value[k] * known;
     }
     for (int64_t j = f->rows - 1; j >= trunk; j--)
         solve_row(f, j, x);

@@ -32,10 +32,12 @@ typedef struct sf_ldl {
                                             with the rows of single components */
     int64_t *column;                     /* [rows + 1] L by column, without its unit diagonal */
     int64_t *trunk_from;                 /* [rows] where a column's entries in the trunk begin */
-    int32_t *place;                      /* [column[rows]] */
-    double *value;                       /* [column[rows]] */
-    double *inverse;                     /* [rows] 1 / D */
-    sf_vec *mask;                        /* [rows] 1 in the components that have the row, else 0 */
+    int64_t *list;                       /* [rows] where a column's list of places begins */
+    int32_t *place;  /* lists; a column whose entries are those of the next, and the next's
+                        diagonal, ends with that one's list */
+    double *value;   /* [column[rows]] */
+    double *inverse; /* [rows] 1 / D */
+    sf_vec *mask;    /* [rows] 1 in the components that have the row, else 0 */
     sf_vec *carried; /* [SF_LDL_BRANCHES][rows - branch[SF_LDL_BRANCHES]] what branches leave to the trunk;
                         work of one solution at a time */
 } sf_ldl;
