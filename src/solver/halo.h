@@ -27,7 +27,7 @@ typedef struct sf_halo {
     int32_t *node;   /* [ptr[group_count]] nodes of other groups that the group sees, ascending */
     uint16_t *local; /* [domain_nnz] place of the model's domain_node in what its group sees: the group's own
                         nodes, then those others */
-    int64_t *slot_ptr; /* [n + 1] */
+    int32_t *slot_ptr; /* [n + 1] */
     int32_t *slot;     /* [ptr[group_count]] where the other groups' lists hold node i, ascending */
     double *work;      /* [SF_HALO_WORK n or 3 ptr[group_count], the larger] of use within one pass */
 } sf_halo;

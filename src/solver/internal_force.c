@@ -35,7 +35,7 @@ static SF_KERNEL void collect_group(const sf_model *m, const sf_halo *h, const d
 static SF_KERNEL void take_waiting(const sf_model *m, const sf_halo *h, int64_t g, double *force) {
     for (int64_t i = sf_halo_first(g); i < sf_halo_end(m, g); i++) {
         sf_vec f = {0};
-        for (int64_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
+        for (int32_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
             f += sf_vec_load(&h->work[3 * (int64_t)h->slot[q]]);
         for (int r = 0; r < 3; r++)
             force[3 * i + r] -= f[r];

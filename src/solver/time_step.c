@@ -153,7 +153,7 @@ static void apply_operator(const sf_model *m, const sf_operators *op, const sf_s
             collect_fluxes(m, h, g, w);
 #pragma omp for schedule(static)
         for (int64_t i = 0; i < m->node_count; i++)
-            for (int64_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
+            for (int32_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
                 w->out[i] += w->waiting[h->slot[q]];
     }
 }
