@@ -301,6 +301,7 @@ static sf_status run_model(const options *o, sf_model *model, double spacing, co
     sf_state state = {0};
     struct rusage usage;
     sf_model_drop_mesh(model);
+    sf_model_drop_inner_shapes(model);
     double before = resident_bytes() - model_bytes(model);
     if (sf_operators_take(model, &operators, err) == SF_OK && sf_state_create(model, &state, err) == SF_OK) {
         double held = resident_bytes() - before;

@@ -6,6 +6,7 @@
 
 #include "campaign/runner.h"
 #include "io/h5.h"
+#include "io/model_io.h"
 #include "io/provenance.h"
 #include "io/seal.h"
 #include "post/results.h"
@@ -463,6 +464,105 @@ static void nothing_is_replaced_without_force(void **state) {
     assert_non_null(strstr(busy.err, "another softfall-solve is writing busy.h5"));
 }
 
+/* ---- the model during a run ---- */
+
+/* A run of `model`, as its own copy during.h5, that stands still after its third frame. */
+static pid_t start_and_stop(const program_place *p, const char *model, const char *results) {
+    char frame[64];
+    const char *const words[] = {"during.h5",         "-o",     results, "--threads", "1",
+                                 "--checkpoint-time", "0.5 ms", NULL};
+    int status = 0;
+    snprintf(frame, sizeof frame, "%s.run/frame-000002.h5", results);
+    program_shell(p, "cp %s during.h5", model);
+    pid_t child = start_solver(p, words);
+    while (!is_there(p, frame) && waitpid(child, &status, WNOHANG) == 0)
+        sleep_for(0.001);
+    assert_int_equal(kill(child, SIGSTOP), 0);
+    assert_int_equal(waitpid(child, &status, WUNTRACED), child);
+    assert_true(WIFSTOPPED(status));
+    return child;
+}
+
+static int exit_code(pid_t child) {
+    int status = 0;
+    kill(child, SIGCONT);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+/* Frames need more of the model than is kept in memory; they take it from the file that was opened, whatever
+ * has its name by now. */
+static void model_may_be_moved_and_replaced_during_a_run(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "pre", "'%s' -o finer.h5 %s --set output.frame_interval='\"1 ms\"'",
+                    fixture_source(EXAMPLE), program_coarse(10));
+    program_succeed(p, "solve", "finer.h5 -o undisturbed.h5 --threads 1");
+    pid_t child = start_and_stop(p, "finer.h5", "replaced.h5");
+    program_shell(p, "mv during.h5 moved_away.h5; cp model.h5 during.h5");
+    assert_int_equal(exit_code(child), 0);
+    assert_same_results(p, "undisturbed.h5", "replaced.h5");
+}
+
+/* A copy over the open file is another matter: the run ends with a sentence, its results so far open, and it
+ * can go on with the sound model. */
+static void model_damaged_during_a_run_is_told(void **state) {
+    static const char *const damage[] = {"truncate -s 1000 during.h5", "cat model.h5 > during.h5",
+                                         "yes | head -c 3000000 | dd of=during.h5 conv=notrunc status=none"};
+    const program_place *p = *state;
+    for (int k = 0; k < 3; k++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_results r;
+        program_shell(p, "rm -rf damaged.h5*");
+        pid_t child = start_and_stop(p, "finer.h5", "damaged.h5");
+        program_shell(p, "%s", damage[k]);
+        assert_int_equal(exit_code(child), SF_ERR_IO);
+        program_result said = program_shell(p, "cat errors");
+        if (strncmp(said.out, "softfall-solve: during.h5 has changed since the run began", 57) != 0 ||
+            strchr(said.out, '\n') != strrchr(said.out, '\n'))
+            fail_msg("%s: %s", damage[k], said.out);
+        if (sf_results_open(program_path(p, "damaged.h5"), &r, &err) != SF_OK)
+            fail_msg("%s: %s", damage[k], err.text);
+        assert_true(r.frame_count >= 2);
+        sf_results_close(&r);
+        program_shell(p, "cp finer.h5 during.h5");
+        program_succeed(p, "solve", "--restart damaged.h5 --threads 1");
+        assert_same_results(p, "undisturbed.h5", "damaged.h5");
+    }
+}
+
+/* A model that passes its checks, and whose constraints cannot be built: held nodes without shape
+ * functions. A run of it leaves nothing, and what an earlier run has left as it was. */
+static void model_that_cannot_be_built_costs_nothing(void **state) {
+    const program_place *p = *state;
+    const sf_provenance provenance = {.program = "test_restart"};
+    const char *const words[] = {"model.h5", "-o", "earlier.h5", "--checkpoint-time", "0.5 ms", NULL};
+    sf_error err = SF_ERROR_INIT;
+    sf_model m;
+    assert_int_equal(sf_model_read(program_path(p, "model.h5"), &m, NULL, &err), SF_OK);
+    memset(m.phi_value, 0, (size_t)m.phi_nnz * sizeof *m.phi_value);
+    assert_int_equal(sf_model_write(program_path(p, "void.h5"), &m, &provenance, &err), SF_OK);
+    sf_model_free(&m);
+    assert_int_equal(program_run(p, "solve", "void.h5 -o nothing.h5").code, SF_ERR_MODEL);
+    assert_false(is_there(p, "nothing.h5") || is_there(p, "nothing.h5.run"));
+
+    pid_t child = start_solver(p, words);
+    while (!is_there(p, "earlier.h5.restart"))
+        sleep_for(0.002);
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    program_shell(p, "rm -f earlier.h5.run/*.partial earlier.h5*.partial; "
+                     "find earlier.h5* -type f | sort | xargs sha256sum > before");
+    assert_int_equal(program_run(p, "solve", "void.h5 -o earlier.h5 --force").code, SF_ERR_MODEL);
+    program_result same = program_shell(
+        p, "grep -q earlier.h5.run/base.h5 before && find earlier.h5* -type f | sort | xargs sha256sum | "
+           "cmp before -");
+    if (same.code != 0)
+        fail_msg("the earlier run has changed: %s%s", same.out, same.err);
+    program_succeed(p, "solve", "--restart earlier.h5");
+    assert_same_results(p, "full.h5", "earlier.h5");
+}
+
 /* ---- numerical failure ---- */
 
 /* The frames' last time. */
@@ -575,6 +675,9 @@ int main(void) {
         cmocka_unit_test(failure_in_the_first_step_has_results),
         cmocka_unit_test(damaged_or_foreign_checkpoint_is_refused),
         cmocka_unit_test(nothing_is_replaced_without_force),
+        cmocka_unit_test(model_may_be_moved_and_replaced_during_a_run),
+        cmocka_unit_test(model_damaged_during_a_run_is_told),
+        cmocka_unit_test(model_that_cannot_be_built_costs_nothing),
         cmocka_unit_test(failed_run_leaves_its_state),
         cmocka_unit_test(campaign_goes_on_with_an_interrupted_drop),
     };

@@ -250,20 +250,26 @@ static void handle_failure(const options *o, const sf_output *output, const sf_s
     fputc('\n', stderr);
 }
 
-/* The frames of the run so far, or an empty place for a new one. */
-static sf_status prepare_output(const options *o, sf_output *output, const sf_model *model,
-                                const sf_h5 *model_file, const sf_provenance *provenance, sf_error *err) {
-    if (sf_output_open(output, o->restart != NULL, err) != SF_OK)
+/* All that a step needs, and the base of the results: the mesh, and the shape functions of inner nodes, are
+ * never in memory together with what the solver derives from the model. */
+static sf_status build(sf_model *model, const sf_h5 *model_file, const sf_provenance *provenance,
+                       const sf_output *output, sf_shapes *shapes, sf_operators *operators, sf_state *state,
+                       sf_error *err) {
+    if (sf_output_base(output, model, model_file, provenance, err) != SF_OK ||
+        sf_shapes_open(model, model_file, shapes, err) != SF_OK)
         return err->status;
-    if (sf_output_base(output, model, model_file, provenance, err) != SF_OK && !o->restart)
-        sf_output_clear(output);
-    return err->status;
+    sf_model_drop_mesh(model);
+    sf_model_drop_inner_shapes(model);
+    if (sf_operators_take(model, operators, err) != SF_OK)
+        return err->status;
+    return sf_state_create(model, state, err);
 }
 
 static sf_status solve(const options *o, const char *command, sf_error *err) {
     sf_model model = {0};
     sf_operators operators = {0};
     sf_state state = {0};
+    sf_shapes shapes = {0};
     sf_output output;
     sf_checkpoint from = {0};
     sf_h5 *model_file = NULL;
@@ -286,11 +292,13 @@ static sf_status solve(const options *o, const char *command, sf_error *err) {
     print_model(&model, o->threads);
     if (o->restart)
         compare_builds(&from);
-    if (sf_operators_take(&model, &operators, err) != SF_OK ||
-        sf_state_create(&model, &state, err) != SF_OK ||
-        prepare_output(o, &output, &model, model_file, &provenance, err) != SF_OK)
+    if (sf_output_open(&output, err) != SF_OK ||
+        build(&model, model_file, &provenance, &output, &shapes, &operators, &state, err) != SF_OK ||
+        sf_output_start(&output, o->restart != NULL, err) != SF_OK) {
+        sf_output_abandon(&output);
         goto done;
-    sf_model_drop_mesh(&model);
+    }
+    output.shapes = &shapes;
     if (!o->restart)
         unlink(output.checkpoint); /* of an earlier run, with --force */
     sf_run run = {.stop = &stop_requested,
@@ -309,6 +317,7 @@ static sf_status solve(const options *o, const char *command, sf_error *err) {
 done:
     sf_output_close(&output);
     sf_checkpoint_close(&from);
+    sf_shapes_close(&shapes);
     sf_h5_close(&model_file, err);
     sf_state_free(&state);
     sf_operators_free(&operators);

@@ -52,16 +52,17 @@ static bool is_ours(const char *name) {
     return false;
 }
 
-static void remove_files(const sf_output *o) {
+/* All but the one named `kept`, if it is not NULL. */
+static void remove_files(const sf_output *o, const char *kept) {
     DIR *folder = opendir(o->folder);
     for (struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder))
-        if (is_ours(entry->d_name))
+        if (is_ours(entry->d_name) && !(kept && strcmp(entry->d_name, kept) == 0))
             unlinkat(dirfd(folder), entry->d_name, 0);
     if (folder)
         closedir(folder);
 }
 
-sf_status sf_output_open(sf_output *o, bool keep, sf_error *err) {
+sf_status sf_output_open(sf_output *o, sf_error *err) {
     if (mkdir(o->folder, 0777) != 0 && errno != EEXIST)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", o->folder, strerror(errno));
     o->lock = open(o->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -71,8 +72,6 @@ sf_status sf_output_open(sf_output *o, bool keep, sf_error *err) {
         sf_output_close(o);
         return SF_FAIL(err, SF_ERR_INPUT, "another softfall-solve is writing %s", o->results);
     }
-    if (!keep)
-        remove_files(o);
     return SF_OK;
 }
 
@@ -83,7 +82,7 @@ void sf_output_close(sf_output *o) {
 }
 
 void sf_output_clear(const sf_output *o) {
-    remove_files(o);
+    remove_files(o, NULL);
     rmdir(o->folder);
 }
 
@@ -103,7 +102,27 @@ sf_status sf_output_base(const sf_output *o, const sf_model *m, const sf_h5 *mod
     if (place(o, BASE, path, partial, err) != SF_OK)
         return err->status;
     sf_results_create(partial, m, model_file, provenance, &file, err);
-    return commit(&file, partial, path, err);
+    sf_h5_close(&file, err);
+    return err->status;
+}
+
+sf_status sf_output_start(const sf_output *o, bool keep, sf_error *err) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
+    if (place(o, BASE, path, partial, err) != SF_OK)
+        return err->status;
+    if (sf_replace_commit(partial, path, err) == SF_OK && !keep)
+        remove_files(o, BASE);
+    return err->status;
+}
+
+void sf_output_abandon(const sf_output *o) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
+    sf_error ignored = SF_ERROR_INIT;
+    if (o->lock < 0)
+        return;
+    if (place(o, BASE, path, partial, &ignored) == SF_OK)
+        unlink(partial);
+    rmdir(o->folder); /* fails if an earlier run has files in it */
 }
 
 /* The present state as the group of a file of the folder. */
@@ -113,7 +132,7 @@ static sf_status write_state(const sf_output *o, const sf_model *m, const sf_ope
     sf_h5 *file = NULL;
     if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
-    sf_frame_write(m, op, s, fields, group, file, err);
+    sf_frame_write(m, op, s, o->shapes, fields, group, file, err);
     return commit(&file, partial, path, err);
 }
 

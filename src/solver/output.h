@@ -11,6 +11,7 @@
 #include "io/provenance.h"
 #include "io/replace.h"
 #include "solver/operators.h"
+#include "solver/shapes.h"
 #include "solver/state.h"
 
 typedef struct sf_output {
@@ -19,19 +20,23 @@ typedef struct sf_output {
     char folder[SF_PATH_SIZE];     /* results.h5.run */
     char partial[SF_PATH_SIZE];    /* of results.h5, between sf_output_begin and sf_output_commit */
     int lock;                      /* the open folder; -1: closed */
+    const sf_shapes *shapes;       /* for the frames, as of sf_shapes_read; borrowed */
 } sf_output;
 
 /* The names only. */
 sf_status sf_output_name(sf_output *output, const char *results, sf_error *err);
 
-/* Makes the folder and locks it: SF_ERR_INPUT if another run writes there. `keep` the frames in it, or remove
- * what an earlier run has left. Release with sf_output_close. */
-sf_status sf_output_open(sf_output *output, bool keep, sf_error *err);
+/* Makes the folder and locks it: SF_ERR_INPUT if another run writes there. Release with sf_output_close. */
+sf_status sf_output_open(sf_output *output, sf_error *err);
 void sf_output_close(sf_output *output);
 
-/* Provenance and model, from which every results.h5 starts (results_file.h). */
+/* Provenance and model, from which every results.h5 starts (results_file.h): written aside, while all that an
+ * earlier run has left stays as it is, until sf_output_start gives it its name. That keeps the frames of the
+ * earlier run or removes them. sf_output_abandon takes back what was done since sf_output_open. */
 sf_status sf_output_base(const sf_output *output, const sf_model *model, const sf_h5 *model_file,
                          const sf_provenance *provenance, sf_error *err);
+sf_status sf_output_start(const sf_output *output, bool keep, sf_error *err);
+void sf_output_abandon(const sf_output *output);
 
 /* The present state as frame `index`. */
 sf_status sf_output_frame(const sf_output *output, const sf_model *model, const sf_operators *operators,
