@@ -9,6 +9,11 @@ static inline double sf_dot3(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static inline void sf_cross3(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
 /* Largest eigenvalue of a symmetric matrix: trigonometric solution of the characteristic equation (Smith
  * 1961, doi:10.1145/355578.366316), accurate to rounding relative to the matrix norm. */
 static inline double sf_sym3_largest(const double s[6]) {

@@ -17,16 +17,12 @@ enum {
     SF_GROUP_SEES = 4096, /* nodes at most */
 };
 
-/* Numbers of B between what a kernel works on and what it asks the memory for: 4 kB, as B does not fit into
- * the caches and processors stop reading ahead at the end of a page. */
-enum { SF_AHEAD = 512 };
-
 typedef struct sf_halo {
     int64_t group_count;
-    int64_t *ptr;    /* [group_count + 1] */
-    int32_t *node;   /* [ptr[group_count]] nodes of other groups that the group sees, ascending */
-    uint16_t *local; /* [domain_nnz] place of the model's domain_node in what its group sees: the group's own
-                        nodes, then those others */
+    int64_t *ptr;      /* [group_count + 1] */
+    int32_t *node;     /* [ptr[group_count]] nodes of other groups that the group sees, ascending */
+    uint16_t *local;   /* [domain_nnz] place of each entry of the packed gradient in what its group sees: its
+                          own   nodes, then those others */
     int32_t *slot_ptr; /* [n + 1] */
     int32_t *slot;     /* [ptr[group_count]] where the other groups' lists hold node i, ascending */
     double *work;      /* [SF_HALO_WORK n or 3 ptr[group_count], the larger] of use within one pass */

@@ -8,6 +8,7 @@
 #include "solver/constraint.h"
 #include "solver/contact_gram.h"
 #include "solver/foam.h"
+#include "solver/gradient.h"
 #include "solver/halo.h"
 #include "solver/missile_surface.h"
 #include "solver/pairs.h"
@@ -16,7 +17,8 @@ typedef struct sf_operators {
     sf_foam foam;
     double *stability; /* [n] m kg-1, core/stability.h */
 
-    sf_halo halo; /* what groups of domains see */
+    uint8_t *gradient; /* B, packed (gradient.h) */
+    sf_halo halo;      /* what groups of domains see */
 
     sf_pairs pairs;
 
@@ -27,7 +29,7 @@ typedef struct sf_operators {
 
 sf_status sf_operators_build(const sf_model *model, sf_operators *operators, sf_error *err);
 /* The same, and releases what of the model only operators are made of, so that both are never in memory
- * together: domain_node, support, the edges. */
+ * together: domain_node, domain_b, support, the edges. */
 sf_status sf_operators_take(sf_model *model, sf_operators *operators, sf_error *err);
 void sf_operators_free(sf_operators *operators);
 

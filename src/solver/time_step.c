@@ -41,9 +41,31 @@ static power_work use_work(const sf_model *m, const sf_halo *h) {
     return w;
 }
 
+/* The gradient from entries with numbers of `width` bytes; two sums run side by side, as each addition waits
+ * for the one before. */
+static inline void add_gradient(sf_gradient_part row, int width, const double *field, double g[3]) {
+    double even[3] = {0}, odd[3] = {0};
+    for (int64_t k = 0; k + 1 < row.count; k += 2) {
+        const uint8_t *b = &row.b[3 * width * k];
+        double x = field[row.local[k]], y = field[row.local[k + 1]];
+        __builtin_prefetch(b + SF_AHEAD);
+        for (int c = 0; c < 3; c++) {
+            even[c] += x * sf_packed_number(b + c * width);
+            odd[c] += y * sf_packed_number(b + (3 + c) * width);
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        if (row.count > 0 && row.count % 2)
+            even[c] +=
+                field[row.local[row.count - 1]] * sf_packed_number(&row.b[(3 * (row.count - 1) + c) * width]);
+        g[c] += even[c] + odd[c];
+    }
+}
+
 /* Gradient of the mode in the domains of a group. */
-static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, const double *field, int64_t group,
-                                     float *gradient) {
+static SF_KERNEL void mode_gradients(const sf_model *m, const sf_operators *op, const double *field,
+                                     int64_t group, float *gradient) {
+    const sf_halo *h = &op->halo;
     int64_t own = sf_halo_first(group), end = sf_halo_end(m, group);
     double seen[SF_GROUP_SEES];
     memcpy(seen, &field[own], (size_t)(end - own) * sizeof *seen);
@@ -51,12 +73,8 @@ static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, const 
         seen[end - own + q - h->ptr[group]] = field[h->node[q]];
     for (int64_t l = own; l < end; l++) {
         double g[3] = {0};
-        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
-            const double *b = &m->domain_b[3 * k];
-            __builtin_prefetch(b + SF_AHEAD);
-            for (int c = 0; c < 3; c++)
-                g[c] += seen[h->local[k]] * b[c];
-        }
+        add_gradient(sf_gradient_takers(m, op->gradient, h->local, l), 8, seen, g);
+        add_gradient(sf_gradient_others(m, op->gradient, h->local, l), 6, seen, g);
         for (int c = 0; c < 3; c++)
             gradient[3 * l + c] = (float)g[c];
     }
@@ -115,20 +133,26 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
         w->flux[3 * own + q] = (float)flux[q];
 }
 
+static inline void add_flux(sf_gradient_part row, int width, const float q[3], double *restrict sum) {
+    for (int64_t k = 0; k < row.count; k++) {
+        const uint8_t *b = &row.b[3 * width * k];
+        __builtin_prefetch(b + SF_AHEAD);
+        sum[row.local[k]] += q[0] * sf_packed_number(b) + q[1] * sf_packed_number(b + width) +
+                             q[2] * sf_packed_number(b + 2 * width);
+    }
+}
+
 /* What the domains of a group exert: on its own nodes at once, on others by what waits for them. */
-static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_halo *h, int64_t group,
+static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_operators *op, int64_t group,
                                      const power_work *w) {
+    const sf_halo *h = &op->halo;
     int64_t own = sf_halo_first(group), end = sf_halo_end(m, group),
             others = h->ptr[group + 1] - h->ptr[group];
     double sum[SF_GROUP_SEES];
     memset(sum, 0, (size_t)(end - own + others) * sizeof *sum);
     for (int64_t l = own; l < end; l++) {
-        const float *q = &w->flux[3 * l];
-        for (int64_t k = m->domain_ptr[l]; k < m->domain_ptr[l + 1]; k++) {
-            const double *b = &m->domain_b[3 * k];
-            __builtin_prefetch(b + SF_AHEAD);
-            sum[h->local[k]] += q[0] * b[0] + q[1] * b[1] + q[2] * b[2];
-        }
+        add_flux(sf_gradient_takers(m, op->gradient, h->local, l), 8, &w->flux[3 * l], sum);
+        add_flux(sf_gradient_others(m, op->gradient, h->local, l), 6, &w->flux[3 * l], sum);
     }
     for (int64_t i = own; i < end; i++)
         w->out[i] += sum[i - own];
@@ -144,13 +168,13 @@ static void apply_operator(const sf_model *m, const sf_operators *op, const sf_s
     {
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
-            mode_gradients(m, h, s->mode, g, w->gradient);
+            mode_gradients(m, op, s->mode, g, w->gradient);
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
             mode_fluxes(m, op, s, g, w);
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
-            collect_fluxes(m, h, g, w);
+            collect_fluxes(m, op, g, w);
 #pragma omp for schedule(static)
         for (int64_t i = 0; i < m->node_count; i++)
             for (int32_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
