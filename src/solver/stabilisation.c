@@ -83,11 +83,9 @@ static void take_sums(const sf_model *m, const sf_pair_sums *sums, int64_t g, sf
         sf_partial *partial = &s->partial[i / SF_CHUNK];
         int64_t p = i - sf_halo_first(g);
         double stiffness = s->stiffness[i], energy = sf_stabilisation_energy(sums, p);
-        for (int r = 0; r < 3; r++) {
-            s->force[3 * i + r] = sums->force[p][r];
-            for (int c = 0; c < 3; c++)
-                s->stress[9 * i + 3 * r + c] += sums->couple[p][c][r];
-        }
+        memcpy(&s->force[3 * i], &sums->force[p], 3 * sizeof *s->force);
+        for (int k = 0; k < 9; k++)
+            s->stress[9 * i + k] += sums->couple[p][k % 3][k / 3];
         partial->stabilisation += stiffness * energy;
         partial->stabilisation_drift += 0.5 * (s->pair_sum[i] + energy) * (stiffness - s->pair_stiffness[i]);
         s->pair_sum[i] = energy;

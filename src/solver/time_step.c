@@ -111,34 +111,37 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
         q[2] = v * (a[5] * g[0] + a[4] * g[1] + a[2] * g[2]);
     }
     for (int64_t i = own; i < end; i++) {
-        double couple[3];
+        double force = out[i], *q = &flux[3 * (i - own)], sum[3] = {q[0], q[1], q[2]}, couple[3];
         for (; inner < pairs->inner_ptr[group] + pairs->inner_end[i]; inner++) {
             int64_t j = own + pairs->inner_place[inner];
-            double force = pull_pair(m, s, w->gradient, i, j, pairs->inner_weight[inner], couple);
-            out[i] -= force;
-            out[j] += force;
+            double pull = pull_pair(m, s, w->gradient, i, j, pairs->inner_weight[inner], couple);
+            force -= pull;
+            out[j] += pull;
             for (int c = 0; c < 3; c++) {
-                flux[3 * (i - own) + c] -= couple[c];
+                sum[c] -= couple[c];
                 flux[3 * (j - own) + c] -= couple[c];
             }
         }
         for (; outer < pairs->outer_ptr[group] + pairs->outer_end[i]; outer++) {
-            out[i] -=
+            force -=
                 pull_pair(m, s, w->gradient, i, pairs->outer_node[outer], pairs->outer_weight[outer], couple);
             for (int c = 0; c < 3; c++)
-                flux[3 * (i - own) + c] -= couple[c];
+                sum[c] -= couple[c];
         }
+        out[i] = force;
+        memcpy(q, sum, sizeof sum);
     }
     for (int64_t q = 0; q < 3 * (end - own); q++)
         w->flux[3 * own + q] = (float)flux[q];
 }
 
 static inline void add_flux(sf_gradient_part row, int width, const float q[3], double *restrict sum) {
+    const double x = q[0], y = q[1], z = q[2];
     for (int64_t k = 0; k < row.count; k++) {
         const uint8_t *b = &row.b[3 * width * k];
         __builtin_prefetch(b + SF_AHEAD);
-        sum[row.local[k]] += q[0] * sf_packed_number(b) + q[1] * sf_packed_number(b + width) +
-                             q[2] * sf_packed_number(b + 2 * width);
+        sum[row.local[k]] +=
+            x * sf_packed_number(b) + y * sf_packed_number(b + width) + z * sf_packed_number(b + 2 * width);
     }
 }
 
