@@ -302,7 +302,8 @@ static sf_status run_model(const options *o, sf_model *model, double spacing, co
     struct rusage usage;
     sf_model_drop_mesh(model);
     sf_model_drop_inner_shapes(model);
-    if (sf_operators_build(model, &operators, err) == SF_OK) /* once before: pages of libraries do not count */
+    if (sf_operators_build(model, &operators, err) ==
+        SF_OK) /* once before: pages of libraries do not count */
         sf_operators_free(&operators);
     double before = resident_bytes() - model_bytes(model);
     if (sf_operators_take(model, &operators, err) == SF_OK && sf_state_create(model, &state, err) == SF_OK) {
