@@ -8,7 +8,7 @@
 #ifdef SF_THREADS_ALWAYS
 enum { SF_FEW_NODES = 0, SF_FEW_POINTS = 0 };
 #else
-enum { SF_FEW_NODES = 20000, SF_FEW_POINTS = 3000 };
+enum { SF_FEW_NODES = 50000, SF_FEW_POINTS = 3000 };
 #endif
 
 #endif
