@@ -7,6 +7,7 @@
 
 #include <argp.h>
 #include <limits.h>
+#include <malloc.h>
 #include <math.h>
 #include <omp.h>
 #include <signal.h>
@@ -262,6 +263,7 @@ static sf_status build(sf_model *model, const sf_h5 *model_file, const sf_proven
     sf_model_drop_inner_shapes(model);
     if (sf_operators_take(model, operators, err) != SF_OK)
         return err->status;
+    malloc_trim(0); /* what building took and gave back */
     return sf_state_create(model, state, err);
 }
 
