@@ -190,6 +190,12 @@ static void shape_of_no_node(sf_model *m) {
 static void edge_out_of_range(sf_model *m) {
     m->edge_node[0] = -5;
 }
+static void edge_to_itself(sf_model *m) {
+    m->edge_node[0] = 0;
+}
+static void edge_with_one_end(sf_model *m) {
+    m->edge_node[m->edge_ptr[1] - 1] = (int32_t)m->node_count - 1;
+}
 static void negative_volume(sf_model *m) {
     m->volume[11] = -m->volume[11];
 }
@@ -294,6 +300,8 @@ static void damaged_models_are_refused_with_what_is_wrong(void **state) {
         {rows_beyond_the_end, "shape functions"},
         {shape_of_no_node, "shape functions"},
         {edge_out_of_range, "edges"},
+        {edge_to_itself, "has no length"},
+        {edge_with_one_end, "which has none back"},
         {negative_volume, "node 11 has volume"},
         {no_mass, "node 0 has volume"},
         {falling_curve, "does not rise"},

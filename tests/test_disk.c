@@ -132,7 +132,7 @@ static void peak_that_cannot_be_written_is_told(void **state) {
     }
 }
 
-/* The model may be removed as soon as it has been read: the run does not need it. */
+/* The model may be removed as soon as it is open: the run reads on from what it has open. */
 static void input_that_vanishes_does_no_harm(void **state) {
     const program_place *p = *state;
     program_result gone = program_shell(p,

@@ -53,7 +53,7 @@ static void taken_operators_give_the_same_bits(void **state) {
     fixture_free(&taken);
 }
 
-/* A row of one or two entries is longer packed than as doubles: rows behind it must not be overrun. */
+/* A row of one to three entries is longer packed than as doubles: rows behind it must not be overrun. */
 static void rows_too_short_for_their_own_memory_are_packed_beside_it(void **state) {
     (void)state;
     enum { ROWS = 6, ENTRIES = 20 };

@@ -183,6 +183,37 @@ static sf_status check_nodes(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
+/* Is `node` in row i of the edges, which ascends? */
+static bool has_edge(const sf_model *m, int64_t i, int64_t node) {
+    int64_t low = m->edge_ptr[i], high = m->edge_ptr[i + 1];
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        if (m->edge_node[middle] < node)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < m->edge_ptr[i + 1] && m->edge_node[low] == node;
+}
+
+/* Edges join two nodes that are apart, and both know it. */
+static sf_status check_edges(const sf_model *m, sf_error *err) {
+    for (int64_t i = 0; i < m->node_count; i++)
+        for (int64_t k = m->edge_ptr[i]; k < m->edge_ptr[i + 1]; k++) {
+            int64_t j = m->edge_node[k];
+            double square = 0;
+            for (int c = 0; c < 3; c++)
+                square += pow(m->position[3 * j + c] - m->position[3 * i + c], 2);
+            if (!(square > 0))
+                return SF_FAIL(err, SF_ERR_MODEL, "edge from node %lld to node %lld has no length",
+                               (long long)i, (long long)j);
+            if (!has_edge(m, j, i))
+                return SF_FAIL(err, SF_ERR_MODEL, "node %lld has an edge to node %lld, which has none back",
+                               (long long)i, (long long)j);
+        }
+    return SF_OK;
+}
+
 static sf_status check_constraints(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; k < m->fixed_count; k++)
         if (m->fixed_mask[k] < 1 || m->fixed_mask[k] > (SF_FIX_X | SF_FIX_Y | SF_FIX_Z) ||
@@ -216,6 +247,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
                   err) != SF_OK ||
         check_csr("edges", m->node_count, m->edge_nnz, m->edge_ptr, m->edge_node, m->node_count, true, err) !=
             SF_OK ||
+        check_edges(m, err) != SF_OK ||
         check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
         check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK ||
         check_constraints(m, err) != SF_OK)

@@ -40,7 +40,7 @@ void sf_packed_neighbours(double x, const uint8_t *number, double pair[2]) {
 }
 
 void sf_packed_put(double x, uint8_t *number) {
-    uint64_t size = bits_of(fmax(fabs(x), SF_PACKED_LEAST));
+    uint64_t size = bits_of(fmin(fmax(fabs(x), SF_PACKED_LEAST), SF_PACKED_MOST));
     uint64_t bits = (bits_of(x) & SIGN) | round_down(size + SHARED / 2, shared_bits(number));
     memcpy(number, &bits, sizeof bits);
 }

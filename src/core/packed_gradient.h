@@ -20,6 +20,8 @@ enum { SF_TAKERS = 4 };
 
 /* m-1. What is smaller, zero too, is packed as about this: far below any B, far above underflow. */
 #define SF_PACKED_LEAST 0x1p-500
+/* m-1. What is larger is packed as this. */
+#define SF_PACKED_MOST 0x1p1000
 
 /* First byte of the row that begins with entry `entry`; with all rows and entries, the size of B. A row of
  * fewer than four entries needs less than it has. */

@@ -68,9 +68,16 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
         int64_t count = list_others(m, g, seen, NULL);
         h->ptr[g + 1] = h->ptr[g] + count;
         if (count > SF_GROUP_SEES - SF_GROUP)
-            SF_FAIL(err, SF_ERR_MODEL, "the %d domains from node %lld see %lld nodes, more than %d", SF_GROUP,
-                    (long long)sf_halo_first(g), (long long)count + SF_GROUP, SF_GROUP_SEES);
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "the %d domains from node %lld see %lld nodes, more than %d: number the nodes so that "
+                    "neighbours are close",
+                    SF_GROUP, (long long)sf_halo_first(g), (long long)count + SF_GROUP, SF_GROUP_SEES);
     }
+    if (err->status == SF_OK && h->ptr[h->group_count] > INT32_MAX)
+        SF_FAIL(err, SF_ERR_MODEL,
+                "groups of domains see %lld nodes of other groups, more than %d: number the "
+                "nodes so that neighbours are close",
+                (long long)h->ptr[h->group_count], INT32_MAX);
     if (err->status == SF_OK) {
         unsigned long total = (unsigned long)h->ptr[h->group_count];
         h->node = sf_alloc(err, total, sizeof *h->node, "group lists");

@@ -22,7 +22,7 @@ typedef struct sf_halo {
     int64_t *ptr;      /* [group_count + 1] */
     int32_t *node;     /* [ptr[group_count]] nodes of other groups that the group sees, ascending */
     uint16_t *local;   /* [domain_nnz] place of each entry of the packed gradient in what its group sees: its
-                          own   nodes, then those others */
+                          own nodes, then those others */
     int32_t *slot_ptr; /* [n + 1] */
     int32_t *slot;     /* [ptr[group_count]] where the other groups' lists hold node i, ascending */
     double *work;      /* [SF_HALO_WORK n or 3 ptr[group_count], the larger] of use within one pass */

@@ -33,6 +33,9 @@ typedef struct power_work {
     float *waiting;  /* [others of all groups] sums for nodes of other groups */
 } power_work;
 
+_Static_assert(2 * SF_HALO_WORK == 2 + BASIS + 3 + 3, "floats per node in the order of power_work");
+
+/* With more than 3 n others the work array has 6 floats for each of them, and 13 n + others are enough. */
 static power_work use_work(const sf_model *m, const sf_halo *h) {
     int64_t n = m->node_count;
     power_work w = {.out = h->work, .basis = (float *)(h->work + n)};
@@ -304,6 +307,8 @@ void sf_time_step_choose(const sf_model *m, const sf_operators *op, sf_state *s)
         seed_mode(m, op, s);
         double power = sf_time_step_power(m, op, s, s->step == 0 ? POWER_FIRST : POWER_WARM, SETTLED);
         double tightness = ceil(POWER_ROUNDING * POWER_MARGIN * power / s->bound_load) / POWER_ROUNDING;
+        if (!(power > 0)) /* nothing came of it: the bound is safe alone */
+            tightness = 1;
         double change = s->tightness / tightness;
         s->tightness = tightness;
         s->bound_step *= fmin(change, sqrt(change)); /* safe with any damping; exact from the next step on */
