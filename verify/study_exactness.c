@@ -285,8 +285,10 @@ int main(int argc, char **argv) {
     measure_pad(&study, "graded hexahedra", "verify/geo/pad_hex.geo", &r[4]);
     sf_study_text(
         &study,
-        "Identities that hold to rounding, whatever the mesh. The first five columns are "
-        "the invariants of theory, "
+        "Identities that hold to rounding, whatever the mesh: sums over the rows of B, and what rests on "
+        "them, to that of doubles; its columns, ΣVB − ∮φN, and the patch test to what the rounding of B to "
+        "six bytes a number leaves (theory, section 2). The first five columns of the table are the "
+        "invariants of theory, "
         "section 2, measured on the finished model (ΣV against the closed form of the box, "
         "relative). *Affine F*: "
         "largest error of F under an affine field with 32 %% compression and shear. *Patch "
