@@ -36,10 +36,15 @@ typedef struct mesh_result {
     double wrong_way;
 } mesh_result;
 
+/* The larger magnitude; a NaN counts as infinite. */
+static double larger(double value, double x) {
+    return isnan(x) ? INFINITY : fmax(value, fabs(x));
+}
+
 static double largest(const double *a, int64_t count) {
     double value = 0;
     for (int64_t k = 0; k < count; k++)
-        value = isnan(a[k]) ? INFINITY : fmax(value, fabs(a[k]));
+        value = larger(value, a[k]);
     return value;
 }
 
@@ -96,7 +101,7 @@ static double measure_affine(fixture *f) {
     fixture_set_affine(f, GRADIENT, SHIFT);
     fixture_forces(f);
     for (int64_t k = 0; k < 9 * f->model.node_count; k++)
-        worst = fmax(worst, fabs(f->state.f[k] - GRADIENT[k % 9] - (k % 9 % 4 == 0)));
+        worst = larger(worst, f->state.f[k] - GRADIENT[k % 9] - (k % 9 % 4 == 0));
     return worst;
 }
 
@@ -110,7 +115,7 @@ static double held_acceleration(fixture *f, const sf_constraint *constraint) {
     sf_constraint_project(constraint, &step);
     for (int64_t k = 0; k < 3 * m->node_count; k++) {
         free_motion = fmax(free_motion, fabs(s->force[k]) / m->mass[k / 3]);
-        held_motion = fmax(held_motion, fabs(s->force[k] - s->reaction[k]) / m->mass[k / 3]);
+        held_motion = larger(held_motion, (s->force[k] - s->reaction[k]) / m->mass[k / 3]);
     }
     return held_motion / free_motion;
 }
@@ -204,11 +209,11 @@ static void measure_objectivity(fixture *f, double out[RESIDUALS]) {
     for (int64_t i = 0; i < n; i++) {
         const double *row = &r[3 * (i % 3)], *force = &plain[3 * (i / 3)];
         double turned = row[0] * force[0] + row[1] * force[1] + row[2] * force[2];
-        out[OBJECTIVE] = fmax(out[OBJECTIVE], fabs(f->state.force[i] - turned) / scale);
+        out[OBJECTIVE] = larger(out[OBJECTIVE], (f->state.force[i] - turned) / scale);
     }
     two_steps(f, same, SHIFT);
     for (int64_t i = 0; i < n; i++)
-        out[TRANSLATION] = fmax(out[TRANSLATION], fabs(f->state.force[i] - plain[i]) / scale);
+        out[TRANSLATION] = larger(out[TRANSLATION], (f->state.force[i] - plain[i]) / scale);
     free(plain);
 }
 
@@ -310,7 +315,7 @@ int main(int argc, char **argv) {
     for (int k = 0; k < RESIDUALS; k++) {
         double worst = 0;
         for (int i = 0; i < MESHES; i++)
-            worst = isnan(r[i].residual[k]) ? INFINITY : fmax(worst, r[i].residual[k]);
+            worst = larger(worst, r[i].residual[k]);
         sf_study_check(&study, worst, 0, 1e-10, "%s, largest over the meshes", residual_name[k]);
     }
     double least = INFINITY;
