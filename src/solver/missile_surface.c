@@ -16,11 +16,6 @@ static void subtract(const double *a, const double *b, double out[3]) {
         out[k] = a[k] - b[k];
 }
 
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int k = 0; k < 3; k++)
-        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 static void normalise(double a[3]) {
     double length = sqrt(sf_dot3(a, a));
     for (int k = 0; k < 3 && length > 0; k++)
@@ -37,7 +32,7 @@ static void build_normals(sf_missile_surface *s, int64_t triangles) {
         double u[3], v[3];
         subtract(vertex(s, t, 1), vertex(s, t, 0), u);
         subtract(vertex(s, t, 2), vertex(s, t, 0), v);
-        cross(u, v, &s->normal[3 * t]);
+        sf_cross3(u, v, &s->normal[3 * t]);
         normalise(&s->normal[3 * t]);
         for (int corner = 0; corner < 3; corner++) {
             subtract(vertex(s, t, (corner + 1) % 3), vertex(s, t, corner), u);
