@@ -5,7 +5,7 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: ./setup.sh WORD [--force] [--no-install]
+usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
 
   demo     build, then run examples/eva50-v4.5 through all three programs into out/eva50-v4.5
   test     build, then run the tests (all but the slow ones)
@@ -13,6 +13,7 @@ usage: ./setup.sh WORD [--force] [--no-install]
   build    build only: the programs are in build/bin
 
   --force        demo: run the drop again though its results are up to date
+  --label LABEL  test: only the tests with such a label: unit, pipeline or verify, or several joined by |
   --no-install   install nothing; say which packages are missing and go on
 TEXT
 }
@@ -100,19 +101,26 @@ run_tests() {
     ctest --test-dir build --output-on-failure --no-tests=error --no-label-summary "$@"
 }
 
-word='' force=no install=yes
-for argument in "$@"; do
-    case $argument in
+word='' force=no install=yes label=.
+while [ $# -gt 0 ]; do
+    case $1 in
     --force) force=yes ;;
     --no-install) install=no ;;
+    --label)
+        [ $# -gt 1 ] || fail "--label needs a label: unit, pipeline or verify"
+        label=$2
+        shift
+        ;;
     -h | --help | help) usage && exit 0 ;;
-    -*) usage >&2 && fail "unknown option $argument" ;;
+    -*) usage >&2 && fail "unknown option $1" ;;
     *)
-        [ -z "$word" ] || { usage >&2 && fail "one word at a time: $argument is one too many"; }
-        word=$argument
+        [ -z "$word" ] || { usage >&2 && fail "one word at a time: $1 is one too many"; }
+        word=$1
         ;;
     esac
+    shift
 done
+[ "$word" = test ] || [ "$label" = . ] || fail "--label goes with the word test"
 cd "$(dirname "${BASH_SOURCE[0]}")"
 case $word in
 demo)
@@ -124,7 +132,7 @@ test)
     install_packages build run test
     build
     # One test per core and one thread per test: those that are about threads ask for their own number.
-    OMP_NUM_THREADS=1 run_tests --label-exclude slow --parallel "$(nproc)"
+    OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(nproc)"
     ;;
 slow)
     install_packages build run test slow

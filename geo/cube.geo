@@ -33,16 +33,24 @@ Plane Surface(1) = {1};
 Transfinite Curve {1:4} = cells + 1;
 Transfinite Surface {1};
 Recombine Surface {1};
-// The top, the volume, then the sides over the lines 1 (y = a), 2 (x = b), 3 (y = b) and 4 (x = a).
-cube() = Extrude {0, 0, side} { Surface{1}; Layers{layers}; Recombine; };
+Extrude {0, 0, side} { Surface{1}; Layers{layers}; Recombine; }
 
-Physical Volume("pad") = {cube(1)};
-Physical Surface("base") = {1};
-Physical Surface("top") = {cube(0)};
+// The groups are chosen by place: the surfaces inside a thin box around each plane.
+tol = 1e-6 * side;
+low_x() = Surface In BoundingBox{a - tol, -side, -tol, a + tol, side, side + tol};
+low_y() = Surface In BoundingBox{-side, a - tol, -tol, side, a + tol, side + tol};
+high() = Surface In BoundingBox{b - tol, -side, -tol, b + tol, side, side + tol};
+high() += Surface In BoundingBox{-side, b - tol, -tol, side, b + tol, side + tol};
+base() = Surface In BoundingBox{-side, -side, -tol, side, side, tol};
+top() = Surface In BoundingBox{-side, -side, side - tol, side, side, side + tol};
+pad() = Volume In BoundingBox{-side, -side, -tol, side, side, side + tol};
+Physical Volume("pad") = pad();
+Physical Surface("base") = base();
+Physical Surface("top") = top();
 If (quarter == 0)
-  Physical Surface("sides") = {cube(2), cube(3), cube(4), cube(5)};
+  Physical Surface("sides") = {high(), low_x(), low_y()};
 Else
-  Physical Surface("sides") = {cube(3), cube(4)};
-  Physical Surface("symmetry_x") = {cube(5)}; // the plane x = 0
-  Physical Surface("symmetry_y") = {cube(2)}; // the plane y = 0
+  Physical Surface("sides") = high();
+  Physical Surface("symmetry_x") = low_x(); // the plane x = 0
+  Physical Surface("symmetry_y") = low_y(); // the plane y = 0
 EndIf

@@ -29,7 +29,7 @@ EndIf
 
 Physical Volume("missile") = {v};
 top() = Surface In BoundingBox{-diameter, -diameter, radius - tol, diameter, diameter, radius + tol};
-all() = Boundary{ Volume{v}; };
+all() = Surface In BoundingBox{-diameter, -diameter, -diameter, diameter, diameter, diameter};
 plane() = {};
 If (quarter != 0)
   plane() += Surface In BoundingBox{-tol, -diameter, -diameter, tol, diameter, diameter};

@@ -26,7 +26,10 @@ Plane Surface(1) = {1};
 // The cells behind the face tell which side of it is outside.
 Transfinite Curve {1:4} = 3;
 Transfinite Surface {1};
-platen() = Extrude {0, 0, thickness} { Surface{1}; Layers{1}; };
+Extrude {0, 0, thickness} { Surface{1}; Layers{1}; }
 
-Physical Volume("missile") = {platen(1)};
-Physical Surface("missile_surface") = {1};
+tol = 1e-6 * thickness;
+platen() = Volume In BoundingBox{-side, -side, -tol, side, side, thickness + tol};
+face() = Surface In BoundingBox{-side, -side, -tol, side, side, tol};
+Physical Volume("missile") = platen();
+Physical Surface("missile_surface") = face();

@@ -52,8 +52,20 @@ static void assert_fails(const fixture *f, sf_state *s, int64_t node, const char
     assert_non_null(strstr(err.text, name));
 }
 
+/* The node nearest to a point half-way up in the impact zone: free to move, whatever order a mesher gives. */
 static int64_t middle(const fixture *f) {
-    return f->model.node_count / 2;
+    static const double point[3] = {0.025, 0.025, 0.025};
+    double least = INFINITY;
+    int64_t nearest = 0;
+    for (int64_t i = 0; i < f->model.node_count; i++) {
+        const double *x = &f->model.position[3 * i];
+        double distance = hypot(hypot(x[0] - point[0], x[1] - point[1]), x[2] - point[2]);
+        if (distance < least) {
+            least = distance;
+            nearest = i;
+        }
+    }
+    return nearest;
 }
 
 static void inverted_domain(void **state) {

@@ -326,9 +326,10 @@ static void step_is_meshed_through_a_geo_that_names_groups(void **state) {
     write_open_model("box.step");
     assert_mesh_refused(*state, source_of(in_folder("box.step"), NULL), "pad",
                         "gmsh reads no groups from a STEP file: name them in a .geo that merges it");
-    write_file("named.geo",
-               "SetFactory(\"OpenCASCADE\");\nMerge \"box.step\";\nPhysical Volume(\"pad\") = {1};\n"
-               "Physical Surface(\"base\") = {5};\nMesh.MeshSizeMax = 5;\n");
+    write_file("named.geo", "SetFactory(\"OpenCASCADE\");\nMerge \"box.step\";\npad() = Volume{:}; Physical "
+                            "Volume(\"pad\") = pad();\n"
+                            "base() = Surface In BoundingBox{-1, -1, -0.1, 31, 21, 0.1};\n"
+                            "Physical Surface(\"base\") = base();\nMesh.MeshSizeMax = 5;\n");
     sf_mesh mesh;
     double volume;
     load_mesh(*state, source_of(in_folder("named.geo"), NULL), &mesh, &volume);
@@ -388,9 +389,12 @@ static void faults_in_the_geometry_are_told(void **state) {
 #define BOX                                                                                                  \
     "SetFactory(\"OpenCASCADE\"); Box(1) = {0, 0, 0, 1, 1, 1}; Mesh.MeshSizeMax = 1;\nPhysical "             \
     "Volume(\"pad\") = {1};\n"
-    write_file("double.geo", BOX "Physical Surface(\"base\") = {5}; Physical Surface(\"all\") = {1:6};\n");
+    write_file(
+        "double.geo",
+        BOX "base() = Surface In BoundingBox{-1, -1, -0.1, 2, 2, 0.1};\n"
+            "Physical Surface(\"base\") = base(); all() = Surface{:}; Physical Surface(\"all\") = all();\n");
     assert_mesh_refused(*state, source_of(in_folder("double.geo"), NULL), "pad",
-                        "surface 5 belongs to two groups, \"base\" and \"all\"");
+                        " belongs to two groups, \"base\" and \"all\"");
     /* gmsh keeps no group without entities. */
     write_file("empty.geo",
                "SetFactory(\"OpenCASCADE\"); Box(1) = {0, 0, 0, 1, 1, 1}; Mesh.MeshSizeMax = 1;\n"
@@ -545,8 +549,8 @@ static void hemisphere_dome_is_a_sphere_turned_outwards(void **state) {
 static void surface_without_volume_is_turned_away_from_its_middle(void **state) {
     write_file("shell.geo",
                "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 10};\nDelete { Volume{1}; }\n"
-               "Physical Surface(\"shell\") = {1};\nMesh.MeshSizeMax = 4;\n");
-    write_file("inside_out.geo", "Include \"shell.geo\";\nReverseMesh Surface{1};\n");
+               "shell() = Surface{:}; Physical Surface(\"shell\") = shell();\nMesh.MeshSizeMax = 4;\n");
+    write_file("inside_out.geo", "Include \"shell.geo\";\nReverseMesh Surface{:};\n");
     const char *const names[] = {"shell.geo", "inside_out.geo"};
     const double centre[3] = {0.0, 0.0, 0.0};
     for (int k = 0; k < 2; k++) {
@@ -564,7 +568,9 @@ static void quadrangles_are_split_and_inner_surfaces_refused(void **state) {
                "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\nBox(2) = {1, 0, 0, 1, 1, 1};\n"
                "Coherence;\nMeshSize{:} = 1;\nTransfinite Curve{:} = 3;\nTransfinite Surface{:};\n"
                "Recombine Surface{:};\nTransfinite Volume{:};\nPhysical Volume(\"pad\") = {1};\n"
-               "Physical Surface(\"left\") = {1};\nPhysical Surface(\"between\") = {2};\n");
+               "left() = Surface In BoundingBox{-0.1, -1, -1, 0.1, 2, 2};\n"
+               "between() = Surface In BoundingBox{0.9, -1, -1, 1.1, 2, 2};\n"
+               "Physical Surface(\"left\") = left();\nPhysical Surface(\"between\") = between();\n");
     sf_surface left, between;
     load_surface(*state, source_of(in_folder("block.geo"), NULL), "left", &left);
     assert_int_equal(left.triangle_count, 8);

@@ -49,9 +49,10 @@ def row_of(directory, s, measured):
 def replace_table(path, table):
     with open(path) as stream:
         lines = stream.read().split("\n")
-    begin = next((k for k, line in enumerate(lines) if line.startswith("| %s |" % HEAD[0])), None)
+    start = table[0].split(" | ")[0]
+    begin = next((k for k, line in enumerate(lines) if line.startswith(start + " |")), None)
     if begin is None:
-        sys.exit('results_table: %s has no line that begins with "| %s |"' % (path, HEAD[0]))
+        sys.exit('results_table: %s has no line that begins with "%s |"' % (path, start))
     end = next(k for k in range(begin, len(lines)) if not lines[k].startswith("|"))
     with open(path, "w") as stream:
         stream.write("\n".join(lines[:begin] + table + lines[end:]))
@@ -75,4 +76,5 @@ def main():
         print("\n".join(table))
 
 
-main()
+if __name__ == "__main__":
+    main()

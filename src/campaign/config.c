@@ -101,6 +101,8 @@ sf_status sf_config_number(const sf_config *config, const config_setting_t *grou
         *out = config_setting_get_float(s);
     else if (type == CONFIG_TYPE_INT)
         *out = config_setting_get_int(s);
+    else if (type == CONFIG_TYPE_INT64)
+        *out = (double)config_setting_get_int64(s);
     else
         return sf_config_refuse(config, s, err, "%s must be a number", name);
     if (!(*out >= low && *out <= high))

@@ -79,8 +79,10 @@ sf_status sf_spline_init(sf_spline *spline, int break_count, const double *break
 }
 
 void sf_spline_free(sf_spline *spline) {
-    gsl_bspline_free(spline->base);
-    gsl_bspline_free(spline->primary);
+    if (spline->base) /* from GSL 2.8 on, gsl_bspline_free takes no NULL */
+        gsl_bspline_free(spline->base);
+    if (spline->primary)
+        gsl_bspline_free(spline->primary);
     gsl_vector_free(spline->value);
     gsl_vector_free(spline->higher);
     gsl_matrix_free(spline->slope);

@@ -3,6 +3,7 @@
 
 #include "pre/geo_parameters.h"
 #include "pre/geometry_check.h"
+#include "pre/gmsh_adapter.h"
 #include "pre/gmsh_size.h"
 #include "pre/memory.h"
 #include "pre/mesh_raw.h"
@@ -39,11 +40,12 @@ typedef struct group_list {
 struct sf_gmsh {
     bool initialised;
     int threads; /* of OpenMP before gmsh set its own number */
+    char version[32];
     char file[512];
 };
 
-const char *sf_gmsh_version(void) {
-    return GMSH_API_VERSION;
+const char *sf_gmsh_version(const sf_gmsh *session) {
+    return session->version;
 }
 
 /* The first message of gmsh that begins with "Error": it carries file and line, which `ierr` does not. */
@@ -77,11 +79,9 @@ static void stop(sf_gmsh *session) {
 
 /* gmsh keeps options and messages of earlier files; only ending and starting it anew clears them. */
 static sf_status restart(sf_gmsh *session, sf_error *err) {
-    char name[] = "softfall-pre";
-    char *argv[] = {name, NULL};
     int ierr = 0;
     stop(session);
-    gmshInitialize(1, argv, 0, &ierr);
+    ierr = sf_gmsh_adapter_initialize();
     if (ierr)
         return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot be started (code %d)", ierr);
     session->initialised = true;
@@ -101,6 +101,8 @@ sf_status sf_gmsh_begin(sf_gmsh **session, sf_error *err) {
 #endif
     if (restart(*session, err) != SF_OK)
         sf_gmsh_end(session);
+    else
+        sf_gmsh_adapter_version((*session)->version, sizeof(*session)->version);
     return err->status;
 }
 

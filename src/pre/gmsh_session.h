@@ -28,7 +28,7 @@ sf_status sf_gmsh_read_mesh(sf_gmsh *session, const char *pad_group, double unit
 sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                                sf_error *err);
 
-/* "4.8.4", static storage. */
-const char *sf_gmsh_version(void);
+/* The version of gmsh that runs, for example "4.8.4"; valid as long as the session. */
+const char *sf_gmsh_version(const sf_gmsh *session);
 
 #endif

@@ -54,13 +54,16 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     }
 }
 
-/* Pad mesh and missile surface, from one geometry or two. */
-static sf_status read_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_error *err) {
+/* Pad mesh and missile surface, from one geometry or two; `libraries` gets the versions that made them. */
+static sf_status read_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface, char *libraries,
+                               size_t size, sf_error *err) {
     sf_gmsh *session = NULL;
     if (sf_gmsh_begin(&session, err) == SF_OK && sf_gmsh_load(session, &c->pad, err) == SF_OK &&
         sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err) == SF_OK &&
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK))
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
+    if (session)
+        snprintf(libraries, size, "gmsh %s, HDF5 %s", sf_gmsh_version(session), sf_h5_version());
     sf_gmsh_end(&session);
     return err->status;
 }
@@ -72,11 +75,10 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
     sf_model model = {0};
     sf_build_report report;
     char libraries[96];
-    snprintf(libraries, sizeof libraries, "gmsh %s, HDF5 %s", sf_gmsh_version(), sf_h5_version());
     if (!o->force && access(o->output, F_OK) == 0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it", o->output);
     if (sf_case_read(o->case_path, o->overrides, o->override, &c, err) != SF_OK ||
-        read_geometry(&c, &mesh, &surface, err) != SF_OK ||
+        read_geometry(&c, &mesh, &surface, libraries, sizeof libraries, err) != SF_OK ||
         sf_model_build(&c, &mesh, &surface, &model, &report, err) != SF_OK)
         goto done;
     if (report.contact_held) {

@@ -13,7 +13,8 @@ DefineConstant[
 ];
 
 b = side / 2;
-Box(1) = {0, 0, 0, b, b, thickness};
+v = newv;
+Box(v) = {0, 0, 0, b, b, thickness};
 eps = 1e-6 * side;
 base() = Surface In BoundingBox{-eps, -eps, -eps, b + eps, b + eps, eps};
 top() = Surface In BoundingBox{-eps, -eps, thickness - eps, b + eps, b + eps, thickness + eps};
@@ -23,7 +24,7 @@ Physical Surface("base") = base();
 Physical Surface("top") = top();
 Physical Surface("symmetry_x") = plane_x();
 Physical Surface("symmetry_y") = plane_y();
-Physical Volume("pad") = {1};
+Physical Volume("pad") = {v};
 
 Field[1] = MathEval;
 Field[1].F = Sprintf("%g + 0.15 * (sqrt(x*x + y*y + (z - %g)*(z - %g)) - %g + abs(sqrt(x*x + y*y + (z - %g)*(z - %g)) - %g)) / 2",

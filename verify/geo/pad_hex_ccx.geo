@@ -24,12 +24,19 @@ Transfinite Curve {1, 2, 3, 4} = half_cells + 1;
 Transfinite Surface {1};
 Recombine Surface {1};
 
-// body[0] the top, body[1] the volume, then the sides over the lines 1 to 4.
-body[] = Extrude {0, 0, thickness} { Surface{1}; Layers{layers}; Recombine; };
+Extrude {0, 0, thickness} { Surface{1}; Layers{layers}; Recombine; }
 
-Physical Volume("pad") = {body[1]};
-Physical Surface("base") = {1};
-Physical Surface("top") = {body[0]};
-Physical Surface("symmetry_y") = {body[2]}; // the plane y = 0
-Physical Surface("sides") = {body[3], body[4]};
-Physical Surface("symmetry_x") = {body[5]}; // the plane x = 0
+tol = 1e-6 * side;
+pad() = Volume In BoundingBox{-tol, -tol, -tol, b + tol, b + tol, thickness + tol};
+base() = Surface In BoundingBox{-tol, -tol, -tol, b + tol, b + tol, tol};
+top() = Surface In BoundingBox{-tol, -tol, thickness - tol, b + tol, b + tol, thickness + tol};
+plane_x() = Surface In BoundingBox{-tol, -tol, -tol, tol, b + tol, thickness + tol};
+plane_y() = Surface In BoundingBox{-tol, -tol, -tol, b + tol, tol, thickness + tol};
+sides() = Surface In BoundingBox{b - tol, -tol, -tol, b + tol, b + tol, thickness + tol};
+sides() += Surface In BoundingBox{-tol, b - tol, -tol, b + tol, b + tol, thickness + tol};
+Physical Volume("pad") = pad();
+Physical Surface("base") = base();
+Physical Surface("top") = top();
+Physical Surface("sides") = sides();
+Physical Surface("symmetry_x") = plane_x();
+Physical Surface("symmetry_y") = plane_y();

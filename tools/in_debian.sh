@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs a command in a fresh clone of the last commit, in a fresh minimal Debian of the named release.
+#
+#     tools/in_debian.sh [--fetch DIR] RELEASE COMMAND...
+#     tools/in_debian.sh trixie ./setup.sh demo
+#     tools/in_debian.sh --fetch out/other other ./setup.sh demo
+#
+# RELEASE is bookworm (12), trixie (13), or other: the one of them that this machine does not run. debootstrap makes the
+# system in a temporary folder, from the mirror of this machine's apt sources, in about half a minute; the command runs
+# there by chroot, as root, in the clone's folder. Afterwards the folder is removed; --fetch copies the clone's out/ to DIR
+# first. The command's exit code is this one's; without root it is 77. Needs the packages debootstrap and git.
+set -euo pipefail
+
+fail() {
+    printf 'in_debian.sh: %s\n' "$*" >&2
+    exit 1
+}
+
+fetch=
+[ "${1:-}" = --fetch ] && [ $# -ge 2 ] && fetch=$2 && shift 2
+if [ $# -lt 2 ]; then
+    echo 'usage: tools/in_debian.sh [--fetch DIR] bookworm|trixie|other COMMAND...' >&2
+    exit 2
+fi
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+here=$(. /etc/os-release && printf '%s' "${VERSION_CODENAME:-}")
+release=$1
+shift
+case $release in
+bookworm | trixie) ;;
+12) release=bookworm ;;
+13) release=trixie ;;
+other) [ "$here" = trixie ] && release=bookworm || release=trixie ;;
+*) fail "unknown release $release; known are bookworm, trixie and other" ;;
+esac
+if [ "$(id -u)" -ne 0 ]; then
+    echo "in_debian.sh: skipped: only root can make a Debian in a folder (debootstrap, mount, chroot)" >&2
+    exit 77
+fi
+for program in debootstrap git unshare apt-get; do
+    command -v "$program" >/dev/null || fail "$program is missing: apt-get install debootstrap git"
+done
+# Debian's archive as this machine reaches it, neither its security nor its updates part.
+mirror=$(apt-get indextargets --format '$(ORIGIN)|$(LABEL)|$(CODENAME)|$(REPO_URI)' 'Created-By: Packages' |
+    awk -F'|' '$1 == "Debian" && $2 == "Debian" && $3 ~ /^(bookworm|trixie|sid|forky)$/ { print $4; exit }')
+[ -n "$mirror" ] || fail "the apt sources of this machine name no Debian archive: run apt-get update"
+
+system=$(mktemp -d "${TMPDIR:-/var/tmp}/softfall-$release-XXXXXX")
+trap 'rm -rf --one-file-system "$system"' EXIT
+trap 'exit 130' INT TERM
+debootstrap --variant=minbase --include=ca-certificates,git "$release" "$system" "$mirror" >"$system.log" 2>&1 ||
+    fail "debootstrap failed; its last line: $(tail -n 1 "$system.log"); all of them: $system.log"
+rm -f "$system.log"
+cp /etc/resolv.conf "$system/etc/"
+for file in /etc/apt/apt.conf.d/*; do # how this machine reaches the archive, not its hooks
+    ! grep -qsi 'Acquire::' "$file" || cp "$file" "$system/etc/apt/apt.conf.d/"
+done
+git clone --quiet --no-hardlinks "$root" "$system/softfall"
+[ -z "$(git -C "$root" status --porcelain --untracked-files=no)" ] ||
+    echo "in_debian.sh: changes that are not committed are not in the clone" >&2
+echo "in_debian.sh: $* in a fresh clone ($(git -C "$root" describe --always)) on Debian $release"
+# The mounts live in a name space of their own and are gone when the command ends, however it ends.
+status=0
+# shellcheck disable=SC2016 # $1 and $@ belong to the inner shell
+unshare --mount --propagation private bash -ec '
+    system=$1
+    shift
+    mount -t proc proc "$system/proc"
+    mount --rbind /dev "$system/dev"
+    exec chroot "$system" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
+        bash -c "cd /softfall && exec \"\$@\"" bash "$@"' bash "$system" "$@" </dev/null || status=$?
+if [ -n "$fetch" ] && [ -d "$system/softfall/out" ]; then
+    mkdir -p "$fetch"
+    cp -r "$system/softfall/out/." "$fetch/"
+fi
+exit "$status"
