@@ -3,8 +3,8 @@
 #ifndef SF_TESTS_BODY_FIXTURE_H
 #define SF_TESTS_BODY_FIXTURE_H
 
-#include "pre/mesh.h"
-#include "solver/missile_surface.h"
+#include "pre/mesh/mesh.h"
+#include "solver/contact/missile_surface.h"
 
 /* A surface and the model around it that sf_missile_surface_build reads. */
 typedef struct body {

@@ -3,18 +3,18 @@
 
 #include "cfh/rig.h"
 #include "core/curve.h"
-#include "fit/compression_config.h"
-#include "fit/drop_input.h"
+#include "fit/compression/config.h"
+#include "fit/drop/input.h"
 #include "io/model_io.h"
 #include "post/compare.h"
 #include "post/figures.h"
 #include "post/reference.h"
 #include "post/results.h"
-#include "pre/case.h"
-#include "pre/case_curve.h"
-#include "pre/geo_parameters.h"
-#include "pre/geometry_check.h"
-#include "pre/gmsh_session.h"
+#include "case/case.h"
+#include "case/curve.h"
+#include "pre/mesh/geo_parameters.h"
+#include "pre/mesh/geometry_check.h"
+#include "pre/mesh/gmsh_session.h"
 #include <ftw.h>
 #include <hdf5.h>
 #include <stdio.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model_fixture.h"
 
-#include "pre/gmsh_session.h"
-#include "solver/domain_stress.h"
-#include "solver/internal_force.h"
-#include "solver/stabilisation.h"
+#include "pre/mesh/gmsh_session.h"
+#include "solver/field/domain_stress.h"
+#include "solver/field/internal_force.h"
+#include "solver/field/stabilisation.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>

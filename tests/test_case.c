@@ -2,8 +2,8 @@
 /* Case files: what a good one gives, and the sentence that each fault gets. */
 #include "program_fixture.h"
 
-#include "pre/case.h"
-#include "pre/case_curve.h"
+#include "case/case.h"
+#include "case/curve.h"
 
 #include <math.h>
 #include <setjmp.h>

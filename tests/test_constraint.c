@@ -3,7 +3,7 @@
  * constraints are refused. */
 #include "model_fixture.h"
 
-#include "solver/constraint.h"
+#include "solver/constraint/constraint.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 #include "model_fixture.h"
 
 #include "core/mat3.h"
-#include "solver/contact.h"
+#include "solver/contact/contact.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>

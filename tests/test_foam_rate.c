@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rate-dependent parts of the foam law: Maxwell, Kelvin, DAMP; lanes. */
-#include "solver/foam.h"
+#include "solver/material/foam.h"
 
 #include <math.h>
 #include <setjmp.h>

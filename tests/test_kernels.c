@@ -3,9 +3,9 @@
 #include "foam_fixture.h"
 #include "model_fixture.h"
 
-#include "solver/domain_stress.h"
-#include "solver/internal_force.h"
-#include "solver/stabilisation.h"
+#include "solver/field/domain_stress.h"
+#include "solver/field/internal_force.h"
+#include "solver/field/stabilisation.h"
 #include "solver/time_step.h"
 
 #include <math.h>

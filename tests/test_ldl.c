@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The solution of sparse systems in branches and trunk (solver/ldl.h). */
-#include "solver/ldl.h"
+/* The solution of sparse systems in branches and trunk (solver/constraint/ldl.h). */
+#include "solver/constraint/ldl.h"
 
 #include <math.h>
 #include <setjmp.h>

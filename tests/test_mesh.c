@@ -4,9 +4,9 @@
 #include "program_fixture.h"
 
 #include "core/model.h"
-#include "pre/cell_topology.h"
-#include "pre/gmsh_session.h"
-#include "pre/mesh.h"
+#include "pre/mesh/cell_topology.h"
+#include "pre/mesh/gmsh_session.h"
+#include "pre/mesh/mesh.h"
 
 #include <gmshc.h>
 #include <math.h>

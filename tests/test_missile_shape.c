@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Is the missile a sphere, and where does it touch first? */
-#include "pre/missile_shape.h"
+#include "pre/mesh/missile_shape.h"
 
 #include <math.h>
 #include <setjmp.h>

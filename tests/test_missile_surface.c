@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/missile_surface.h"
+#include "solver/contact/missile_surface.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shape functions and the neighbour grid on random clouds. */
-#include "pre/mls.h"
+#include "pre/cloud/mls.h"
 
-#include "pre/neighbours.h"
+#include "pre/cloud/neighbours.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 #include "model_fixture.h"
 
 #include "core/packed_gradient.h"
-#include "pre/rounding.h"
+#include "pre/cloud/rounding.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,8 +4,8 @@
  * motion, momentum. */
 #include "model_fixture.h"
 
-#include "solver/constraint.h"
-#include "solver/stabilisation.h"
+#include "solver/constraint/constraint.h"
+#include "solver/field/stabilisation.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -5,7 +5,7 @@
 #include "program_fixture.h"
 
 #include "io/model_io.h"
-#include "solver/frame.h"
+#include "solver/run/frame.h"
 #include <hdf5.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -3,8 +3,8 @@
  * its forces are the gradient of its energy. */
 #include "model_fixture.h"
 
-#include "solver/domain_stress.h"
-#include "solver/stabilisation.h"
+#include "solver/field/domain_stress.h"
+#include "solver/field/stabilisation.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -5,7 +5,7 @@
 #include "model_fixture.h"
 #include "study.h"
 
-#include "solver/constraint.h"
+#include "solver/constraint/constraint.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>

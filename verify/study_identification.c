@@ -2,7 +2,7 @@
 /* A synthetic laboratory: compression tests made with hidden parameters by the solver's own foam law, with
  * scatter, go through the identification of softfall-fit compression. It must choose the law that made them,
  * and its intervals must hold the truth as often as they say. */
-#include "fit/compression_fit.h"
+#include "fit/compression/fit.h"
 #include "fit/material_point.h"
 #include "study.h"
 

@@ -6,7 +6,7 @@
 #include "study.h"
 
 #include "fit/column.h"
-#include "fit/drop_parameters.h"
+#include "fit/drop/parameters.h"
 #include "fit/space_mapping.h"
 #include "point_fixture.h"
 #include "post/hic.h"

@@ -6,7 +6,7 @@
 #include "order.h"
 #include "study.h"
 
-#include "solver/constraint.h"
+#include "solver/constraint/constraint.h"
 #include "solver/time_step.h"
 #include <math.h>
 #include <omp.h>

@@ -3,9 +3,9 @@
  * differences of the solver's own forces: estimate, guaranteed bound, leap-frog on both sides of the limit, a
  * whole drop, and the power iteration at a size where nothing can be assembled. */
 #include "model_fixture.h"
-#include "solver/domain_stress.h"
-#include "solver/internal_force.h"
-#include "solver/stabilisation.h"
+#include "solver/field/domain_stress.h"
+#include "solver/field/internal_force.h"
+#include "solver/field/stabilisation.h"
 #include "solver/step.h"
 #include "solver/time_step.h"
 #include "study.h"

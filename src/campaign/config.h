@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "pre/case_source.h"
+#include "case/source.h"
 #include <libconfig.h>
 #include <stdbool.h>
 

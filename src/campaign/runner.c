@@ -2,7 +2,7 @@
 #include "campaign/runner.h"
 
 #include "post/figures.h"
-#include "pre/case.h"
+#include "case/case.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>

@@ -4,7 +4,7 @@
 #include "cfh/plot.h"
 #include "cfh/series.h"
 #include "io/provenance.h"
-#include "pre/case.h"
+#include "case/case.h"
 
 #include <math.h>
 #include <stdlib.h>

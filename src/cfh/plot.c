@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cfh/plot.h"
 
-#include "post/gnuplot.h"
+#include "io/gnuplot.h"
 #include <math.h>
 
 /* Heights (m) of the picture: the successes, the failures not far above them, and a margin. */

@@ -3,7 +3,7 @@
 
 #include "build_info.h"
 #include "cfh/series.h"
-#include "post/json.h"
+#include "io/json.h"
 #include <math.h>
 
 static const char caution[] = "Indicative, not a certification: a computed height from one simulated impact "

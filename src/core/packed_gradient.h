@@ -7,7 +7,7 @@
  *
  * Row l of B begins at byte sf_packed_start(l, domain_ptr[l]). Its takers come first, as plain doubles x, y,
  * z: at most four entries in general position, which softfall-pre corrects for what rounding the others
- * spoils (pre/rounding.h). The others follow in the order of the model. */
+ * spoils (pre/cloud/rounding.h). The others follow in the order of the model. */
 #ifndef SF_CORE_PACKED_GRADIENT_H
 #define SF_CORE_PACKED_GRADIENT_H
 

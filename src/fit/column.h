@@ -12,7 +12,7 @@
 
 #include "post/results.h"
 #include "post/signal.h"
-#include "solver/foam.h"
+#include "solver/material/foam.h"
 
 enum { SF_COLUMNS = 48 };
 
@@ -42,7 +42,7 @@ typedef struct sf_uniaxial {
 } sf_uniaxial;
 
 /* Advances the point to `strain` over dt (s); returns the nominal stress (Pa), compression positive. The law
- * of solver/foam.h without DAMP. */
+ * of solver/material/foam.h without DAMP. */
 double sf_uniaxial_advance(const sf_foam *foam, double dt, double strain, sf_uniaxial *point);
 
 #endif

@@ -2,8 +2,8 @@
 /* softfall-fit WORD ...: material parameters from measurements. The first word chooses what is measured. */
 #include "build_info.h"
 #include "core/error.h"
-#include "fit/compression_command.h"
-#include "fit/drop_command.h"
+#include "fit/compression/command.h"
+#include "fit/drop/command.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A material point of the solver's own foam law (solver/foam.h) in uniaxial compression: what a written card
+/* A material point of the solver's own foam law (solver/material/foam.h) in uniaxial compression: what a written card
  * gives in the test that it was fitted to. */
 #ifndef SF_FIT_MATERIAL_POINT_H
 #define SF_FIT_MATERIAL_POINT_H
 
-#include "solver/foam.h"
+#include "solver/material/foam.h"
 
 /* Takes the point through `strain` [count] (from rest, in order) at the nominal rate (s-1), in steps of at
  * most `step` strain; `stress` [count] receives the compressive nominal stress (Pa). */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/plot.h"
 
-#include "post/gnuplot.h"
+#include "io/gnuplot.h"
 #include <math.h>
 
 /* Time axis (ms): the run, and of a longer measured curve at most a bit more. */

@@ -2,7 +2,7 @@
 #include "post/summary.h"
 
 #include "build_info.h"
-#include "post/json.h"
+#include "io/json.h"
 #include <math.h>
 #include <string.h>
 

@@ -2,11 +2,11 @@
 #include "pre/build.h"
 
 #include "core/stability.h"
-#include "pre/cloud.h"
-#include "pre/domains.h"
+#include "pre/cloud/cloud.h"
+#include "pre/cloud/domains.h"
 #include "pre/drop_check.h"
-#include "pre/dual.h"
-#include "pre/missile_shape.h"
+#include "pre/cloud/dual.h"
+#include "pre/mesh/missile_shape.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

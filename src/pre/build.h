@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "core/model.h"
-#include "pre/case.h"
-#include "pre/invariants.h"
-#include "pre/mesh.h"
+#include "case/case.h"
+#include "pre/cloud/invariants.h"
+#include "pre/mesh/mesh.h"
 
 /* What the building found out, for the table that softfall-pre prints. */
 typedef struct sf_build_report {

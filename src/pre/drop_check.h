@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "core/model.h"
-#include "pre/case.h"
-#include "pre/mesh.h"
+#include "case/case.h"
+#include "pre/mesh/mesh.h"
 
 /* SF_ERR_INPUT, naming the key, the value and the bound: the pad's thickness is not one of a pad; the
  * missile's share in the model is lighter than a node; it is not symmetric to a symmetry plane, or cut open

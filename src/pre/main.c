@@ -3,8 +3,8 @@
 #include "build_info.h"
 #include "io/model_io.h"
 #include "pre/build.h"
-#include "pre/case.h"
-#include "pre/gmsh_session.h"
+#include "case/case.h"
+#include "pre/mesh/gmsh_session.h"
 #include "pre/report.h"
 
 #include <argp.h>

@@ -3,7 +3,7 @@
 #include "build_info.h"
 #include "core/units.h"
 #include "io/model_io.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 #include <argp.h>
 #include <limits.h>

@@ -5,13 +5,13 @@
 
 #include "core/error.h"
 #include "core/model.h"
-#include "solver/constraint.h"
-#include "solver/contact_gram.h"
-#include "solver/foam.h"
-#include "solver/gradient.h"
-#include "solver/halo.h"
-#include "solver/missile_surface.h"
-#include "solver/pairs.h"
+#include "solver/constraint/constraint.h"
+#include "solver/contact/contact_gram.h"
+#include "solver/material/foam.h"
+#include "solver/field/gradient.h"
+#include "solver/field/halo.h"
+#include "solver/contact/missile_surface.h"
+#include "solver/field/pairs.h"
 
 typedef struct sf_operators {
     sf_foam foam;

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/model.h"
-#include "solver/foam.h"
+#include "solver/material/foam.h"
 #include "solver/stopwatch.h"
 #include <stddef.h>
 

@@ -4,11 +4,11 @@
 #include "core/lanes.h"
 #include "core/motion.h"
 #include "core/threads.h"
-#include "solver/contact.h"
-#include "solver/domain_stress.h"
-#include "solver/internal_force.h"
+#include "solver/contact/contact.h"
+#include "solver/field/domain_stress.h"
+#include "solver/field/internal_force.h"
 #include "solver/ledger.h"
-#include "solver/stabilisation.h"
+#include "solver/field/stabilisation.h"
 #include "solver/time_step.h"
 #include <math.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 
 #include "calculix/ogden.h"
 #include "core/error.h"
-#include "pre/mesh.h"
+#include "pre/mesh/mesh.h"
 
 #include <stdbool.h>
 

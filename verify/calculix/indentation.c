@@ -4,8 +4,8 @@
 #include "calculix/ccx.h"
 #include "drop.h"
 #include "post/results.h"
-#include "pre/case.h"
-#include "pre/gmsh_session.h"
+#include "case/case.h"
+#include "pre/mesh/gmsh_session.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

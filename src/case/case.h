@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The case file: libconfig syntax, every dimensional value a string with its unit ("4.6 kg"), read with
+ * UDUNITS-2. Groups geometry, pad, material, missile, kernel, solver, output; docs/case.md lists the keys. */
+#ifndef SF_CASE_CASE_H
+#define SF_CASE_CASE_H
+
+#include "core/error.h"
+#include "core/model.h"
+#include <stdio.h>
+
+enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
+
+enum {
+    SF_CASE_NAME_SIZE = 128,
+    SF_CASE_MAX_GROUPS = 16,
+    SF_CASE_MAX_PARAMETERS = 64,
+    SF_CASE_MAX_TIMES = 256
+};
+
+/* A variable of a .geo file set by the case; plain numbers, in the geometry's own length unit. */
+typedef struct sf_geo_parameter {
+    char name[SF_CASE_NAME_SIZE];
+    double value;
+} sf_geo_parameter;
+
+/* A geometry file and what to set in it. `path` is resolved against the case file's folder; owned by the
+ * case. */
+typedef struct sf_geo_source {
+    char *path; /* NULL: the missile is in the pad's file */
+    int parameter_count;
+    sf_geo_parameter parameter[SF_CASE_MAX_PARAMETERS];
+} sf_geo_source;
+
+typedef struct sf_case {
+    char *path;       /* as given */
+    char *text;       /* the case file with its includes in place, --set lines appended as comments; owned */
+    char *parameters; /* one line per key that exists: name, value, SI value, given|default; owned */
+    sf_geo_source pad;
+    sf_geo_source missile;
+    double length_unit;                    /* m per unit of the geometry */
+    char pad_group[SF_CASE_NAME_SIZE];     /* physical volume group of the pad */
+    char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */
+    int fixed_count;                       /* physical surface groups held in all components */
+    char fixed_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    int sliding_count; /* plane physical surface groups held along their normal */
+    char sliding_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    int symmetry_count; /* physical surface groups that are symmetry planes; planes absent from the geometry
+                           are allowed only if the key was not given */
+    bool symmetry_given;
+    char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
+    int shape_rule;               /* 0 "auto": sphere if the surface is one, 1 "sphere", 2 "surface" */
+    int densification_rule;       /* SF_DENSIFICATION_*; its numbers are in `foam` */
+    double support_ratio;         /* R/h */
+    double condition_limit;       /* of the moment matrix */
+    sf_foam_card foam;            /* curve arrays owned by the case until moved into a model */
+    sf_missile_card missile_card; /* sphere_* are left zero: they come from the geometry */
+    int64_t motion_count;         /* points of the missile's prescribed motion; 0 = it is free */
+    double *motion_time;          /* [motion_count] s; owned until moved into a model, like the next */
+    double *motion_displacement;  /* [motion_count] m, along the direction */
+    sf_run_options run;
+    int frame_time_count;                 /* further frames, beside run.frame_interval */
+    double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */
+} sf_case;
+
+/* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in
+ * libconfig syntax or bare text, which is taken as a string). Refuses unknown groups and keys (naming file,
+ * line and what exists), missing keys, wrong types, units of another dimension and values out of bounds.
+ * Paths are relative to the file that holds the key (the case, or what it includes); @include is relative to
+ * the case file's folder. Warnings and notes go to stderr. On failure `*out` is zeroed. */
+sf_status sf_case_read(const char *path, int count, const char *const *overrides, sf_case *out,
+                       sf_error *err);
+void sf_case_free(sf_case *c);
+
+/* Writes the table of all keys (value, bounds, default, meaning) as Markdown: `softfall-pre --keys`,
+ * docs/case.md. */
+void sf_case_print_keys(FILE *file);
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A compression curve from a CSV file: lines that begin with '#' are comments; a header names the columns
+ * `strain` or `strain_percent` and `stress_Pa`, `stress_kPa` or `stress_MPa` (others are ignored); then one
+ * point per line. Engineering strain and nominal stress, positive in compression. */
+#ifndef SF_CASE_CURVE_H
+#define SF_CASE_CURVE_H
+
+#include "core/error.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { SF_CURVE_MIN_POINTS = 4 };
+#define SF_CURVE_MIN_END 0.2 /* a table that stops earlier says nothing of a foam that is hit */
+
+typedef struct sf_case_curve {
+    int64_t count;
+    double *strain; /* [count] -, strictly increasing from 0, below 1; owned */
+    double *stress; /* [count] Pa, from 0, non-decreasing, finite; owned */
+    bool extended;  /* the file began above zero strain and (0, 0) was put before it */
+} sf_case_curve;
+
+/* Reads and checks a curve; SF_ERR_INPUT names file, line and value. On failure `*curve` is zeroed. */
+sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err);
+void sf_case_curve_free(sf_case_curve *curve);
+
+#endif

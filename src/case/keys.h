@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table of the case file's keys, and what the files of src/case share. Internal to src/case.
+ *
+ * One row per key drives reading, checking, the list of unknown keys, the used-parameters listing, `--keys`
+ * and docs/case.md. Defaults are texts in libconfig syntax and pass through the same reader as given values.
+ */
+#ifndef SF_CASE_KEYS_H
+#define SF_CASE_KEYS_H
+
+#include "core/units.h"
+#include "case/case.h"
+#include "case/source.h"
+#include <libconfig.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/* How a value is written in the case, and what stands at the key's offset in sf_case. */
+typedef enum sf_key_kind {
+    SF_KEY_QUANTITY,   /* "4.6 kg" or the word `words`: double, SI (the word's value is `word_value`) */
+    SF_KEY_UNIT,       /* "mm": double, m per unit */
+    SF_KEY_NUMBER,     /* 0.9: double */
+    SF_KEY_BOOL,       /* true: int64_t */
+    SF_KEY_NAME,       /* "pad": char[SF_CASE_NAME_SIZE] */
+    SF_KEY_NAMES,      /* ["base"]: char[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE], int at count_offset */
+    SF_KEY_CHOICE,     /* one of `words` ("a|b"): int, its index */
+    SF_KEY_FIELDS,     /* list of `words`: int64_t, bit k for word k */
+    SF_KEY_TIMES,      /* ["12 ms", "20 ms"]: double[SF_CASE_MAX_TIMES] ascending, s; int at count_offset */
+    SF_KEY_VECTOR,     /* [0.0, 0.0, -1.0]: double[3] */
+    SF_KEY_PATH,       /* "file": char *, relative to the file that holds the key; must be readable */
+    SF_KEY_PARAMETERS, /* { side = 400.0; }: sf_geo_source */
+    SF_KEY_CURVE,      /* "curve.csv": the foam card's curve arrays */
+    SF_KEY_MOTION,     /* "motion.csv": the motion arrays */
+    SF_KEY_CURVES,     /* ( { rate = "1 1/s"; file = "curve.csv"; }, ... ): likewise */
+} sf_key_kind;
+
+typedef struct sf_key {
+    const char *group; /* "missile", or "material.densification" */
+    const char *name;
+    sf_key_kind kind;
+    const char *fallback;    /* default in libconfig syntax; NULL: required; "": may be absent */
+    size_t offset;           /* in sf_case */
+    const char *description; /* one phrase */
+    sf_quantity quantity;    /* SF_KEY_QUANTITY */
+    double low, high;        /* bounds in SI, inclusive; high 0 = none */
+    bool low_open;           /* the lower bound itself is refused */
+    const char *words;       /* see sf_key_kind; NULL = none */
+    double word_value;
+    size_t count_offset; /* SF_KEY_NAMES, SF_KEY_TIMES */
+} sf_key;
+
+enum { SF_KEY_MAX = 64 };
+
+const sf_key *sf_case_keys(size_t *count);
+/* The row of group.name; NULL if there is none. */
+const sf_key *sf_case_find_key(const char *group, const char *name);
+/* True if `group` is, or begins, the group of some key. */
+bool sf_case_is_group(const char *group);
+/* Writes "name, name, ..." of the keys and sub-groups of a group ("" = the groups). */
+void sf_case_list_names(const char *group, char *out, size_t size);
+/* The existing name nearest to `name` within two edits; NULL if none is near. */
+const char *sf_case_near_name(const char *group, const char *name, char *out, size_t size);
+
+/* What the readers need beside the table. */
+typedef struct sf_case_reader {
+    const char *path; /* of the case file, as given */
+    sf_units *units;
+    sf_case *out;
+    config_t config;
+    sf_case_source source;  /* of the settings without a hook */
+    bool given[SF_KEY_MAX]; /* per row of the table */
+    FILE *listing;          /* the parameters text under construction */
+} sf_case_reader;
+
+enum { SF_CASE_WHERE_SIZE = 512 };
+
+/* The hook of a setting that does not stand in the case file: line 0: `text` is the --set text that put it
+ * there; else the path of the file, given with "group=@file", and the line that holds it. */
+typedef struct sf_case_origin {
+    unsigned line;
+    char text[];
+} sf_case_origin;
+
+/* "file:line", or "--set key=value" for a setting that came from the command line. */
+const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out);
+/* Resolves `path` against the folder of the file in which `setting` stands; from malloc. */
+char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
+                      sf_error *err);
+/* Writes a setting's value in libconfig syntax on one line. */
+void sf_case_print_setting(FILE *file, const config_setting_t *setting);
+/* Reads one setting into the case. `detail` receives the SI value for the listing. */
+sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
+                             char *detail, size_t size, sf_error *err);
+/* The readers of SF_KEY_CURVE and SF_KEY_CURVES. */
+sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
+                              size_t size, sf_error *err);
+/* The reader of SF_KEY_MOTION, and the rules that join the motion with mass, velocity, gravity and end time.
+ */
+sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *setting, char *detail,
+                              size_t size, sf_error *err);
+sf_status sf_case_check_motion(const sf_case_reader *reader, sf_error *err);
+/* True if the case gives the key. */
+bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name);
+/* Records that the key is missing. */
+sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
+/* Location of a key "group.name", or of its group, or of the file: whatever is there. */
+const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
+/* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
+const char *sf_case_override_file(const char *text);
+/* Puts one --set text into the configuration, whose destructor must be free(). */
+sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
+#endif

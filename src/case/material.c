@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The keys material.curve and material.curves: compression curves into the foam card. */
+#include "case/keys.h"
+
+#include "case/curve.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Appends a curve to the card's lists. */
+static sf_status add_curve(sf_foam_card *foam, double rate, const sf_case_curve *curve, sf_error *err) {
+    size_t curves = (size_t)foam->curve_count, points = (size_t)foam->curve_points,
+           more = (size_t)curve->count;
+    double *rates = sf_alloc(err, curves + 1, sizeof *rates, "curve rates");
+    int64_t *ptr = sf_alloc(err, curves + 2, sizeof *ptr, "curve list");
+    double *strain = sf_alloc(err, points + more, sizeof *strain, "curve strains");
+    double *stress = sf_alloc(err, points + more, sizeof *stress, "curve stresses");
+    if (!rates || !ptr || !strain || !stress) {
+        free(rates);
+        free(ptr);
+        free(strain);
+        free(stress);
+        return err->status;
+    }
+    if (curves > 0) {
+        memcpy(rates, foam->curve_rate, curves * sizeof *rates);
+        memcpy(ptr, foam->curve_ptr, (curves + 1) * sizeof *ptr);
+        memcpy(strain, foam->curve_strain, points * sizeof *strain);
+        memcpy(stress, foam->curve_stress, points * sizeof *stress);
+        free(foam->curve_rate);
+        free(foam->curve_ptr);
+        free(foam->curve_strain);
+        free(foam->curve_stress);
+    }
+    memcpy(strain + points, curve->strain, more * sizeof *strain);
+    memcpy(stress + points, curve->stress, more * sizeof *stress);
+    rates[curves] = rate;
+    ptr[curves + 1] = (int64_t)(points + more);
+    foam->curve_rate = rates;
+    foam->curve_ptr = ptr;
+    foam->curve_strain = strain;
+    foam->curve_stress = stress;
+    foam->curve_count++;
+    foam->curve_points += curve->count;
+    return SF_OK;
+}
+
+static sf_status read_file(sf_case_reader *reader, const config_setting_t *setting, double rate,
+                           sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const char *text = config_setting_get_string(setting);
+    if (!text || !*text)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: material: the name of a curve's CSV file is expected",
+                       sf_case_where(reader, setting, where));
+    char *path = sf_case_resolve(reader, setting, text, err);
+    if (!path)
+        return err->status;
+    sf_case_curve curve = {0};
+    sf_error inner = SF_ERROR_INIT;
+    sf_status status = sf_case_curve_read(path, &curve, &inner);
+    if (status != SF_OK) {
+        SF_FAIL(err, status, "%s (named at %s)", inner.text, sf_case_where(reader, setting, where));
+    } else {
+        if (curve.extended)
+            fprintf(stderr,
+                    "softfall-pre: note: %s begins at strain %g; the point (0, 0) was put before it\n", path,
+                    curve.strain[1]);
+        status = add_curve(&reader->out->foam, rate, &curve, err);
+    }
+    sf_case_curve_free(&curve);
+    free(path);
+    return status;
+}
+
+/* One { rate = "..."; file = "..."; } of material.curves. */
+static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_foam_card *foam = &reader->out->foam;
+    const config_setting_t *rate =
+        config_setting_is_group(entry) ? config_setting_get_member(entry, "rate") : NULL;
+    const config_setting_t *file =
+        config_setting_is_group(entry) ? config_setting_get_member(entry, "file") : NULL;
+    if (!rate || !file || config_setting_length(entry) != 2)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: material.curves: each entry must be { rate = \"0.0017 1/s\"; file = \"name.csv\"; }",
+            sf_case_where(reader, entry, where));
+    const char *text = config_setting_get_string(rate);
+    sf_error inner = SF_ERROR_INIT;
+    double value = 0.0;
+    if (!text)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: material.curves: the rate must be a text such as \"0.0017 1/s\"",
+                       sf_case_where(reader, rate, where));
+    if (sf_units_parse(reader->units, text, SF_RATE, &value, &inner) != SF_OK)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: material.curves: %s", sf_case_where(reader, rate, where),
+                       inner.text);
+    double last = foam->curve_count > 0 ? foam->curve_rate[foam->curve_count - 1] : 0.0;
+    if (!(value > last))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: material.curves: the rate %g s-1 is not above %g s-1 before it; rates must be positive "
+            "and ascend",
+            sf_case_where(reader, rate, where), value, last);
+    return read_file(reader, file, value, err);
+}
+
+static void describe(const sf_foam_card *foam, char *detail, size_t size) {
+    snprintf(detail, size, "%lld point%s, strain to %g", (long long)foam->curve_points,
+             foam->curve_points == 1 ? "" : "s", foam->curve_strain[foam->curve_points - 1]);
+}
+
+sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
+                              size_t size, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    if (reader->out->foam.curve_count > 0)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: material has both curve and curves; only one of them may be given",
+                       sf_case_where(reader, setting, where));
+    if (strcmp(config_setting_name(setting), "curve") == 0) {
+        if (read_file(reader, setting, 0.0, err) != SF_OK)
+            return err->status;
+    } else {
+        if (!config_setting_is_list(setting) || config_setting_length(setting) == 0)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s: material.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
+                sf_case_where(reader, setting, where));
+        for (int i = 0; i < config_setting_length(setting); i++)
+            if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), err) != SF_OK)
+                return err->status;
+    }
+    describe(&reader->out->foam, detail, size);
+    return SF_OK;
+}

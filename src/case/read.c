@@ -1,0 +1,383 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads a case: file, overrides, unknown keys, every row of the table, then the rules that join several keys.
+ */
+#include "case/keys.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { GROUP_SIZE = 160, LEAST_STEPS = 3, MOST_FRAMES = 100000 };
+
+const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out) {
+    const sf_case_origin *origin = setting ? config_setting_get_hook(setting) : NULL;
+    int line = setting ? (int)config_setting_source_line(setting) : 0;
+    if (origin && origin->line == 0) {
+        snprintf(out, SF_CASE_WHERE_SIZE, "--set %s", origin->text);
+    } else if (origin) {
+        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%u", origin->text, origin->line);
+    } else if (line > 0) {
+        const char *path = sf_case_source_find(&reader->source, line, &line);
+        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%d", path, line);
+    } else {
+        snprintf(out, SF_CASE_WHERE_SIZE, "%s", reader->path);
+    }
+    return out;
+}
+
+char *sf_case_folder_of(const char *path, sf_error *err) {
+    const char *slash = strrchr(path, '/');
+    char *folder = !slash ? strdup(".") : slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
+    if (!folder)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    return folder;
+}
+
+char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
+                      sf_error *err) {
+    char *out = NULL;
+    const sf_case_origin *origin = config_setting_get_hook(setting);
+    int line = (int)config_setting_source_line(setting);
+    const char *file = origin && origin->line > 0 ? origin->text
+                       : !origin && line > 0      ? sf_case_source_find(&reader->source, line, &line)
+                                                  : reader->path;
+    char *folder = sf_case_folder_of(file, err);
+    if (folder && *path == '/')
+        out = strdup(path);
+    else if (folder && asprintf(&out, "%s/%s", folder, path) < 0)
+        out = NULL;
+    free(folder);
+    if (!out)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    return out;
+}
+
+static sf_status unknown_name(const sf_case_reader *reader, const config_setting_t *setting,
+                              const char *group, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE], names[400], near[64];
+    const char *name = config_setting_name(setting);
+    sf_case_list_names(group, names, sizeof names);
+    const char *hint = sf_case_near_name(group, name, near, sizeof near);
+    char meant[96] = "";
+    if (hint)
+        snprintf(meant, sizeof meant, " (did you mean \"%s\"?)", hint);
+    sf_case_where(reader, setting, where);
+    if (*group)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown key \"%.80s\" in group %s%s; its keys are %s", where,
+                       name, group, meant, names);
+    return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown group \"%.80s\"%s; the groups are %s", where, name, meant,
+                   names);
+}
+
+/* Refuses everything in `setting` (the group called `group`, "" for the file) that the table does not know.
+ */
+static sf_status check_names(const sf_case_reader *reader, const config_setting_t *setting, const char *group,
+                             sf_error *err) {
+    for (int i = 0; i < config_setting_length(setting); i++) {
+        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
+        const char *name = config_setting_name(item);
+        char inner[GROUP_SIZE];
+        int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
+        if (sf_case_find_key(group, name))
+            continue;
+        if (length >= (int)sizeof inner || !sf_case_is_group(inner))
+            return unknown_name(reader, item, group, err);
+        if (!config_setting_is_group(item)) {
+            char where[SF_CASE_WHERE_SIZE];
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s must be a group: %s: { ... }",
+                           sf_case_where(reader, item, where), inner, name);
+        }
+        if (check_names(reader, item, inner, err) != SF_OK)
+            return err->status;
+    }
+    return SF_OK;
+}
+
+static void list_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
+                       const char *detail, const char *origin) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *value = open_memstream(&text, &size);
+    if (!value)
+        return;
+    if (setting)
+        sf_case_print_setting(value, setting);
+    else
+        fputs("(absent)", value);
+    fclose(value);
+    char name[GROUP_SIZE];
+    snprintf(name, sizeof name, "%s.%s", key->group, key->name);
+    fprintf(reader->listing, "%-34s %-24s %-24s %s\n", name, text ? text : "", detail, origin);
+    free(text);
+}
+
+static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_error *err) {
+    config_t scratch;
+    char line[512], detail[128] = "-";
+    snprintf(line, sizeof line, "%s = %s;", key->name, key->fallback);
+    config_init(&scratch);
+    sf_status status = SF_OK;
+    if (!config_read_string(&scratch, line))
+        status =
+            SF_FAIL(err, SF_ERR_INPUT, "the default of %s.%s is not valid: %s", key->group, key->name, line);
+    else
+        status = sf_case_read_value(reader, key, config_setting_get_elem(scratch.root, 0), detail,
+                                    sizeof detail, err);
+    if (status == SF_OK)
+        list_value(reader, key, config_setting_get_elem(scratch.root, 0), detail, "default");
+    config_destroy(&scratch);
+    return status;
+}
+
+sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const config_setting_t *group = config_lookup(&reader->config, key->group);
+    sf_case_where(reader, group, where);
+    const char *absent = group ? "" : " (there is no such group)";
+    if (key->kind == SF_KEY_QUANTITY)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is missing%s: %s, for example %s = \"%s\"", where,
+                       key->group, key->name, absent, key->description, key->name,
+                       sf_quantity_example(key->quantity));
+    return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is missing%s: %s", where, key->group, key->name, absent,
+                   key->description);
+}
+
+static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
+    size_t count;
+    const sf_key *keys = sf_case_keys(&count);
+    for (size_t k = 0; k < count; k++) {
+        const sf_key *key = &keys[k];
+        const config_setting_t *group = config_lookup(&reader->config, key->group);
+        const config_setting_t *setting = group ? config_setting_get_member(group, key->name) : NULL;
+        char detail[128] = "-";
+        reader->given[k] = setting != NULL;
+        if (setting) {
+            if (sf_case_read_value(reader, key, setting, detail, sizeof detail, err) != SF_OK)
+                return err->status;
+            list_value(reader, key, setting, detail, "given");
+        } else if (!key->fallback) {
+            return sf_case_missing_key(reader, key, err);
+        } else if (*key->fallback == '\0') {
+            list_value(reader, key, NULL, detail, "default");
+        } else if (read_default(reader, key, err) != SF_OK) {
+            return err->status;
+        }
+    }
+    return SF_OK;
+}
+
+bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name) {
+    size_t count;
+    const sf_key *keys = sf_case_keys(&count);
+    return reader->given[sf_case_find_key(group, name) - keys];
+}
+
+const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out) {
+    char text[GROUP_SIZE];
+    snprintf(text, sizeof text, "%s", path);
+    const config_setting_t *setting = config_lookup(&reader->config, text);
+    for (char *dot = strrchr(text, '.'); !setting && dot; dot = strrchr(text, '.')) {
+        *dot = '\0';
+        setting = config_lookup(&reader->config, text);
+    }
+    return sf_case_where(reader, setting, out);
+}
+
+static sf_status check_densification(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    const sf_foam_card *foam = &c->foam;
+    double end = 1.0; /* the law takes over from every curve, so the shortest table bounds it */
+    double largest = 0.0;
+    for (int64_t k = 0; k < foam->curve_count; k++) {
+        end = fmin(end, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
+        largest = fmax(largest, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
+    }
+    if (foam->densification_start > end)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: material.densification.start: %g lies beyond the end of the compression table (%g)",
+            sf_case_where_is(reader, "material.densification.start", where), foam->densification_start, end);
+    if (c->densification_rule == SF_DENSIFICATION_H1) {
+        if (foam->densification_limit != 1.0)
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: material.densification.limit: %g belongs to rule H2; the limit of H1 is 1",
+                           sf_case_where_is(reader, "material.densification.limit", where),
+                           foam->densification_limit);
+        return SF_OK;
+    }
+    static const char *const needed[] = {"limit", "exponent"};
+    for (int i = 0; i < 2; i++)
+        if (!sf_case_is_given(reader, "material.densification", needed[i]))
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: material.densification.%s is missing: rule H2 needs it",
+                           sf_case_where_is(reader, "material.densification", where), needed[i]);
+    if (!(foam->densification_exponent > 0.0))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: material.densification.exponent: rule H2 needs one above 0",
+                       sf_case_where_is(reader, "material.densification.exponent", where));
+    double start = foam->densification_start > 0.0 ? foam->densification_start : largest;
+    if (foam->densification_limit <= start)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: material.densification.limit: %g is not above the strain %g at which the law starts",
+            sf_case_where_is(reader, "material.densification.limit", where), foam->densification_limit,
+            start);
+    return SF_OK;
+}
+
+static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    double *d = reader->out->missile_card.direction;
+    double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    if (!(length > 0.0) || !(d[2] < 0.0) || !isfinite(length))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: missile.direction: [%g, %g, %g] does not point down to the pad; its third component "
+            "must be negative",
+            sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
+    for (int i = 0; i < 3; i++)
+        d[i] /= length;
+    return SF_OK;
+}
+
+/* The free missile falls while it travels along its direction. */
+static sf_status check_reach(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    const sf_missile_card *card = &c->missile_card;
+    double time = c->run.end_time, reach = 0;
+    for (int64_t k = 0; k < c->motion_count; k++)
+        reach = fmax(reach, c->motion_displacement[k]);
+    if (c->motion_count == 0)
+        reach = card->speed * time - 0.5 * card->gravity * card->direction[2] * time * time;
+    if (reach > card->gap)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "%s: missile.gap: the missile travels %g m until solver.end_time (%g s) and never reaches the "
+        "pad, which is %g m away",
+        sf_case_where_is(reader, "missile.gap", where), reach, time, card->gap);
+}
+
+/* A curve needs 3 rows of the history, one per step; frames are files' worth of fields. */
+static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    const sf_run_options *run = &c->run;
+    if (run->end_time < LEAST_STEPS * run->step_limit)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: solver.end_time: %g s is less than %d times solver.step_limit (%g s): there would "
+            "be no curve",
+            sf_case_where_is(reader, "solver.end_time", where), run->end_time, LEAST_STEPS, run->step_limit);
+    if (run->end_time / run->frame_interval > MOST_FRAMES)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: output.frame_interval: %g s up to solver.end_time (%g s) means %.3g frames; at most "
+            "%d are written",
+            sf_case_where_is(reader, "output.frame_interval", where), run->frame_interval, run->end_time,
+            run->end_time / run->frame_interval, MOST_FRAMES);
+    for (int k = 0; k < c->frame_time_count; k++)
+        if (c->frame_time[k] > run->end_time)
+            fprintf(stderr,
+                    "softfall-pre: warning: %s: output.times: %g s lies beyond solver.end_time (%g s): there "
+                    "will be no such frame\n",
+                    sf_case_where_is(reader, "output.times", where), c->frame_time[k], run->end_time);
+    return SF_OK;
+}
+
+/* Rules that join several keys. */
+static sf_status check_case(sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    sf_case *c = reader->out;
+    c->symmetry_given = sf_case_is_given(reader, "pad", "symmetry");
+    if (c->foam.curve_count == 0)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: material.curve is missing: the compression curve's CSV file (or curves: several of them)",
+            sf_case_where_is(reader, "material", where));
+    if (sf_case_is_given(reader, "material", "ED") && c->foam.maxwell_modulus > 0.0 &&
+        !sf_case_is_given(reader, "material", "BETA1"))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for example "
+            "BETA1 = \"5000 1/s\"",
+            sf_case_where_is(reader, "material.ED", where));
+    if (!c->missile.path && c->missile.parameter_count > 0)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: geometry.missile_parameters are given but no geometry.missile_file that they belong to",
+            sf_case_where_is(reader, "geometry.missile_parameters", where));
+    if (c->fixed_count + c->sliding_count == 0)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
+                       sf_case_where_is(reader, "pad.fixed", where));
+    if (check_densification(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
+        sf_case_check_motion(reader, err) != SF_OK || check_times(reader, err) != SF_OK ||
+        check_reach(reader, err) != SF_OK)
+        return err->status;
+    if (c->support_ratio >= 2.0)
+        fprintf(
+            stderr,
+            "softfall-pre: warning: %s: kernel.support_ratio = %g: from 2 on the constraint matrix is nearly "
+            "singular\n",
+            sf_case_where_is(reader, "kernel.support_ratio", where), c->support_ratio);
+    return SF_OK;
+}
+
+static sf_status parse_text(sf_case_reader *reader, int count, const char *const *overrides, sf_error *err) {
+    config_t *config = &reader->config;
+    if (!config_read_string(config, reader->out->text)) {
+        int line = 0;
+        const char *path = sf_case_source_find(&reader->source, config_error_line(config), &line);
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line, config_error_text(config));
+    }
+    for (int i = 0; i < count; i++)
+        if (sf_case_override(config, overrides[i], err) != SF_OK)
+            return err->status;
+    return check_names(reader, config_root_setting(config), "", err);
+}
+
+sf_status sf_case_read(const char *path, int count, const char *const *overrides, sf_case *out,
+                       sf_error *err) {
+    memset(out, 0, sizeof *out);
+    sf_case_reader reader = {.path = path, .out = out};
+    size_t listing_size = 0;
+    config_init(&reader.config);
+    config_set_destructor(&reader.config, free); /* of the hooks */
+    if (sf_units_open(&reader.units, err) != SF_OK)
+        goto done;
+    reader.listing = open_memstream(&out->parameters, &listing_size);
+    out->path = strdup(path);
+    if (!reader.listing || !out->path) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case %s", path);
+        goto done;
+    }
+    out->text = sf_case_load_text(path, count, overrides, &reader.source, err);
+    if (!out->text || parse_text(&reader, count, overrides, err) != SF_OK || read_keys(&reader, err) != SF_OK)
+        goto done;
+    check_case(&reader, err);
+done:
+    if (reader.listing)
+        fclose(reader.listing);
+    sf_units_close(&reader.units);
+    config_destroy(&reader.config);
+    sf_case_source_free(&reader.source);
+    if (err->status != SF_OK)
+        sf_case_free(out);
+    return err->status;
+}
+
+void sf_case_free(sf_case *c) {
+    free(c->path);
+    free(c->text);
+    free(c->parameters);
+    free(c->pad.path);
+    free(c->missile.path);
+    free(c->foam.curve_rate);
+    free(c->foam.curve_ptr);
+    free(c->foam.curve_strain);
+    free(c->foam.curve_stress);
+    free(c->motion_time);
+    free(c->motion_displacement);
+    memset(c, 0, sizeof *c);
+}

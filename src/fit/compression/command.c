@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/compression/command.h"
+
+#include "campaign/runner.h"
+#include "fit/compression/output.h"
+
+#include <argp.h>
+#include <stdio.h>
+
+enum { KEY_FORCE = 256, KEY_SIMULATE, KEY_FRICTION };
+
+typedef struct options {
+    const char *path;
+    const char *directory;
+    bool force;
+    sf_cube_options cube;
+} options;
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+    options *o = state->input;
+    switch (key) {
+    case 'o':
+        o->directory = text;
+        break;
+    case KEY_FORCE:
+        o->force = true;
+        break;
+    case KEY_SIMULATE:
+        o->cube.case_path = text;
+        break;
+    case KEY_FRICTION:
+        o->cube.friction = text;
+        break;
+    case ARGP_KEY_ARG:
+        if (o->path)
+            argp_error(state, "one file is expected, found \"%s\" as well", text);
+        o->path = text;
+        break;
+    case ARGP_KEY_END:
+        if (!o->path || !o->directory)
+            argp_error(state, "give the file that names the tests, and the output directory with -o");
+        if (o->cube.friction && !o->cube.case_path)
+            argp_error(state, "--friction needs --simulate");
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static sf_status parse_command(int argc, char **argv, options *o, sf_error *err) {
+    static char name[] = "softfall-fit compression";
+    static const struct argp_option known[] = {
+        {"output", 'o', "DIR", 0, "write everything there (required)", 0},
+        {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier fit in DIR", 0},
+        {"simulate", KEY_SIMULATE, "CASE", 0,
+         "press a cube of the fitted material between platens too, as CASE says "
+         "(examples/compression/case.cfg), and "
+         "compare it with the material point",
+         1},
+        {"friction", KEY_FRICTION, "MU", 0, "of the upper platen in --simulate (default: that of CASE)", 1},
+        {0},
+    };
+    const struct argp parser = {
+        .options = known,
+        .parser = parse_option,
+        .args_doc = "FIT.cfg -o DIR",
+        .doc = "A material file from compression tests of a foam.\v"
+               "Writes material.cfg with its curves, report.md, fit.json, fit.png (and .gp), fit.csv and "
+               "loading_curve.csv. docs/identification.md explains FIT.cfg and the report.",
+    };
+    argv[0] = name;
+    if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "the command line cannot be read");
+    return SF_OK;
+}
+
+static sf_status run(const options *o, sf_error *err) {
+    sf_compression_config config = {0};
+    sf_compression_fit fit = {0};
+    if (sf_compression_config_read(o->path, &config, err) == SF_OK &&
+        sf_compression_fit_run(&config, &fit, err) == SF_OK)
+        sf_compression_output(&fit, o->path, o->directory, o->force, &o->cube, err);
+    sf_compression_fit_free(&fit);
+    sf_compression_config_free(&config);
+    return err->status;
+}
+
+int sf_fit_compression_main(int argc, char **argv) {
+    options o = {0};
+    sf_error err = SF_ERROR_INIT;
+    sf_runner_handle_signals();
+    if (parse_command(argc, argv, &o, &err) == SF_OK)
+        run(&o, &err);
+    return sf_error_report(&err, "softfall-fit");
+}

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/compression/config.h"
+
+#include "campaign/config.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* In the order of sf_rate_model and sf_rule_choice. */
+static const char *const RATE_MODELS[] = {"none", "log", "maxwell", "curves", "auto"};
+static const char RATE_WORDS[] = "none|log|maxwell|curves|auto", RULE_WORDS[] = "auto|H1|H1_automatic|H2";
+
+const char *sf_rate_model_name(sf_rate_model model) {
+    return RATE_MODELS[model];
+}
+
+static sf_status read_specimen(const sf_config *file, const config_setting_t *root, sf_compression_config *c,
+                               sf_error *err) {
+    const config_setting_t *group = config_setting_get_member(root, "specimen");
+    if (!group)
+        return SF_OK;
+    if (!config_setting_is_group(group))
+        return sf_config_refuse(file, group, err,
+                                "specimen must be a group { side = \"50 mm\"; thickness = \"50 mm\"; }");
+    if (sf_config_names(file, group, "side|thickness", err) == SF_OK &&
+        sf_config_quantity(file, group, "side", SF_LENGTH, false, 0, &c->side, err) == SF_OK)
+        sf_config_quantity(file, group, "thickness", SF_LENGTH, false, 0, &c->thickness, err);
+    return err->status;
+}
+
+/* ---- tests ---- */
+
+static sf_status check_rate(const sf_config *file, const config_setting_t *entry, double rate,
+                            const sf_compression_config *c, sf_error *err) {
+    for (int k = 0; k < c->test_count; k++)
+        if (fabs(log(rate / c->test[k].rate)) < 1e-6)
+            return sf_config_refuse(
+                file, config_setting_get_member(entry, "rate"), err,
+                "the rate %g 1/s is that of %s already; give each rate once (join the tests or "
+                "take their mean)",
+                rate, c->test[k].path);
+    return SF_OK;
+}
+
+/* Puts the test in its place by rate. */
+static void insert_test(sf_compression_config *c, const sf_compression_test *test) {
+    int at = c->test_count++;
+    for (; at > 0 && c->test[at - 1].rate > test->rate; at--)
+        c->test[at] = c->test[at - 1];
+    c->test[at] = *test;
+}
+
+static sf_status read_test(const sf_config *file, const config_setting_t *entry, sf_compression_config *c,
+                           sf_error *err) {
+    sf_compression_test test;
+    sf_error inner = SF_ERROR_INIT;
+    char *path = NULL;
+    double rate = 0;
+    if (sf_config_names(file, entry, "file|rate", err) == SF_OK &&
+        sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, &rate, err) == SF_OK &&
+        check_rate(file, entry, rate, c, err) == SF_OK &&
+        sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
+        if (sf_compression_test_read(path, rate, &test, &inner) != SF_OK)
+            SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
+                    config_setting_source_line(entry));
+        else
+            insert_test(c, &test);
+    }
+    free(path);
+    return err->status;
+}
+
+static sf_status read_tests(const sf_config *file, const config_setting_t *root, sf_compression_config *c,
+                            sf_error *err) {
+    const config_setting_t *tests;
+    if (sf_config_list(file, root, "tests", true, SF_COMPRESSION_TESTS, &tests, err) != SF_OK)
+        return err->status;
+    for (int i = 0; i < config_setting_length(tests) && err->status == SF_OK; i++)
+        read_test(file, config_setting_get_elem(tests, (unsigned)i), c, err);
+    return err->status;
+}
+
+/* ---- the file ---- */
+
+static sf_status read_name(const sf_config *file, const config_setting_t *root, sf_compression_config *c,
+                           sf_error *err) {
+    const char *text = c->name;
+    if (sf_config_text(file, root, "name", false, &text, err) != SF_OK || text == c->name)
+        return err->status;
+    if (strlen(text) >= SF_COMPRESSION_NAME || strpbrk(text, "\n\r'\\"))
+        return sf_config_refuse(file, config_setting_get_member(root, "name"), err,
+                                "name must be a text of 1 to %d characters, without ', \\ and line ends",
+                                SF_COMPRESSION_NAME - 1);
+    snprintf(c->name, sizeof c->name, "%s", text);
+    return SF_OK;
+}
+
+static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
+    const config_setting_t *root = config_root_setting(&file->config);
+    int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
+    if (sf_config_names(
+            file, root,
+            "name|density|tests|DAMP|E_range|rate_model|densification|densification_start|confidence|"
+            "specimen",
+            err) != SF_OK ||
+        sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err) != SF_OK ||
+        read_name(file, root, c, err) != SF_OK ||
+        sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err) != SF_OK ||
+        sf_config_number(file, root, "E_range", false, 0.001, 0.2, &c->modulus_range, err) != SF_OK ||
+        sf_config_number(file, root, "confidence", false, 0.5, 0.9999, &c->confidence, err) != SF_OK ||
+        sf_config_number(file, root, "densification_start", false, 0.05, 0.98, &c->densification_start,
+                         err) != SF_OK ||
+        sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err) != SF_OK ||
+        sf_config_choice(file, root, "densification", RULE_WORDS, &rule, err) != SF_OK ||
+        read_specimen(file, root, c, err) != SF_OK)
+        return err->status;
+    c->rate_model = (sf_rate_model)model;
+    c->rule = (sf_rule_choice)rule;
+    return read_tests(file, root, c, err);
+}
+
+/* ---- what the tests must have together ---- */
+
+static sf_status check_together(const char *path, const sf_compression_config *c, sf_error *err) {
+    double shortest = 1;
+    int below = 0;
+    for (int k = 0; k < c->test_count; k++)
+        shortest = fmin(shortest, c->test[k].largest_strain);
+    if (c->densification_start > 0.97 * shortest)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: densification_start = %g leaves no data to fit the densification to: the tests reach "
+            "a strain of %g",
+            path, c->densification_start, shortest);
+    for (int i = 0; i < c->test[0].loading; i++)
+        below += c->test[0].strain[i] <= c->modulus_range;
+    if (below < 4)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: %d points below the strain %g (E_range) while loading; E needs at least 4",
+                       c->test[0].path, below, c->modulus_range);
+    if (c->test_count == 1 && c->rate_model != SF_RATE_AUTO && c->rate_model != SF_RATE_NONE)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: the rate model \"%s\" needs tests at two rates; there is one test", path,
+                       sf_rate_model_name(c->rate_model));
+    return SF_OK;
+}
+
+sf_status sf_compression_config_read(const char *path, sf_compression_config *config, sf_error *err) {
+    sf_config file;
+    *config = (sf_compression_config){.name = "foam",
+                                      .modulus_range = 0.02,
+                                      .confidence = 0.95,
+                                      .rate_model = SF_RATE_AUTO,
+                                      .rule = SF_RULE_AUTO};
+    if (sf_config_open(path, &file, err) == SF_OK && read_root(&file, config, err) == SF_OK)
+        check_together(path, config, err);
+    sf_config_close(&file);
+    if (err->status != SF_OK)
+        sf_compression_config_free(config);
+    return err->status;
+}
+
+void sf_compression_config_free(sf_compression_config *config) {
+    for (int k = 0; k < config->test_count; k++)
+        sf_compression_test_free(&config->test[k]);
+    *config = (sf_compression_config){0};
+}

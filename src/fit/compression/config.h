@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The input of `softfall-fit compression`: a libconfig file that names the tests (docs/identification.md). */
+#ifndef SF_FIT_COMPRESSION_CONFIG_H
+#define SF_FIT_COMPRESSION_CONFIG_H
+
+#include "fit/compression/test.h"
+#include <stdio.h>
+
+enum { SF_COMPRESSION_TESTS = 8, SF_COMPRESSION_NAME = 64 };
+
+/* Candidates of the rate dependence; "auto" lets the data choose. */
+typedef enum sf_rate_model {
+    SF_RATE_NONE,
+    SF_RATE_LOG,
+    SF_RATE_MAXWELL,
+    SF_RATE_CURVES,
+    SF_RATE_MODELS,
+    SF_RATE_AUTO = SF_RATE_MODELS
+} sf_rate_model;
+
+typedef enum sf_rule_choice { SF_RULE_AUTO, SF_RULE_H1, SF_RULE_H1_AUTOMATIC, SF_RULE_H2 } sf_rule_choice;
+
+typedef struct sf_compression_config {
+    char name[SF_COMPRESSION_NAME]; /* of the material; begins a heading */
+    double density;                 /* kg m-3 */
+    double damp;                    /* -, DAMP, written through */
+    double modulus_range;           /* -, E is the slope below this strain */
+    double densification_start;     /* -, strain from which the densification law holds; 0 = chosen */
+    double confidence;              /* -, of the intervals */
+    double side, thickness;         /* m, of the specimen; 0 = not said */
+    sf_rate_model rate_model;
+    sf_rule_choice rule;
+    int test_count;
+    sf_compression_test test[SF_COMPRESSION_TESTS]; /* ascending rate; owned */
+} sf_compression_config;
+
+/* "none", "log", "maxwell", "curves", "auto" */
+const char *sf_rate_model_name(sf_rate_model model);
+
+/* Reads the file and the tests that it names (paths relative to it). SF_ERR_INPUT names file, line and value:
+ * unknown or missing keys, units of another kind, values out of bounds, rates that are equal, and what
+ * sf_compression_test_read refuses. On failure `*config` is zeroed. */
+sf_status sf_compression_config_read(const char *path, sf_compression_config *config, sf_error *err);
+void sf_compression_config_free(sf_compression_config *config);
+
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/drop/command.h"
+
+#include "fit/drop/report.h"
+#include <argp.h>
+#include <errno.h>
+#include <gsl/gsl_errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct options {
+    const char *input, *directory;
+    bool force;
+    int threads;
+} options;
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+    options *o = state->input;
+    char *end;
+    switch (key) {
+    case 'o':
+        o->directory = arg;
+        return 0;
+    case 'f':
+        o->force = true;
+        return 0;
+    case 't':
+        o->threads = (int)strtol(arg, &end, 10);
+        if (*end || o->threads < 1 || o->threads > 1024)
+            argp_error(state, "--threads %s: a number from 1 to 1024 is expected", arg);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->input)
+            argp_error(state, "one input at a time: \"%s\" is one too many", arg);
+        o->input = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->input || !o->directory)
+            argp_error(state, "give the input, and the output directory with -o");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* "<material>.cfg" and so on, for sf_output. */
+typedef struct names {
+    char card[SF_FIT_NAME_SIZE + 8], curve[SF_FIT_NAME_SIZE + 8];
+    const char *list[9];
+} names;
+
+static void name_files(const sf_fit_input *in, names *n) {
+    snprintf(n->card, sizeof n->card, "%s.cfg", in->material_name);
+    snprintf(n->curve, sizeof n->curve, "%s.csv", in->material_name);
+    const char *const list[] = {n->curve,        n->card,     "fit-curve.csv",
+                                "fit-drops.csv", "fit.gp",    "fit.png",
+                                "fit.json",      "report.md", NULL};
+    memcpy(n->list, list, sizeof list);
+}
+
+/* The drops' folders are kept between runs of the command: DIR/runs. */
+static sf_status make_runs(const char *directory, char *runs, sf_error *err) {
+    snprintf(runs, PATH_MAX, "%s/runs", directory);
+    if (mkdir(runs, 0777) != 0 && errno != EEXIST)
+        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", runs, strerror(errno));
+    return SF_OK;
+}
+
+static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_output *output, sf_error *err) {
+    char runs[PATH_MAX], warning[512] = "";
+    names n;
+    if (sf_fit_input_read(o->input, in, err) != SF_OK)
+        return err->status;
+    name_files(in, &n);
+    if (sf_output_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
+        make_runs(o->directory, runs, err) != SF_OK)
+        return err->status;
+    sf_runner runner = {.folder = runs, .threads = o->threads, .log = stdout};
+    *fit = (sf_drop_fit){.input = in, .runner = &runner, .folder = runs, .log = stdout};
+    printf("softfall-fit drop: %d unknown parameters, %d drops; finished drops are kept in %s\n",
+           in->unknown_count, in->drop_count, runs);
+    if (sf_drop_fit_run(fit, err) != SF_OK ||
+        sf_drop_report_write(fit, o->input, output, warning, sizeof warning, err) != SF_OK ||
+        sf_output_commit(output, err) != SF_OK)
+        return err->status;
+    sf_drop_report_print(fit, stdout);
+    printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.md, fit.json, fit.png\n",
+           (long long)runner.simulated, (long long)runner.reused, o->directory, in->material_name);
+    fflush(stdout);
+    if (*warning)
+        fprintf(stderr, "softfall-fit: warning: %s\n", warning);
+    if (!fit->result.converged)
+        fprintf(stderr, "softfall-fit: warning: not converged after %d iterations\n", fit->result.iterations);
+    return SF_OK;
+}
+
+int sf_fit_drop_main(int argc, char **argv) {
+    static const struct argp_option known[] = {
+        {"output", 'o', "DIR", 0,
+         "write everything there (required); drops that are there already are used again", 0},
+        {"force", 'f', 0, 0, "replace the results of an earlier fit in DIR", 0},
+        {"threads", 't', "N", 0, "threads of a simulation (default: every core)", 0},
+        {0},
+    };
+    static const struct argp parser = {.options = known,
+                                       .parser = parse,
+                                       .args_doc = "FIT.cfg -o DIR",
+                                       .doc = "Identifies a foam from measured drops, and predicts others."};
+    options o = {.threads = (int)sysconf(_SC_NPROCESSORS_ONLN)};
+    sf_error err = SF_ERROR_INIT;
+    sf_fit_input input = {0};
+    sf_drop_fit fit = {0};
+    sf_output output = {0};
+    static char name[] = "softfall-fit drop";
+    argv[0] = name;
+    gsl_set_error_handler_off(); /* statuses are looked at */
+    sf_runner_handle_signals();
+    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    run(&o, &input, &fit, &output, &err);
+    sf_output_end(&output);
+    sf_drop_fit_free(&fit);
+    sf_fit_input_free(&input);
+    return sf_error_report(&err, "softfall-fit");
+}

@@ -1,0 +1,409 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/drop/fit.h"
+
+#include "campaign/material_file.h"
+#include "post/compare.h"
+#include "post/injury.h"
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_ITERATIONS = 8 };
+static const double TOLERANCE = 0.1;  /* of a standard deviation: the last step */
+static const double BIN_WIDTH = 0.05; /* of strain */
+
+/* ---- parameters and responses ---- */
+
+static void values_of(const sf_fit_input *in, const double *u, double value[SF_PARAMETER_COUNT]) {
+    memcpy(value, in->start, SF_PARAMETER_COUNT * sizeof *value);
+    for (int k = 0; k < in->unknown_count; k++)
+        value[in->unknown[k]] = exp(u[k]);
+}
+
+sf_status sf_drop_fit_card(const sf_fit_input *in, const double *u, sf_foam_card *card, sf_error *err) {
+    double value[SF_PARAMETER_COUNT];
+    values_of(in, u, value);
+    return sf_foam_form_card(&in->form, value, card, err);
+}
+
+/* Scaled responses of one drop from its curve. */
+static sf_status respond(const sf_fit_drop *drop, const sf_series *curve, double a_max, double hic, double *y,
+                         sf_error *err) {
+    double contact = 0;
+    y[SF_FIT_A_MAX] = log(a_max);
+    y[SF_FIT_HIC] = log(hic);
+    if (drop->samples == 0)
+        return SF_OK;
+    if (sf_contact_instant(curve, drop->name, &contact, err) != SF_OK)
+        return err->status;
+    double end = curve->time[curve->count - 1];
+    for (int k = 0; k < drop->samples; k++) {
+        double time = contact + drop->sample_time[k];
+        y[SF_FIT_SAMPLES + k] = time <= end ? sf_series_at(curve, time) / drop->sample_scale : 0;
+    }
+    return SF_OK;
+}
+
+static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
+    const sf_fit_input *in = fit->input;
+    fit->row[0] = 0;
+    for (int d = 0; d < in->drop_count; d++) {
+        fit->row[d + 1] = fit->row[d] + SF_FIT_SAMPLES + in->drop[d].samples;
+        fit->measured_drops += !in->drop[d].predicted;
+    }
+    fit->parameters = in->unknown_count;
+    for (int d = 0; d < in->drop_count; d++)
+        fit->speed[d] = in->drop[d].speed_sd > 0 ? fit->parameters++ : -1;
+    unsigned long n = (unsigned long)fit->row[in->drop_count];
+    fit->y = sf_alloc(err, n, sizeof(double), "responses");
+    fit->gradient = sf_alloc(err, n * (unsigned long)fit->parameters, sizeof(double), "responses");
+    fit->measured = sf_alloc(err, n, sizeof(double), "responses");
+    fit->sd = sf_alloc(err, n, sizeof(double), "responses");
+    fit->without = sf_alloc(err, n, sizeof(double), "responses");
+    fit->response_sd = sf_alloc(err, n, sizeof(double), "responses");
+    if (err->status != SF_OK)
+        return err->status;
+    for (int d = 0; d < in->drop_count; d++) {
+        const sf_fit_drop *drop = &in->drop[d];
+        double *measured = &fit->measured[fit->row[d]], *sd = &fit->sd[fit->row[d]];
+        measured[SF_FIT_A_MAX] = isnan(drop->a_max_g) ? 0 : log(drop->a_max_g);
+        sd[SF_FIT_A_MAX] = isnan(drop->a_max_g) ? INFINITY : drop->a_max_sd;
+        measured[SF_FIT_HIC] = isnan(drop->hic) ? 0 : log(drop->hic);
+        sd[SF_FIT_HIC] = isnan(drop->hic) ? INFINITY : drop->hic_sd;
+        for (int k = 0; k < drop->samples; k++) {
+            measured[SF_FIT_SAMPLES + k] = drop->sample_value[k] / drop->sample_scale;
+            sd[SF_FIT_SAMPLES + k] = drop->sample_sd;
+        }
+    }
+    return SF_OK;
+}
+
+/* ---- surrogate ---- */
+
+/* Drops `first` to `last` - 1 by columns of this foam; `u` has the speeds, NULL: as given. */
+static sf_status columns_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
+                                 const double *u, double *y, sf_error *err) {
+    sf_foam foam = {0};
+    if (sf_foam_build(card, &foam, err) != SF_OK)
+        return err->status;
+    for (int d = first; d < last && err->status == SF_OK; d++) {
+        sf_series curve = {0};
+        sf_hic hic;
+        sf_columns columns = fit->columns[d];
+        if (u && fit->speed[d] >= 0)
+            columns.speed *= exp(u[fit->speed[d]]);
+        if (sf_columns_drop(&columns, &foam, &curve, err) == SF_OK &&
+            sf_hic_evaluate(&curve, INFINITY, &hic, err) == SF_OK) {
+            double peak = 0;
+            for (int64_t k = 0; k < curve.count; k++)
+                peak = fmax(peak, curve.value[k]);
+            respond(&fit->input->drop[d], &curve, peak, hic.value, &y[fit->row[d]], err);
+        }
+        sf_series_free(&curve);
+    }
+    sf_foam_free(&foam);
+    return err->status;
+}
+
+static sf_status columns_at(const sf_drop_fit *fit, int first, int last, const double *u, double *y,
+                            sf_error *err) {
+    sf_foam_card card;
+    if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
+        return err->status;
+    columns_respond(fit, first, last, &card, u, y, err);
+    sf_foam_card_free(&card);
+    return err->status;
+}
+
+static sf_status surrogate(void *context, const double *u, double *y, sf_error *err) {
+    const sf_drop_fit *fit = context;
+    return columns_at(fit, 0, fit->measured_drops, u, y, err);
+}
+
+/* ---- simulation ---- */
+
+static sf_status find_columns(const char *path, sf_columns *columns, sf_error *err) {
+    sf_results r;
+    if (sf_results_open(path, &r, err) != SF_OK)
+        return err->status;
+    sf_columns_build(&r, columns, err);
+    sf_results_close(&r);
+    return err->status;
+}
+
+static sf_status simulate_drop(sf_drop_fit *fit, int d, const char *material, double *y, sf_error *err) {
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    const sf_runner_drop request = {.label = drop->name, .case_path = drop->case_path, .material = material};
+    sf_runner_result result;
+    if (sf_runner_run(fit->runner, &request, &result, err) != SF_OK)
+        return err->status;
+    sf_fit_simulated *last = &fit->simulated[d];
+    if (fit->columns[d].count == 0)
+        find_columns(result.path, &fit->columns[d], err);
+    respond(drop, &result.curve, result.a_max_g, result.hic, &y[fit->row[d]], err);
+    sf_series_free(&last->curve);
+    *last = (sf_fit_simulated){.max_local_strain = result.max_local_strain,
+                               .v_rebound = result.v_rebound,
+                               .energy_error = result.energy_error,
+                               .curve = result.curve};
+    result.curve = (sf_series){0};
+    sf_runner_result_free(&result);
+    return err->status;
+}
+
+/* Drops `first` to `last` - 1 with the material of u, which is written beside the drops' folders. */
+static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const char *name, const double *u,
+                                double *y, sf_error *err) {
+    sf_foam_card card;
+    char path[PATH_MAX];
+    const sf_material_text text = {"An iterate of softfall-fit drop.", ""};
+    snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
+    if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
+        return err->status;
+    sf_material_write(fit->folder, name, &card, &text, err);
+    sf_foam_card_free(&card);
+    for (int d = first; d < last && err->status == SF_OK; d++)
+        simulate_drop(fit, d, path, y, err);
+    return err->status;
+}
+
+/* Adds what the speeds of u change, by columns. */
+static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, sf_error *err) {
+    double given[SF_MAPPING_MAX_PARAMETERS] = {0};
+    unsigned long n = (unsigned long)fit->row[fit->measured_drops];
+    double *with = sf_alloc(err, n, sizeof *with, "responses"),
+           *without = sf_alloc(err, n, sizeof *with, "responses");
+    memcpy(given, u, (size_t)fit->input->unknown_count * sizeof *u);
+    if (err->status == SF_OK && surrogate((void *)fit, u, with, err) == SF_OK &&
+        surrogate((void *)fit, given, without, err) == SF_OK)
+        for (unsigned long k = 0; k < n; k++)
+            y[k] += with[k] - without[k];
+    free(with);
+    free(without);
+    return err->status;
+}
+
+static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
+    sf_drop_fit *fit = context;
+    char name[SF_FIT_NAME_SIZE];
+    snprintf(name, sizeof name, "iterate-%02d", fit->iteration++);
+    if (simulate_drops(fit, 0, fit->measured_drops, name, u, y, err) != SF_OK)
+        return err->status;
+    return add_speeds(fit, u, y, err);
+}
+
+static void report_progress(void *context, int iteration, const double *u, const double *y,
+                            double objective) {
+    const sf_drop_fit *fit = context;
+    (void)y;
+    if (!fit->log)
+        return;
+    fprintf(fit->log, "iteration %d: objective %.4g;", iteration, objective);
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        const sf_parameter_info *p = sf_parameter_get(fit->input->unknown[k]);
+        fprintf(fit->log, " %s %.4g%s%s", p->name, exp(u[k]) / p->per_unit, *p->unit ? " " : "", p->unit);
+    }
+    fputc('\n', fit->log);
+    fflush(fit->log);
+}
+
+/* ---- what the result says ---- */
+
+/* Each measured drop predicted from the others with the corrected surrogate. */
+static sf_status leave_one_out(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_error *err) {
+    const sf_fit_input *in = fit->input;
+    size_t n = (size_t)problem->responses;
+    double u[SF_MAPPING_MAX_PARAMETERS];
+    double *sd = sf_alloc(err, n, sizeof *sd, "responses"), *y = sf_alloc(err, n, sizeof *y, "responses");
+    for (int k = 0; k < fit->row[in->drop_count]; k++)
+        fit->without[k] = NAN;
+    for (int d = 0; d < fit->measured_drops && fit->measured_drops > 1 && err->status == SF_OK; d++) {
+        memcpy(sd, fit->sd, n * sizeof *sd);
+        for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
+            sd[k] = INFINITY;
+        if (sf_mapping_refit(problem, &fit->result, sd, u, y, err) == SF_OK)
+            memcpy(&fit->without[fit->row[d]], &y[fit->row[d]],
+                   (size_t)(fit->row[d + 1] - fit->row[d]) * sizeof *y);
+    }
+    free(sd);
+    free(y);
+    return err->status;
+}
+
+/* sqrt(g^T C g). */
+static double deviation(const sf_drop_fit *fit, const double *gradient) {
+    double sum = 0;
+    for (int j = 0; j < fit->parameters; j++)
+        for (int k = 0; k < fit->parameters; k++)
+            sum += gradient[j] * fit->result.covariance[j][k] * gradient[k];
+    return sqrt(fmax(0, sum));
+}
+
+static double stress_at(const sf_foam_card *card, double strain) {
+    sf_error none = SF_ERROR_INIT;
+    sf_curve curve;
+    double stress = NAN, slope, energy;
+    if (sf_curve_build(card, 0, &curve, &none) == SF_OK)
+        sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
+    sf_curve_free(&curve);
+    return stress;
+}
+
+/* Standard deviations of the curve in the bins, from the parameters' after and before the data. */
+static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
+    static const double step = 1e-3;
+    const sf_fit_input *in = fit->input;
+    double gradient[SF_FIT_STRAIN_BINS][SF_MAPPING_MAX_PARAMETERS] = {{0}}, u[SF_MAPPING_MAX_PARAMETERS];
+    for (int j = 0; j < in->unknown_count; j++) {
+        sf_foam_card low, high;
+        memcpy(u, fit->result.u, sizeof u);
+        u[j] += step;
+        if (sf_drop_fit_card(in, u, &high, err) != SF_OK)
+            return err->status;
+        u[j] -= 2 * step;
+        if (sf_drop_fit_card(in, u, &low, err) == SF_OK)
+            for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+                double strain = (b + 0.5) * BIN_WIDTH;
+                gradient[b][j] = log(stress_at(&high, strain) / stress_at(&low, strain)) / (2 * step);
+            }
+        sf_foam_card_free(&low);
+        sf_foam_card_free(&high);
+        if (err->status != SF_OK)
+            return err->status;
+    }
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+        double prior = 0;
+        for (int j = 0; j < in->unknown_count; j++)
+            prior += pow(gradient[b][j] * in->prior_sd[j], 2);
+        fit->curve_sd[b] = deviation(fit, gradient[b]);
+        fit->curve_prior_sd[b] = sqrt(prior);
+    }
+    return err->status;
+}
+
+static const double RAISE = 0.05; /* of the stress, by a hat over one bin */
+
+/* Responses of the columns with the curve raised in bin `b`; -1: nowhere. */
+static sf_status respond_raised(const sf_drop_fit *fit, int b, double *y, sf_error *err) {
+    sf_foam_card card;
+    if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) != SF_OK)
+        return err->status;
+    sf_foam_card_resample(&card, err);
+    for (int64_t k = 0; k < card.curve_points && b >= 0; k++) {
+        double away = fabs(card.curve_strain[k] - (b + 0.5) * BIN_WIDTH) / BIN_WIDTH;
+        card.curve_stress[k] *= 1 + RAISE * fmax(0, 1 - away);
+    }
+    if (err->status == SF_OK)
+        columns_respond(fit, 0, fit->measured_drops, &card, NULL, y, err);
+    sf_foam_card_free(&card);
+    return err->status;
+}
+
+/* How much do the measured responses change with the curve in each bin? */
+static sf_status locate_information(sf_drop_fit *fit, sf_error *err) {
+    size_t n = (size_t)fit->row[fit->measured_drops];
+    double *y = sf_alloc(err, n, sizeof *y, "responses"), *base = sf_alloc(err, n, sizeof *base, "responses");
+    if (err->status == SF_OK)
+        respond_raised(fit, -1, base, err);
+    for (int b = 0; b < SF_FIT_STRAIN_BINS && err->status == SF_OK; b++) {
+        respond_raised(fit, b, y, err);
+        for (size_t k = 0; k < n; k++)
+            fit->information[b] += isinf(fit->sd[k]) ? 0 : pow((y[k] - base[k]) / (RAISE * fit->sd[k]), 2);
+    }
+    free(y);
+    free(base);
+    return err->status;
+}
+
+/* Gradient of the predictions by central differences of the columns. */
+static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
+    static const double step = 1e-3;
+    const sf_fit_input *in = fit->input;
+    int first = fit->row[fit->measured_drops], last = fit->row[in->drop_count];
+    double u[SF_MAPPING_MAX_PARAMETERS];
+    double *high = sf_alloc(err, (unsigned long)last, sizeof *high, "responses"),
+           *low = sf_alloc(err, (unsigned long)last, sizeof *low, "responses");
+    for (int j = 0; j < in->unknown_count && err->status == SF_OK; j++) {
+        memcpy(u, fit->result.u, sizeof u);
+        u[j] += step;
+        if (columns_at(fit, fit->measured_drops, in->drop_count, u, high, err) != SF_OK)
+            break;
+        u[j] -= 2 * step;
+        if (columns_at(fit, fit->measured_drops, in->drop_count, u, low, err) != SF_OK)
+            break;
+        for (int k = first; k < last; k++)
+            fit->gradient[k * fit->parameters + j] = (high[k] - low[k]) / (2 * step);
+    }
+    free(high);
+    free(low);
+    return err->status;
+}
+
+/* The measured drops with the best parameters, which the runner still has, and the predicted ones. */
+static sf_status finish(sf_drop_fit *fit, sf_error *err) {
+    const sf_fit_input *in = fit->input;
+    int n = fit->parameters;
+    FILE *log = fit->runner->log;
+    fit->runner->log = NULL;
+    simulate_drops(fit, 0, fit->measured_drops, "result", fit->result.u, fit->y, err);
+    fit->runner->log = log;
+    if (err->status != SF_OK ||
+        simulate_drops(fit, fit->measured_drops, in->drop_count, "result", fit->result.u, fit->y, err) !=
+            SF_OK ||
+        differentiate_predictions(fit, err) != SF_OK)
+        return err->status;
+    memcpy(fit->gradient, fit->result.corrected,
+           (size_t)(fit->row[fit->measured_drops] * n) * sizeof *fit->gradient);
+    for (int k = 0; k < fit->row[in->drop_count]; k++)
+        fit->response_sd[k] = deviation(fit, &fit->gradient[k * n]);
+    return SF_OK;
+}
+
+static sf_status conclude(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_error *err) {
+    if (leave_one_out(fit, problem, err) != SF_OK || bound_curve(fit, err) != SF_OK)
+        return err->status;
+    return locate_information(fit, err);
+}
+
+sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
+    const sf_fit_input *in = fit->input;
+    double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS];
+    if (list_data(fit, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < in->unknown_count; k++) {
+        start[k] = log(in->prior[k]);
+        prior_sd[k] = in->prior_sd[k];
+    }
+    for (int d = 0; d < in->drop_count; d++)
+        if (fit->speed[d] >= 0)
+            prior_sd[fit->speed[d]] = in->drop[d].speed_sd;
+    const sf_mapping_problem problem = {.parameters = fit->parameters,
+                                        .responses = fit->row[fit->measured_drops],
+                                        .start = start,
+                                        .prior = start,
+                                        .prior_sd = prior_sd,
+                                        .measured = fit->measured,
+                                        .sd = fit->sd,
+                                        .surrogate = surrogate,
+                                        .simulate = simulate,
+                                        .context = fit,
+                                        .max_iterations = MAX_ITERATIONS,
+                                        .tolerance = TOLERANCE,
+                                        .progress = report_progress};
+    if (sf_mapping_solve(&problem, &fit->result, err) != SF_OK || finish(fit, err) != SF_OK)
+        return err->status;
+    return conclude(fit, &problem, err);
+}
+
+void sf_drop_fit_free(sf_drop_fit *fit) {
+    for (int d = 0; d < SF_FIT_MAX_DROPS; d++)
+        sf_series_free(&fit->simulated[d].curve);
+    sf_mapping_free(&fit->result);
+    free(fit->y);
+    free(fit->gradient);
+    free(fit->measured);
+    free(fit->sd);
+    free(fit->without);
+    free(fit->response_sd);
+}

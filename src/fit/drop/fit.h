@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Identification of a foam from drops: responses, surrogate and simulation of a sf_fit_input for space
+ * mapping, and what is concluded from the result.
+ *
+ * Scaled variables: u = ln(value / SI unit) of the unknown parameters; responses per drop: ln a_max, ln HIC,
+ * then the samples of a measured curve over its peak. Measured or not, every drop has the first two. */
+#ifndef SF_FIT_DROP_FIT_H
+#define SF_FIT_DROP_FIT_H
+
+#include "campaign/runner.h"
+#include "fit/column.h"
+#include "fit/drop/input.h"
+#include "fit/space_mapping.h"
+
+enum { SF_FIT_A_MAX, SF_FIT_HIC, SF_FIT_SAMPLES }; /* rows of a drop; the samples from SF_FIT_SAMPLES on */
+enum { SF_FIT_STRAIN_BINS = 19 };                  /* 0.05 wide, from 0 to 0.95 */
+
+/* The last simulation of each drop. */
+typedef struct sf_fit_simulated {
+    double max_local_strain, v_rebound, energy_error;
+    sf_series curve; /* s, g; owned */
+} sf_fit_simulated;
+
+typedef struct sf_drop_fit {
+    const sf_fit_input *input;
+    sf_runner *runner;
+    const char *folder; /* for the materials of the iterates; borrowed */
+    FILE *log;          /* progress; NULL: silent */
+
+    /* out */
+    int row[SF_FIT_MAX_DROPS + 1]; /* first response of each drop, and their number; measured drops first */
+    int measured_drops;
+    int parameters;              /* unknown parameters of the foam, then speeds */
+    int speed[SF_FIT_MAX_DROPS]; /* index of the drop's speed among them; -1: it is known */
+    double *measured, *sd;       /* [responses] scaled; sd INFINITY where nothing was measured; owned */
+    sf_columns columns[SF_FIT_MAX_DROPS];
+    sf_fit_simulated simulated[SF_FIT_MAX_DROPS];
+    int iteration;
+    sf_mapping_result result; /* of the measured drops */
+    double *y;                /* [responses] of the simulations with the result; owned */
+    double *gradient; /* [responses][parameters] by the parameters: corrected columns, for predictions plain;
+                         owned */
+    double *response_sd; /* [responses] standard deviation by the parameters; owned */
+    double
+        *without; /* [responses] each measured drop predicted by the others; NaN if there are none; owned */
+    /* what the drops say about the curve, by strain bin: sum over the data of (d response / d ln sigma /
+     * sd)^2 */
+    double information[SF_FIT_STRAIN_BINS];
+    double curve_sd[SF_FIT_STRAIN_BINS];       /* of ln sigma in the bin's middle */
+    double curve_prior_sd[SF_FIT_STRAIN_BINS]; /* the same before the data */
+} sf_drop_fit;
+
+/* Fits. `fit` holds input, runner, folder and log. Release with sf_drop_fit_free, also on failure. */
+sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err);
+void sf_drop_fit_free(sf_drop_fit *fit);
+
+/* The card of scaled parameters u, for every other parameter the start. */
+sf_status sf_drop_fit_card(const sf_fit_input *input, const double *u, sf_foam_card *card, sf_error *err);
+
+#endif

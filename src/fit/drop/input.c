@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/drop/input.h"
+
+#include "campaign/config.h"
+#include "post/compare.h"
+#include "post/reference.h"
+#include "case/case.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double SAMPLE_INTERVAL = 0.5e-3; /* s, of a measured curve */
+static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are left out */
+
+/* ---- measured curves ---- */
+
+/* Samples from contact on, where the curve is above the level. */
+static sf_status sample_curve(const char *path, sf_fit_drop *drop, sf_error *err) {
+    sf_series curve = {0};
+    double contact = 0, peak = 0;
+    if (sf_reference_read(path, &curve, err) != SF_OK ||
+        sf_contact_instant(&curve, path, &contact, err) != SF_OK)
+        goto done;
+    drop->sample_time = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
+    drop->sample_value = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
+    if (err->status != SF_OK)
+        goto done;
+    for (int64_t k = 0; k < curve.count; k++)
+        peak = fmax(peak, curve.value[k]);
+    for (int k = 1; contact + k * SAMPLE_INTERVAL <= curve.time[curve.count - 1]; k++) {
+        double value = sf_series_at(&curve, contact + k * SAMPLE_INTERVAL);
+        if (value < SAMPLE_LEVEL * peak || drop->samples == SF_FIT_CURVE_SAMPLES)
+            continue;
+        drop->sample_time[drop->samples] = k * SAMPLE_INTERVAL;
+        drop->sample_value[drop->samples++] = value;
+    }
+    drop->sample_scale = peak;
+done:
+    sf_series_free(&curve);
+    return err->status;
+}
+
+/* ---- drops ---- */
+
+static sf_status name_drop(const sf_config *config, const config_setting_t *group, sf_fit_input *in,
+                           sf_fit_drop *drop, sf_error *err) {
+    const char *name = NULL;
+    if (sf_config_text(config, group, "name", false, &name, err) != SF_OK)
+        return err->status;
+    if (name)
+        snprintf(drop->name, sizeof drop->name, "%s", name);
+    else
+        snprintf(drop->name, sizeof drop->name, "drop-%d", in->drop_count + 1);
+    if (strspn(drop->name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") !=
+        strlen(drop->name))
+        return sf_config_refuse(config, group, err,
+                                "the name \"%s\" begins file names: use letters, digits, dots, dashes",
+                                drop->name);
+    for (int k = 0; k < in->drop_count; k++)
+        if (strcmp(in->drop[k].name, drop->name) == 0)
+            return sf_config_refuse(config, group, err, "two drops are called \"%s\"", drop->name);
+    return SF_OK;
+}
+
+static sf_status read_measurement(const sf_config *config, const config_setting_t *group, sf_fit_drop *drop,
+                                  sf_error *err) {
+    char *curve = NULL;
+    drop->a_max_sd = 0.02;
+    drop->hic_sd = 0.04;
+    drop->sample_sd = 0.03;
+    if (sf_config_number(config, group, "a_max_g", false, 1e-3, 1e5, &drop->a_max_g, err) != SF_OK ||
+        sf_config_number(config, group, "HIC", false, 1e-3, 1e7, &drop->hic, err) != SF_OK ||
+        sf_config_number(config, group, "speed_sd", false, 0, 0.2, &drop->speed_sd, err) != SF_OK ||
+        sf_config_number(config, group, "a_max_sd", false, 1e-4, 1, &drop->a_max_sd, err) != SF_OK ||
+        sf_config_number(config, group, "HIC_sd", false, 1e-4, 1, &drop->hic_sd, err) != SF_OK ||
+        sf_config_number(config, group, "curve_sd", false, 1e-4, 1, &drop->sample_sd, err) != SF_OK ||
+        sf_config_file(config, group, "curve", false, &curve, err) != SF_OK)
+        return err->status;
+    if (curve)
+        sample_curve(curve, drop, err);
+    free(curve);
+    if (err->status == SF_OK && isnan(drop->a_max_g) && isnan(drop->hic) && drop->samples == 0)
+        sf_config_refuse(config, group, err, "the drop \"%s\" has no a_max_g, no HIC and no curve",
+                         drop->name);
+    return err->status;
+}
+
+static sf_status read_drop(const sf_config *config, const config_setting_t *group, bool predicted,
+                           sf_fit_input *in, sf_error *err) {
+    static const char *const names[2] = {"name|case|a_max_g|HIC|speed_sd|a_max_sd|HIC_sd|curve|curve_sd",
+                                         "name|case"};
+    sf_fit_drop *drop = &in->drop[in->drop_count];
+    *drop = (sf_fit_drop){.predicted = predicted, .a_max_g = NAN, .hic = NAN};
+    if (sf_config_names(config, group, names[predicted], err) != SF_OK ||
+        name_drop(config, group, in, drop, err) != SF_OK)
+        return err->status;
+    in->drop_count++; /* from here on released with the input */
+    if (sf_config_file(config, group, "case", true, &drop->case_path, err) != SF_OK)
+        return err->status;
+    return predicted ? SF_OK : read_measurement(config, group, drop, err);
+}
+
+static sf_status read_drops(const sf_config *config, const config_setting_t *root, const char *name,
+                            bool predicted, sf_fit_input *in, sf_error *err) {
+    const config_setting_t *list;
+    if (sf_config_list(config, root, name, !predicted, SF_FIT_MAX_DROPS - in->drop_count, &list, err) !=
+        SF_OK)
+        return err->status;
+    for (int k = 0; list && k < config_setting_length(list); k++)
+        if (read_drop(config, config_setting_get_elem(list, (unsigned)k), predicted, in, err) != SF_OK)
+            return err->status;
+    return SF_OK;
+}
+
+/* ---- material and parameters ---- */
+
+/* The start material, read as the first drop's case would. */
+static sf_status read_material(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                               sf_error *err) {
+    const char *form = "gas", *name = "material", *title = "Identified foam";
+    char override[4096];
+    const char *const overrides[] = {override};
+    sf_case c;
+    if (sf_config_text(config, root, "curve_form", false, &form, err) != SF_OK ||
+        sf_config_text(config, root, "name", false, &name, err) != SF_OK ||
+        sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
+        sf_config_file(config, root, "material", true, &in->material_path, err) != SF_OK)
+        return err->status;
+    if (strcmp(form, "gas") != 0 && strcmp(form, "table") != 0)
+        return sf_config_refuse(config, config_setting_get_member(root, "curve_form"), err,
+                                "curve_form is \"%s\": gas or table is expected", form);
+    if (strpbrk(name, "/\"'\\\n\r") || strncmp(name, "fit", 3) == 0)
+        return sf_config_refuse(
+            config, config_setting_get_member(root, "name"), err,
+            "the name \"%s\" names files: no slashes or quotes, and not fit..., which other files are called",
+            name);
+    snprintf(in->material_name, sizeof in->material_name, "%s", name);
+    snprintf(in->title, sizeof in->title, "%s", title);
+    snprintf(override, sizeof override, "material=@%s", in->material_path);
+    for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
+        if (sf_case_read(in->drop[k].case_path, 1, overrides, &c, err) != SF_OK)
+            return err->status;
+        if (k == 0) {
+            in->form.base = c.foam;
+            c.foam = (sf_foam_card){0};
+        }
+        sf_case_free(&c);
+    }
+    in->form.gas = strcmp(form, "gas") == 0;
+    sf_foam_form_start(&in->form, in->start);
+    return SF_OK;
+}
+
+static sf_status read_start(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                            sf_error *err) {
+    const config_setting_t *group = config_setting_get_member(root, "start");
+    if (!group)
+        return SF_OK;
+    if (!config_setting_is_group(group))
+        return sf_config_refuse(config, group, err, "start must be a group: start: { p0 = \"101 kPa\"; }");
+    for (int k = 0; k < config_setting_length(group); k++) {
+        const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
+        sf_foam_parameter p = sf_parameter_find(config_setting_name(item));
+        if (p == SF_PARAMETER_COUNT)
+            return sf_config_refuse(config, item, err, "\"%.80s\" is no parameter of the foam",
+                                    config_setting_name(item));
+        const sf_parameter_info *about = sf_parameter_get(p);
+        if (about->quantity == SF_QUANTITY_COUNT)
+            sf_config_number(config, group, about->name, true, about->low, about->high, &in->start[p], err);
+        else
+            sf_config_quantity(config, group, about->name, about->quantity, true, about->low, &in->start[p],
+                               err);
+        if (err->status == SF_OK && !(in->start[p] <= about->high))
+            sf_config_refuse(config, item, err, "%s is above %g", about->name, about->high);
+        if (err->status != SF_OK)
+            return err->status;
+    }
+    return SF_OK;
+}
+
+/* The start must make a curve. */
+static sf_status check_start(const sf_config *config, const config_setting_t *root, const sf_fit_input *in,
+                             sf_error *err) {
+    sf_foam_card card;
+    sf_error inner = SF_ERROR_INIT;
+    const config_setting_t *group = config_setting_get_member(root, "start");
+    if (sf_foam_form_card(&in->form, in->start, &card, &inner) != SF_OK)
+        return sf_config_refuse(config, group ? group : root, err, "start: %s", inner.text);
+    sf_foam_card_free(&card);
+    return SF_OK;
+}
+
+static sf_status read_unknown(const sf_config *config, const config_setting_t *entry, sf_fit_input *in,
+                              sf_error *err) {
+    const char *name = NULL;
+    if (sf_config_names(config, entry, "name|prior_sd", err) != SF_OK ||
+        sf_config_text(config, entry, "name", true, &name, err) != SF_OK)
+        return err->status;
+    sf_foam_parameter p = sf_parameter_find(name);
+    if (p == SF_PARAMETER_COUNT)
+        return sf_config_refuse(config, entry, err, "\"%.80s\" is no parameter of the foam", name);
+    const sf_parameter_info *about = sf_parameter_get(p);
+    if (in->form.gas ? about->of_table : about->of_gas)
+        return sf_config_refuse(config, entry, err, "%s belongs to curve_form = \"%s\"", name,
+                                in->form.gas ? "table" : "gas");
+    for (int k = 0; k < in->unknown_count; k++)
+        if (in->unknown[k] == p)
+            return sf_config_refuse(config, entry, err, "%s is unknown twice", name);
+    if (!(in->start[p] > 0))
+        return sf_config_refuse(config, entry, err,
+                                "%s is 0 in the start material: give a start value, start: { %s = ...; }",
+                                name, name);
+    int k = in->unknown_count++;
+    in->unknown[k] = p;
+    in->prior[k] = in->start[p];
+    in->prior_sd[k] = about->prior_sd;
+    return sf_config_number(config, entry, "prior_sd", false, 1e-3, 10, &in->prior_sd[k], err);
+}
+
+/* Without a list: the gas curve's parameters and one viscosity; or the scale of the table. */
+static sf_status read_unknowns(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                               sf_error *err) {
+    static const sf_foam_parameter usual[2][5] = {
+        {SF_PARAMETER_STRESS_SCALE, SF_PARAMETER_ED},
+        {SF_PARAMETER_S0, SF_PARAMETER_P0, SF_PARAMETER_B, SF_PARAMETER_M, SF_PARAMETER_ED}};
+    const config_setting_t *list;
+    if (sf_config_list(config, root, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err) != SF_OK)
+        return err->status;
+    for (int k = 0; list && k < config_setting_length(list); k++)
+        if (read_unknown(config, config_setting_get_elem(list, (unsigned)k), in, err) != SF_OK)
+            return err->status;
+    for (int k = 0; !list && k < (in->form.gas ? 5 : 2); k++) {
+        sf_foam_parameter p = usual[in->form.gas][k];
+        if (!(in->start[p] > 0)) /* a material without the branch */
+            continue;
+        in->unknown[in->unknown_count] = p;
+        in->prior[in->unknown_count] = in->start[p];
+        in->prior_sd[in->unknown_count++] = sf_parameter_get(p)->prior_sd;
+    }
+    return SF_OK;
+}
+
+static sf_status read_text(const char *path, sf_fit_input *in, sf_error *err) {
+    size_t size = 0;
+    char block[4096];
+    FILE *file = fopen(path, "r"), *copy = open_memstream(&in->text, &size);
+    while (file && copy && (size = fread(block, 1, sizeof block, file)) > 0)
+        fwrite(block, 1, size, copy);
+    if (file)
+        fclose(file);
+    if (!copy || fclose(copy) != 0 || !file)
+        return SF_FAIL(err, SF_ERR_IO, "%s cannot be read", path);
+    return SF_OK;
+}
+
+sf_status sf_fit_input_read(const char *path, sf_fit_input *in, sf_error *err) {
+    sf_config config;
+    *in = (sf_fit_input){0};
+    if (sf_config_open(path, &config, err) == SF_OK && read_text(path, in, err) == SF_OK) {
+        const config_setting_t *root = config_root_setting(&config.config);
+        if (sf_config_names(&config, root, "name|title|material|curve_form|start|unknown|drops|predict",
+                            err) == SF_OK &&
+            read_drops(&config, root, "drops", false, in, err) == SF_OK &&
+            read_drops(&config, root, "predict", true, in, err) == SF_OK &&
+            read_material(&config, root, in, err) == SF_OK && read_start(&config, root, in, err) == SF_OK &&
+            check_start(&config, root, in, err) == SF_OK)
+            read_unknowns(&config, root, in, err);
+    }
+    sf_config_close(&config);
+    return err->status;
+}
+
+void sf_fit_input_free(sf_fit_input *in) {
+    for (int k = 0; k < in->drop_count; k++) {
+        free(in->drop[k].case_path);
+        free(in->drop[k].sample_time);
+        free(in->drop[k].sample_value);
+    }
+    sf_foam_card_free(&in->form.base);
+    free(in->material_path);
+    free(in->text);
+    *in = (sf_fit_input){0};
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The input of `softfall-fit drop` (docs/identification.md): start material, drops with what was measured,
+ * unknown parameters with their priors, and drops to predict. */
+#ifndef SF_FIT_DROP_INPUT_H
+#define SF_FIT_DROP_INPUT_H
+
+#include "fit/drop/parameters.h"
+#include "fit/space_mapping.h"
+#include "post/signal.h"
+
+enum { SF_FIT_MAX_DROPS = 24, SF_FIT_MAX_UNKNOWNS = 12, SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
+
+/* A drop that was measured, or (predicted) is only to be simulated with the identified material. */
+typedef struct sf_fit_drop {
+    char name[SF_FIT_NAME_SIZE];
+    char *case_path; /* owned */
+    bool predicted;
+    double a_max_g, hic;     /* measured; NaN: not */
+    double speed_sd;         /* relative standard deviation of the case's speed; 0: it is known */
+    double a_max_sd, hic_sd; /* relative standard deviations */
+    int samples;             /* of the measured curve; 0: none */
+    double *sample_time;     /* [samples] s after contact; owned */
+    double *sample_value;    /* [samples] g; owned */
+    double sample_sd;        /* of a sample, relative to the measured peak */
+    double sample_scale;     /* g, that peak */
+} sf_fit_drop;
+
+typedef struct sf_fit_input {
+    char *text;                           /* the file as it is; owned */
+    char material_name[SF_FIT_NAME_SIZE]; /* of its files */
+    char title[160];                      /* first line of its files */
+    char *material_path;                  /* start material; owned */
+    sf_foam_form form;
+    int drop_count; /* measured ones first */
+    sf_fit_drop drop[SF_FIT_MAX_DROPS];
+    double start[SF_PARAMETER_COUNT]; /* SI, every parameter */
+    int unknown_count;
+    sf_foam_parameter unknown[SF_FIT_MAX_UNKNOWNS];
+    double prior[SF_FIT_MAX_UNKNOWNS];    /* SI, median */
+    double prior_sd[SF_FIT_MAX_UNKNOWNS]; /* of the logarithm */
+} sf_fit_input;
+
+/* Reads and checks everything, the cases and the measured curves too. Release with sf_fit_input_free, also on
+ * failure. */
+sf_status sf_fit_input_read(const char *path, sf_fit_input *input, sf_error *err);
+void sf_fit_input_free(sf_fit_input *input);
+
+#endif

@@ -1,0 +1,521 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/drop/report.h"
+
+#include "build_info.h"
+#include "campaign/material_file.h"
+#include "io/gnuplot.h"
+#include "io/json.h"
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Half width of a 95 % interval in standard deviations: of the normal distribution, or of Student's t where
+ * the scale of the data's errors is itself estimated. */
+static double half_width(const sf_drop_fit *fit) {
+    return fit->result.scale > 1 ? gsl_cdf_tdist_Pinv(0.975, fit->result.freedom)
+                                 : gsl_cdf_ugaussian_Pinv(0.975);
+}
+
+/* ---- numbers that every form shows ---- */
+
+typedef struct estimate {
+    const sf_parameter_info *about;
+    double value, low, high; /* SI, 95 % */
+    double prior;            /* SI */
+    double shrinkage;        /* standard deviation after the data over the one before */
+} estimate;
+
+static estimate estimate_of(const sf_drop_fit *fit, int k) {
+    const sf_mapping_result *r = &fit->result;
+    double sd = sqrt(r->covariance[k][k]);
+    return (estimate){.about = sf_parameter_get(fit->input->unknown[k]),
+                      .value = exp(r->u[k]),
+                      .low = exp(r->u[k] - half_width(fit) * sd),
+                      .high = exp(r->u[k] + half_width(fit) * sd),
+                      .prior = fit->input->prior[k],
+                      .shrinkage = sd / fit->input->prior_sd[k]};
+}
+
+static double response(const sf_drop_fit *fit, int d, int which) {
+    return exp(fit->y[fit->row[d] + which]);
+}
+
+static double response_sd(const sf_drop_fit *fit, int d, int which) {
+    return fit->response_sd[fit->row[d] + which];
+}
+
+/* Root mean square of a measured curve's residuals, g; NaN without. */
+static double curve_rmse(const sf_drop_fit *fit, int d) {
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    double sum = 0;
+    for (int k = 0; k < drop->samples; k++) {
+        int row = fit->row[d] + SF_FIT_SAMPLES + k;
+        sum += pow(drop->sample_scale * (fit->y[row] - fit->measured[row]), 2);
+    }
+    return drop->samples > 0 ? sqrt(sum / drop->samples) : NAN;
+}
+
+/* Strains between which nine tenths of the information lie. */
+static void informed_strains(const sf_drop_fit *fit, double *low, double *high) {
+    double sum = 0, part = 0;
+    *low = *high = 0;
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        sum += fit->information[b];
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+        double before = part;
+        part += fit->information[b];
+        if (before < 0.05 * sum && part >= 0.05 * sum)
+            *low = 0.05 * b;
+        if (before < 0.95 * sum && part >= 0.95 * sum)
+            *high = 0.05 * (b + 1);
+    }
+}
+
+static bool has_predictions(const sf_fit_input *in) {
+    return in->drop_count > 0 && in->drop[in->drop_count - 1].predicted;
+}
+
+/* ---- report.md ---- */
+
+static void put_measured(FILE *f, double value, const char *format) {
+    if (isnan(value))
+        fputs("–", f);
+    else
+        fprintf(f, format, value);
+}
+
+/* "+1.2 %" of the response against what was measured. */
+static void put_difference(FILE *f, double scaled, double measured) {
+    if (isnan(measured) || isnan(scaled))
+        fputs("–", f);
+    else
+        fprintf(f, "%+.1f %%", 100 * (exp(scaled) / measured - 1));
+}
+
+static void put_drops(FILE *f, const sf_drop_fit *fit) {
+    const sf_fit_input *in = fit->input;
+    fputs("## Drops\n\nThe simulation with the identified material against the measurement. \"from the "
+          "others\": the same "
+          "drop left out of the fit and predicted by the rest (corrected surrogate).\n\n"
+          "| drop | a_max measured (g) | simulated | | from the others | HIC measured | simulated | | from "
+          "the others | "
+          "curve RMSE (g) | largest local strain |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+          f);
+    for (int d = 0; d < in->drop_count && !in->drop[d].predicted; d++) {
+        const sf_fit_drop *drop = &in->drop[d];
+        const double *y = &fit->y[fit->row[d]], *without = &fit->without[fit->row[d]];
+        fprintf(f, "| %s | ", drop->name);
+        put_measured(f, drop->a_max_g, "%.1f");
+        fprintf(f, " | %.1f | ", response(fit, d, SF_FIT_A_MAX));
+        put_difference(f, y[SF_FIT_A_MAX], drop->a_max_g);
+        fputs(" | ", f);
+        put_difference(f, without[SF_FIT_A_MAX], drop->a_max_g);
+        fputs(" | ", f);
+        put_measured(f, drop->hic, "%.0f");
+        fprintf(f, " | %.0f | ", response(fit, d, SF_FIT_HIC));
+        put_difference(f, y[SF_FIT_HIC], drop->hic);
+        fputs(" | ", f);
+        put_difference(f, without[SF_FIT_HIC], drop->hic);
+        fputs(" | ", f);
+        put_measured(f, curve_rmse(fit, d), "%.2f");
+        fprintf(f, " | %.3f |\n", fit->simulated[d].max_local_strain);
+    }
+    fprintf(f,
+            "\nMisfit: %.2f (sum of squared residuals over their standard deviations) with %.1f degrees of "
+            "freedom",
+            fit->result.misfit, fit->result.freedom);
+    if (fit->result.scale > 1)
+        fprintf(f,
+                "; the model misses the data by more than their stated standard deviations, so theirs are "
+                "multiplied by %.2f in the intervals",
+                fit->result.scale);
+    fputs(".\n\n", f);
+}
+
+/* Speeds that are not known exactly: what the fit makes of them. */
+static void put_speeds(FILE *f, const sf_drop_fit *fit) {
+    bool any = false;
+    for (int d = 0; d < fit->measured_drops; d++)
+        any = any || fit->speed[d] >= 0;
+    if (!any)
+        return;
+    fputs("The speeds are known with a standard deviation only, and are unknowns of the fit; the table above "
+          "is simulated with "
+          "the given ones.\n\n| drop | given (m/s) | standard deviation (%) | in the fit (%) | 95 % "
+          "|\n|---|---|---|---|---|\n",
+          f);
+    for (int d = 0; d < fit->measured_drops; d++) {
+        int k = fit->speed[d];
+        if (k < 0)
+            continue;
+        double shift = fit->result.u[k], width = half_width(fit) * sqrt(fit->result.covariance[k][k]);
+        fprintf(f, "| %s | %.4g | %.2f | %+.2f | %+.2f to %+.2f |\n", fit->input->drop[d].name,
+                fit->columns[d].speed, 100 * fit->input->drop[d].speed_sd, 100 * expm1(shift),
+                100 * expm1(shift - width), 100 * expm1(shift + width));
+    }
+    fputc('\n', f);
+}
+
+static void put_predictions(FILE *f, const sf_drop_fit *fit) {
+    const sf_fit_input *in = fit->input;
+    if (!has_predictions(in))
+        return;
+    fputs("## Predictions\n\nDrops that were not used. The 95 % intervals hold the uncertainty of the "
+          "parameters; that of "
+          "the discretisation and of the model's form come on top.\n\n"
+          "| drop | a_max (g) | 95 % | HIC | 95 % | largest local strain |\n|---|---|---|---|---|---|\n",
+          f);
+    for (int d = 0; d < in->drop_count; d++) {
+        if (!in->drop[d].predicted)
+            continue;
+        double a = response(fit, d, SF_FIT_A_MAX), h = response(fit, d, SF_FIT_HIC),
+               sa = half_width(fit) * response_sd(fit, d, SF_FIT_A_MAX),
+               sh = half_width(fit) * response_sd(fit, d, SF_FIT_HIC);
+        fprintf(f, "| %s | %.1f | %.1f to %.1f | %.0f | %.0f to %.0f | %.3f |\n", in->drop[d].name, a,
+                a * exp(-sa), a * exp(sa), h, h * exp(-sh), h * exp(sh), fit->simulated[d].max_local_strain);
+    }
+    fputc('\n', f);
+}
+
+static void put_parameters(FILE *f, const sf_drop_fit *fit) {
+    fputs("## Parameters\n\n95 % intervals (of the logarithm, linearised). A parameter that keeps 90 % or "
+          "more of its "
+          "prior's width was hardly seen by the drops.\n\n"
+          "| parameter | value | 95 % | prior | prior factor (1 sd) | width left of the prior | meaning |\n"
+          "|---|---|---|---|---|---|---|\n",
+          f);
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        estimate e = estimate_of(fit, k);
+        double s = e.about->per_unit;
+        fprintf(f, "| %s%s%s | %.4g | %.4g to %.4g | %.4g | %.2f | %.0f %% | %s |\n", e.about->name,
+                *e.about->unit ? ", " : "", e.about->unit, e.value / s, e.low / s, e.high / s, e.prior / s,
+                exp(fit->input->prior_sd[k]), 100 * e.shrinkage, e.about->description);
+    }
+    fputs("\nCorrelation of their logarithms:\n\n| |", f);
+    for (int k = 0; k < fit->input->unknown_count; k++)
+        fprintf(f, " %s |", sf_parameter_get(fit->input->unknown[k])->name);
+    fputs("\n|---|", f);
+    for (int k = 0; k < fit->input->unknown_count; k++)
+        fputs("---|", f);
+    for (int j = 0; j < fit->input->unknown_count; j++) {
+        fprintf(f, "\n| %s |", sf_parameter_get(fit->input->unknown[j])->name);
+        for (int k = 0; k < fit->input->unknown_count; k++)
+            fprintf(f, " %+.2f |",
+                    fit->result.covariance[j][k] /
+                        sqrt(fit->result.covariance[j][j] * fit->result.covariance[k][k]));
+    }
+    fputs("\n\n", f);
+}
+
+static void put_sensitivities(FILE *f, const sf_drop_fit *fit) {
+    const sf_fit_input *in = fit->input;
+    fputs("## Sensitivity\n\nChange of the response in % for 1 % more of the parameter.\n\n| response |", f);
+    for (int k = 0; k < in->unknown_count; k++)
+        fprintf(f, " %s |", sf_parameter_get(in->unknown[k])->name);
+    fputs("\n|---|", f);
+    for (int k = 0; k < in->unknown_count; k++)
+        fputs("---|", f);
+    for (int d = 0; d < in->drop_count; d++)
+        for (int which = 0; which < SF_FIT_SAMPLES; which++) {
+            fprintf(f, "\n| %s, %s |", in->drop[d].name, which == SF_FIT_A_MAX ? "a_max" : "HIC");
+            for (int k = 0; k < in->unknown_count; k++)
+                fprintf(f, " %+.3f |", fit->gradient[(fit->row[d] + which) * fit->parameters + k]);
+        }
+    fputs("\n\n", f);
+}
+
+static void put_strains(FILE *f, const sf_drop_fit *fit) {
+    double low, high, sum = 0;
+    informed_strains(fit, &low, &high);
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        sum += fit->information[b];
+    fprintf(f,
+            "## Which strains the drops see\n\nNine tenths of the information lie between strains of %.2f "
+            "and %.2f. "
+            "Outside, the curve is what its form and the priors make it.\n\n"
+            "| strain | part of the information | standard deviation of the stress | before the data |\n"
+            "|---|---|---|---|\n",
+            low, high);
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        fprintf(f, "| %.2f to %.2f | %.1f %% | %.1f %% | %.0f %% |\n", 0.05 * b, 0.05 * (b + 1),
+                100 * fit->information[b] / fmax(sum, 1e-300), 100 * expm1(fit->curve_sd[b]),
+                100 * expm1(fit->curve_prior_sd[b]));
+    fputc('\n', f);
+}
+
+static sf_status write_report(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+                              bool picture, sf_error *err) {
+    FILE *f = sf_output_open(output, "report.md", err);
+    if (!f)
+        return err->status;
+    fprintf(
+        f,
+        "# Identification from drops: %s\n\nsoftfall-fit %s (%s) from %s: %s after %d simulations of every "
+        "measured drop.\n\n",
+        fit->input->material_name, SF_VERSION, SF_GIT_REVISION, input_path,
+        fit->result.converged ? "converged" : "**not converged**", fit->result.iterations);
+    put_drops(f, fit);
+    put_speeds(f, fit);
+    put_predictions(f, fit);
+    put_parameters(f, fit);
+    put_sensitivities(f, fit);
+    put_strains(f, fit);
+    if (picture)
+        fputs("![Identified curve, what the drops see of it, and the drops](fit.png)\n", f);
+    return sf_output_close(f, "report.md", err);
+}
+
+/* ---- fit.json ---- */
+
+static void json_drop(sf_json *j, const sf_drop_fit *fit, int d) {
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    const double *without = &fit->without[fit->row[d]];
+    sf_json_open(j, NULL, '{');
+    sf_json_text(j, "name", drop->name);
+    sf_json_bool(j, "used", !drop->predicted);
+    sf_json_number(j, "a_max_measured_g", drop->a_max_g);
+    sf_json_number(j, "a_max_g", response(fit, d, SF_FIT_A_MAX));
+    sf_json_number(j, "a_max_sd_by_parameters", response_sd(fit, d, SF_FIT_A_MAX));
+    sf_json_number(j, "a_max_from_others_g", exp(without[SF_FIT_A_MAX]));
+    sf_json_number(j, "hic_measured", drop->hic);
+    sf_json_number(j, "hic", response(fit, d, SF_FIT_HIC));
+    sf_json_number(j, "hic_sd_by_parameters", response_sd(fit, d, SF_FIT_HIC));
+    sf_json_number(j, "hic_from_others", exp(without[SF_FIT_HIC]));
+    sf_json_number(j, "curve_rmse_g", curve_rmse(fit, d));
+    sf_json_number(j, "max_local_strain", fit->simulated[d].max_local_strain);
+    sf_json_number(j, "v_rebound_m_s", fit->simulated[d].v_rebound);
+    sf_json_number(j, "energy_error", fit->simulated[d].energy_error);
+    sf_json_close(j, '}');
+}
+
+static void json_parameter(sf_json *j, const sf_drop_fit *fit, int k) {
+    estimate e = estimate_of(fit, k);
+    sf_json_open(j, NULL, '{');
+    sf_json_text(j, "name", e.about->name);
+    sf_json_number(j, "value_SI", e.value);
+    sf_json_number(j, "low95_SI", e.low);
+    sf_json_number(j, "high95_SI", e.high);
+    sf_json_number(j, "prior_SI", e.prior);
+    sf_json_number(j, "prior_sd_of_logarithm", fit->input->prior_sd[k]);
+    sf_json_number(j, "sd_of_logarithm", sqrt(fit->result.covariance[k][k]));
+    sf_json_close(j, '}');
+}
+
+static sf_status write_json(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+                            sf_error *err) {
+    FILE *f = sf_output_open(output, "fit.json", err);
+    if (!f)
+        return err->status;
+    sf_json j = {.file = f, .empty = true};
+    sf_json_open(&j, NULL, '{');
+    sf_json_text(&j, "program", "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")");
+    sf_json_text(&j, "input", input_path);
+    sf_json_text(&j, "input_text", fit->input->text);
+    sf_json_bool(&j, "converged", fit->result.converged);
+    sf_json_integer(&j, "iterations", fit->result.iterations);
+    sf_json_number(&j, "misfit", fit->result.misfit);
+    sf_json_number(&j, "degrees_of_freedom", fit->result.freedom);
+    sf_json_number(&j, "sd_scale", fit->result.scale);
+    sf_json_open(&j, "parameters", '[');
+    for (int k = 0; k < fit->input->unknown_count; k++)
+        json_parameter(&j, fit, k);
+    sf_json_close(&j, ']');
+    sf_json_open(&j, "covariance_of_logarithms", '[');
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        sf_json_open(&j, NULL, '[');
+        for (int i = 0; i < fit->input->unknown_count; i++)
+            sf_json_number(&j, NULL, fit->result.covariance[k][i]);
+        sf_json_close(&j, ']');
+    }
+    sf_json_close(&j, ']');
+    sf_json_open(&j, "drops", '[');
+    for (int d = 0; d < fit->input->drop_count; d++)
+        json_drop(&j, fit, d);
+    sf_json_close(&j, ']');
+    sf_json_close(&j, '}');
+    fputc('\n', f);
+    return sf_output_close(f, "fit.json", err);
+}
+
+/* ---- the material ---- */
+
+static sf_status write_material(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+                                sf_error *err) {
+    char *provenance = NULL;
+    size_t size = 0;
+    sf_foam_card card;
+    FILE *f = open_memstream(&provenance, &size);
+    if (!f)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
+    fprintf(f, "Identified by softfall-fit drop %s from %s; everything else is that of its start material.\n",
+            SF_VERSION, input_path);
+    for (int d = 0; d < fit->input->drop_count && !fit->input->drop[d].predicted; d++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
+        fprintf(f, "%s:", drop->name);
+        if (!isnan(drop->a_max_g))
+            fprintf(f, " a_max %.4g g measured, %.1f g simulated;", drop->a_max_g,
+                    response(fit, d, SF_FIT_A_MAX));
+        if (!isnan(drop->hic))
+            fprintf(f, " HIC %.4g measured, %.0f simulated;", drop->hic, response(fit, d, SF_FIT_HIC));
+        if (drop->samples > 0)
+            fprintf(f, " measured curve, RMSE %.2f g;", curve_rmse(fit, d));
+        fputc('\n', f);
+    }
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        estimate e = estimate_of(fit, k);
+        double s = e.about->per_unit;
+        fprintf(f, "%s = %.4g%s%s (95 %%: %.4g to %.4g; %s)\n", e.about->name, e.value / s,
+                *e.about->unit ? " " : "", e.about->unit, e.low / s, e.high / s, e.about->description);
+    }
+    double low, high;
+    informed_strains(fit, &low, &high);
+    fprintf(f,
+            "The drops inform the curve between strains of %.2f and %.2f; beyond, it is what its form makes "
+            "it.\n",
+            low, high);
+    if (fit->input->form.gas)
+        fputs("Curve: s0 (1 - exp(-(E - p0) e / s0)) + p0 x + B x^m with x = e / (1 - e).\n", f);
+    if (fclose(f) != 0)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
+    const sf_material_text text = {fit->input->title, provenance};
+    if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
+        sf_material_write(output->staging, fit->input->material_name, &card, &text, err);
+        sf_foam_card_free(&card);
+    }
+    free(provenance);
+    return err->status;
+}
+
+/* ---- the picture ---- */
+
+static sf_status write_strain_data(const sf_drop_fit *fit, const sf_output *output, sf_error *err) {
+    sf_foam_card card;
+    double sum = 0;
+    FILE *f = sf_output_open(output, "fit-curve.csv", err);
+    if (!f)
+        return err->status;
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        sum += fit->information[b];
+    if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
+        sf_curve curve;
+        fputs("strain,stress_kPa,low95_kPa,high95_kPa,information\n", f);
+        if (sf_curve_build(&card, 0, &curve, err) == SF_OK)
+            for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+                double strain = 0.05 * (b + 0.5), stress, slope, energy,
+                       band = exp(half_width(fit) * fit->curve_sd[b]);
+                sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
+                fprintf(f, "%.3f,%.6g,%.6g,%.6g,%.6g\n", strain, 1e-3 * stress, 1e-3 * stress / band,
+                        1e-3 * stress * band, fit->information[b] / fmax(sum, 1e-300));
+            }
+        sf_curve_free(&curve);
+        sf_foam_card_free(&card);
+    }
+    return sf_output_close(f, "fit-curve.csv", err);
+}
+
+static sf_status write_drop_data(const sf_drop_fit *fit, const sf_output *output, sf_error *err) {
+    FILE *f = sf_output_open(output, "fit-drops.csv", err);
+    if (!f)
+        return err->status;
+    fputs("# one block per drop: time after the run's start (ms), deceleration (g)\n", f);
+    for (int d = 0; d < fit->input->drop_count; d++) {
+        const sf_series *s = &fit->simulated[d].curve;
+        fprintf(f, "\n\n# %s\n", fit->input->drop[d].name);
+        for (int64_t k = 0; k < s->count; k += 10)
+            fprintf(f, "%.6g,%.6g\n", 1e3 * s->time[k], s->value[k]);
+    }
+    return sf_output_close(f, "fit-drops.csv", err);
+}
+
+static double peak_time_ms(const sf_series *curve) {
+    int64_t at = 0;
+    for (int64_t k = 1; k < curve->count; k++)
+        if (curve->value[k] > curve->value[at])
+            at = k;
+    return 1e3 * curve->time[at];
+}
+
+static void put_strain_panels(FILE *f) {
+    fputs("set key left top Left reverse samplen 2\nset xlabel 'engineering strain'\nset xrange [0:0.95]\n"
+          "set ylabel 'nominal stress (kPa)'\nset logscale y\n"
+          "plot 'fit-curve.csv' skip 1 u 1:3:4 w filledcurves fc rgb '#c6dbef' t '95 %', "
+          "'' skip 1 u 1:2 w l lw 3 lc rgb '#08519c' t 'loading curve'\n"
+          "unset logscale y\nset ylabel 'part of what the drops say about the curve'\nset yrange [0:*]\n"
+          "set boxwidth 0.045\nset style fill solid 0.6\n"
+          "plot 'fit-curve.csv' skip 1 u 1:5 w boxes lc rgb '#fd8d3c' t 'information by strain'\n",
+          f);
+}
+
+/* Simulated curves; a circle at each measured peak. */
+static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
+    fputs("set autoscale\nset xrange [0:*]\nset yrange [0:*]\nset xlabel 'time after contact (ms)'\n"
+          "set ylabel 'deceleration (g)'\nset key below maxcols 2\n",
+          f);
+    for (int d = 0; d < fit->measured_drops; d++)
+        if (!isnan(fit->input->drop[d].a_max_g))
+            fprintf(f, "set label '' at %.6g,%.6g point pt 6 ps 2 lw 2 lc %d\n",
+                    peak_time_ms(&fit->simulated[d].curve), fit->input->drop[d].a_max_g, d + 1);
+    fputs("plot ", f);
+    for (int d = 0; d < fit->input->drop_count; d++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
+        fprintf(f, "'fit-drops.csv' index %d u 1:2 w l lw 3 dt %d lc %d t '%s%s', ", d,
+                drop->predicted ? 2 : 1, d + 1, drop->name, drop->predicted ? " (predicted)" : "");
+    }
+    fputs("NaN w p pt 6 ps 2 lw 2 lc rgb '#404040' t 'measured peak'\n", f);
+}
+
+static sf_status write_script(const sf_drop_fit *fit, const sf_output *output, sf_error *err) {
+    FILE *f = sf_output_open(output, "fit.gp", err);
+    if (!f)
+        return err->status;
+    fprintf(f,
+            "set terminal pngcairo size 1800,640 font 'DejaVu Sans,15' noenhanced background rgb 'white'\n"
+            "set output 'fit.png'\nset datafile separator ','\nset encoding utf8\n"
+            "set multiplot layout 1,3 title 'Identification from drops: %s' font ',20'\nset grid back lc rgb "
+            "'#d0d0d0'\n",
+            fit->input->material_name);
+    put_strain_panels(f);
+    put_drop_panel(f, fit);
+    fputs("unset multiplot\n", f);
+    return sf_output_close(f, "fit.gp", err);
+}
+
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+                               char *warning, size_t size, sf_error *err) {
+    if (write_strain_data(fit, output, err) != SF_OK || write_drop_data(fit, output, err) != SF_OK ||
+        write_script(fit, output, err) != SF_OK || write_material(fit, input_path, output, err) != SF_OK ||
+        write_json(fit, input_path, output, err) != SF_OK)
+        return err->status;
+    sf_gnuplot_draw(output, "fit.gp", "fit.png", warning, size);
+    return write_report(fit, input_path, output, *warning == '\0', err);
+}
+
+void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
+    double low, high;
+    informed_strains(fit, &low, &high);
+    fprintf(f, "\n%s after %d iterations; misfit %.2f with %.1f degrees of freedom\n",
+            fit->result.converged ? "Converged" : "NOT converged", fit->result.iterations, fit->result.misfit,
+            fit->result.freedom);
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        estimate e = estimate_of(fit, k);
+        double s = e.about->per_unit;
+        fprintf(f, "  %-8s %10.4g %-5s 95 %%: %.4g to %.4g  (%.0f %% of the prior's width)\n", e.about->name,
+                e.value / s, e.about->unit, e.low / s, e.high / s, 100 * e.shrinkage);
+    }
+    for (int d = 0; d < fit->input->drop_count; d++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
+        fprintf(f, "  %-20s a_max %7.2f g", drop->name, response(fit, d, SF_FIT_A_MAX));
+        if (!isnan(drop->a_max_g))
+            fprintf(f, " (measured %.2f)", drop->a_max_g);
+        fprintf(f, "  HIC %7.1f", response(fit, d, SF_FIT_HIC));
+        if (!isnan(drop->hic))
+            fprintf(f, " (measured %.1f)", drop->hic);
+        if (drop->predicted)
+            fprintf(f, "  predicted: +- %.1f %% and %.1f %% (95 %%)",
+                    100 * half_width(fit) * response_sd(fit, d, SF_FIT_A_MAX),
+                    100 * half_width(fit) * response_sd(fit, d, SF_FIT_HIC));
+        fputc('\n', f);
+    }
+    fprintf(f, "  the drops see the curve between strains of %.2f and %.2f\n", low, high);
+}

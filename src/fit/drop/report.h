@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What `softfall-fit drop` leaves: report.md, fit.json, fit.png with its data, and the material file. */
+#ifndef SF_FIT_DROP_REPORT_H
+#define SF_FIT_DROP_REPORT_H
+
+#include "fit/drop/fit.h"
+#include "post/output.h"
+
+/* Writes everything into the staging directory; `warning` (size bytes) says why there is no picture, or is
+ * "". */
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+                               char *warning, size_t size, sf_error *err);
+
+/* The short form, for the terminal. */
+void sf_drop_report_print(const sf_drop_fit *fit, FILE *file);
+
+#endif

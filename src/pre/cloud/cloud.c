@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/cloud/cloud.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct keyed_node {
+    uint64_t key;
+    int32_t node;
+} keyed_node;
+
+static int by_key(const void *a, const void *b) {
+    const keyed_node *x = a, *y = b;
+    if (x->key != y->key)
+        return x->key < y->key ? -1 : 1;
+    return (x->node > y->node) - (x->node < y->node);
+}
+
+/* Spreads the low 21 bits of x to every third bit. */
+static uint64_t spread(uint64_t x) {
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffffULL;
+    x = (x | x << 16) & 0x1f0000ff0000ffULL;
+    x = (x | x << 8) & 0x100f00f00f00f00fULL;
+    x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
+    return (x | x << 2) & 0x1249249249249249ULL;
+}
+
+static int by_value(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
+    int64_t n = mesh->node_count;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, extent = 0;
+    keyed_node *order = sf_alloc(err, (unsigned long)n, sizeof *order, "node order");
+    int32_t *rank = sf_alloc(err, (unsigned long)n, sizeof *rank, "node order");
+    double *moved = sf_alloc(err, 3 * (unsigned long)n, sizeof *moved, "node order");
+    if (err->status != SF_OK)
+        goto done;
+    for (int64_t k = 0; k < 3 * n; k++)
+        low[k % 3] = fmin(low[k % 3], mesh->position[k]);
+    for (int64_t k = 0; k < 3 * n; k++)
+        extent = fmax(extent, mesh->position[k] - low[k % 3]);
+    for (int64_t i = 0; i < n; i++) {
+        order[i].node = (int32_t)i;
+        for (int c = 0; c < 3; c++)
+            order[i].key |= spread((uint64_t)((mesh->position[3 * i + c] - low[c]) / extent * 2097151.0))
+                            << c;
+    }
+    qsort(order, (size_t)n, sizeof *order, by_key);
+    for (int64_t i = 0; i < n; i++) {
+        rank[order[i].node] = (int32_t)i;
+        memcpy(&moved[3 * i], &mesh->position[3 * (int64_t)order[i].node], 3 * sizeof *moved);
+    }
+    memcpy(mesh->position, moved, 3 * (size_t)n * sizeof *moved);
+    for (int64_t k = 0; k < mesh->cell_ptr[mesh->cell_count]; k++)
+        mesh->cell_node[k] = rank[mesh->cell_node[k]];
+    for (int s = 0; s < mesh->set_count; s++) {
+        for (int64_t k = 0; k < mesh->set[s].count; k++)
+            mesh->set[s].node[k] = rank[mesh->set[s].node[k]];
+        qsort(mesh->set[s].node, (size_t)mesh->set[s].count, sizeof(int32_t), by_value);
+    }
+done:
+    free(order);
+    free(rank);
+    free(moved);
+    return err->status;
+}
+
+/* Keeps the `limit` smallest of the values offered, ascending. */
+static void keep_smallest(double value, int limit, int *count, double *kept) {
+    int k = *count < limit ? (*count)++ : limit;
+    if (k == limit && !(value < kept[--k]))
+        return;
+    for (; k > 0 && kept[k - 1] > value; k--)
+        kept[k] = kept[k - 1];
+    kept[k] = value;
+}
+
+void sf_cloud_spacing(const sf_mesh *mesh, const sf_dual *dual, double *spacing) {
+    for (int64_t i = 0; i < mesh->node_count; i++) {
+        double nearest[SF_SPACING_NEIGHBOURS], sum = 0;
+        int count = 0;
+        for (int64_t k = dual->edge_ptr[i]; k < dual->edge_ptr[i + 1]; k++) {
+            const double *a = &mesh->position[3 * i], *b = &mesh->position[3 * (int64_t)dual->edge_node[k]];
+            double square =
+                (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+            keep_smallest(sqrt(square), SF_SPACING_NEIGHBOURS, &count, nearest);
+        }
+        for (int k = 0; k < count; k++)
+            sum += nearest[k];
+        spacing[i] = sum / count;
+    }
+}
+
+static uint64_t fnv1a(uint64_t hash, const void *data, size_t size) {
+    const unsigned char *byte = data;
+    for (size_t k = 0; k < size; k++)
+        hash = (hash ^ byte[k]) * 0x100000001b3ULL;
+    return hash;
+}
+
+void sf_cloud_hash(const sf_mesh *mesh, char text[17]) {
+    uint64_t hash = 0xcbf29ce484222325ULL;
+    hash = fnv1a(hash, mesh->position, 3 * (size_t)mesh->node_count * sizeof *mesh->position);
+    hash = fnv1a(hash, mesh->cell_type, (size_t)mesh->cell_count);
+    hash = fnv1a(hash, mesh->cell_node, (size_t)mesh->cell_ptr[mesh->cell_count] * sizeof *mesh->cell_node);
+    snprintf(text, 17, "%016llx", (unsigned long long)hash);
+}

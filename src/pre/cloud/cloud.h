@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The cloud of particles: the nodes of the background mesh, their order and their spacing. */
+#ifndef SF_PRE_CLOUD_CLOUD_H
+#define SF_PRE_CLOUD_CLOUD_H
+
+#include "core/error.h"
+#include "pre/cloud/dual.h"
+#include "pre/mesh/mesh.h"
+
+/* Renumbers the nodes of a mesh along a Morton curve, so that neighbours in space are neighbours in memory.
+ * Positions, cells and sets follow; the order depends on the positions only. */
+sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err);
+
+/* A node of a lattice has six edges; one of a tetrahedral mesh has some fourteen, of which the longest reach
+ * past nearer nodes and would make the support needlessly large. */
+enum { SF_SPACING_NEIGHBOURS = 8 };
+
+/* Spacing h of each node: the mean length of its eight shortest mesh edges (of all, if there are fewer), m.
+ * This is the lattice constant on a lattice, its faces, edges and corners included. `spacing` is
+ * [node_count]. */
+void sf_cloud_spacing(const sf_mesh *mesh, const sf_dual *dual, double *spacing);
+
+/* FNV-1a (64 bit) of positions, cell types and cell vertices, as 16 hex digits and NUL. */
+void sf_cloud_hash(const sf_mesh *mesh, char text[17]);
+
+#endif

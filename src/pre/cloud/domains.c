@@ -1,0 +1,445 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/cloud/domains.h"
+
+#include "pre/cloud/mls.h"
+#include "pre/cloud/neighbours.h"
+#include "pre/cloud/rounding.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_ENLARGEMENTS = 12 };
+static const double ENLARGEMENT = 1.15;
+
+/* phi_J integrated over the facets of one edge, for every J that reaches them. */
+typedef struct edge_integral {
+    int count;
+    int32_t *node; /* [count] ascending; one block with sum */
+    double *sum;   /* [count][3] m2, from the low node to the high node */
+    double flux;   /* m3, integral of X . N / 3 */
+} edge_integral;
+
+typedef struct builder {
+    const sf_mesh *mesh;
+    const sf_dual *dual;
+    sf_mls_cloud cloud;
+    sf_grid grid;
+    double condition_limit;
+    edge_integral *edge; /* [edges] */
+    uint8_t *poor;       /* [nodes] 1: support must grow */
+    sf_domains *out;
+} builder;
+
+typedef struct workspace {
+    int32_t candidate[SF_MLS_MAX_NODES];
+    double sum[SF_MLS_MAX_NODES][3];
+    uint8_t used[SF_MLS_MAX_NODES];
+    sf_mls_point point;
+    double condition, position[3]; /* the worst seen */
+    bool failed;                   /* out of memory */
+} workspace;
+
+/* Evaluates phi and keeps the worst conditioning; false if the point is not good enough. */
+static bool evaluate(const builder *b, workspace *w, const double x[3], int64_t count) {
+    if (sf_mls_evaluate(&b->cloud, x, count, w->candidate, &w->point) != 0 ||
+        w->point.condition > b->condition_limit)
+        return false;
+    if (w->point.condition > w->condition) {
+        w->condition = w->point.condition;
+        memcpy(w->position, x, sizeof w->position);
+    }
+    return true;
+}
+
+/* The nodes of a cell already reach it: what helps is that those around them reach farther. */
+static void mark_around(const builder *b, int32_t node) {
+#pragma omp atomic write
+    b->poor[node] = 1;
+    for (int64_t k = b->dual->edge_ptr[node]; k < b->dual->edge_ptr[node + 1]; k++) {
+#pragma omp atomic write
+        b->poor[b->dual->edge_node[k]] = 1;
+    }
+}
+
+static int64_t edge_candidates(const builder *b, workspace *w, int64_t e) {
+    double middle[3], reach = 0;
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * (b->mesh->position[3 * b->dual->edge[2 * e] + k] +
+                           b->mesh->position[3 * b->dual->edge[2 * e + 1] + k]);
+    for (int64_t u = b->dual->use_ptr[e]; u < b->dual->use_ptr[e + 1]; u++) {
+        sf_facet_triangle t[2];
+        sf_dual_facet(b->mesh, &b->dual->use[u], t);
+        for (int s = 0; s < 2; s++) {
+            double *c = t[s].centroid;
+            reach = fmax(reach, sqrt((c[0] - middle[0]) * (c[0] - middle[0]) +
+                                     (c[1] - middle[1]) * (c[1] - middle[1]) +
+                                     (c[2] - middle[2]) * (c[2] - middle[2])));
+        }
+    }
+    return sf_grid_query(&b->grid, middle, reach * (1 + 1e-12), SF_MLS_MAX_NODES, w->candidate);
+}
+
+static void store_edge(workspace *w, int64_t count, edge_integral *edge) {
+    int used = 0;
+    for (int64_t k = 0; k < count; k++)
+        used += w->used[k];
+    edge->count = used;
+    edge->sum = malloc((size_t)used * (3 * sizeof *edge->sum + sizeof *edge->node) + 1);
+    if (!edge->sum) {
+        w->failed = true;
+        return;
+    }
+    edge->node = (int32_t *)(edge->sum + 3 * used);
+    used = 0;
+    for (int64_t k = 0; k < count; k++) {
+        if (!w->used[k])
+            continue;
+        edge->node[used] = w->candidate[k];
+        memcpy(&edge->sum[3 * used++], w->sum[k], sizeof w->sum[k]);
+    }
+}
+
+/* Integrates phi over all facets of an edge. Marks cells where the approximation is not good enough. */
+static void integrate_edge(const builder *b, workspace *w, int64_t e) {
+    int64_t count = edge_candidates(b, w, e);
+    bool good = count <= SF_MLS_MAX_NODES;
+    if (!good)
+        count = SF_MLS_MAX_NODES;
+    memset(w->sum, 0, (size_t)count * sizeof w->sum[0]);
+    memset(w->used, 0, (size_t)count);
+    b->edge[e].flux = 0;
+    for (int64_t u = b->dual->use_ptr[e]; u < b->dual->use_ptr[e + 1]; u++) {
+        sf_facet_triangle t[2];
+        sf_dual_facet(b->mesh, &b->dual->use[u], t);
+        for (int s = 0; s < 2; s++) {
+            if (!evaluate(b, w, t[s].centroid, count)) {
+                mark_around(b, b->dual->edge[2 * e]);
+                mark_around(b, b->dual->edge[2 * e + 1]);
+                good = false;
+                continue;
+            }
+            for (int p = 0, k = 0; p < w->point.count; p++) {
+                while (w->candidate[k] != w->point.node[p])
+                    k++;
+                w->used[k] = 1;
+                for (int c = 0; c < 3; c++)
+                    w->sum[k][c] += w->point.value[p] * t[s].area[c];
+            }
+            for (int c = 0; c < 3; c++)
+                b->edge[e].flux += t[s].centroid[c] * t[s].area[c] / 3;
+        }
+    }
+    if (good)
+        store_edge(w, count, &b->edge[e]);
+}
+
+/* phi at a node, left in w->point. */
+static bool evaluate_node(const builder *b, workspace *w, int64_t i) {
+    const double *x = &b->mesh->position[3 * i];
+    int64_t count = sf_grid_query(&b->grid, x, 0, SF_MLS_MAX_NODES, w->candidate);
+    return count <= SF_MLS_MAX_NODES && evaluate(b, w, x, count);
+}
+
+static void clear_edges(const builder *b) {
+    for (int64_t e = 0; e < b->dual->edge_count; e++)
+        free(b->edge[e].sum);
+    memset(b->edge, 0, (size_t)b->dual->edge_count * sizeof *b->edge);
+}
+
+static void merge_worst(sf_domains *out, const workspace *w) {
+    if (w->condition <= out->worst_condition)
+        return;
+    out->worst_condition = w->condition;
+    memcpy(out->worst_position, w->position, sizeof w->position);
+}
+
+/* All edges, and the nodes' own points, once; returns true if some support must grow. */
+static bool integrate_all(builder *b, sf_error *err) {
+    bool failed = false;
+    b->out->worst_condition = 0;
+#pragma omp parallel
+    {
+        workspace *w = calloc(1, sizeof *w);
+#pragma omp for schedule(dynamic, 256)
+        for (int64_t e = 0; e < b->dual->edge_count; e++)
+            if (w)
+                integrate_edge(b, w, e);
+#pragma omp for schedule(dynamic, 256)
+        for (int64_t i = 0; i < b->mesh->node_count; i++)
+            if (w && !evaluate_node(b, w, i))
+                mark_around(b, (int32_t)i);
+#pragma omp critical
+        {
+            failed = failed || !w || w->failed;
+            if (w)
+                merge_worst(b->out, w);
+        }
+        free(w);
+    }
+    if (failed)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the shape functions of %lld edges",
+                (long long)b->dual->edge_count);
+    for (int64_t i = 0; i < b->mesh->node_count; i++)
+        if (b->poor[i])
+            return true;
+    return false;
+}
+
+static sf_status integrate_with_growth(builder *b, double *support, sf_error *err) {
+    const double *first = NULL;
+    int64_t n = b->mesh->node_count;
+    double *start = sf_alloc(err, (unsigned long)n, sizeof *start, "supports");
+    if (!start)
+        return err->status;
+    memcpy(start, support, (size_t)n * sizeof *start);
+    first = start;
+    for (int round = 0;; round++) {
+        memset(b->poor, 0, (size_t)n);
+        if (sf_grid_build(&b->grid, n, b->mesh->position, support, err) != SF_OK)
+            break;
+        bool again = integrate_all(b, err);
+        sf_grid_free(&b->grid);
+        if (err->status != SF_OK || !again)
+            break;
+        clear_edges(b);
+        for (int64_t i = 0; i < n; i++) {
+            if (b->poor[i] && round == MAX_ENLARGEMENTS) {
+                const double *x = &b->mesh->position[3 * i];
+                SF_FAIL(err, SF_ERR_MODEL,
+                        "the shape functions near (%.6g, %.6g, %.6g) m stay ill-conditioned (above %.3g) "
+                        "although "
+                        "the support was enlarged %.2f times: the cloud is too flat or too sparse there",
+                        x[0], x[1], x[2], b->condition_limit, support[i] / first[i]);
+                break;
+            }
+            if (b->poor[i])
+                support[i] *= ENLARGEMENT;
+        }
+        if (err->status != SF_OK)
+            break;
+    }
+    b->out->largest_enlargement = 1;
+    for (int64_t i = 0; i < n; i++) {
+        b->out->enlarged_count += support[i] > first[i];
+        b->out->largest_enlargement = fmax(b->out->largest_enlargement, support[i] / first[i]);
+    }
+    free(start);
+    return err->status;
+}
+
+/* phi at every node. */
+static sf_status shape_at_nodes(builder *b, const double *support, sf_error *err) {
+    int64_t n = b->mesh->node_count, capacity = 64 * n, used = 0;
+    sf_domains *out = b->out;
+    workspace *w = calloc(1, sizeof *w);
+    out->phi_ptr = sf_alloc(err, (unsigned long)n + 1, sizeof *out->phi_ptr, "shape functions");
+    out->phi_node = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_node, "shape functions");
+    out->phi_value = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_value, "shape functions");
+    if (!w)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the shape functions at the nodes");
+    if (err->status == SF_OK)
+        sf_grid_build(&b->grid, n, b->mesh->position, support, err);
+    for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
+        if (!evaluate_node(b, w, i)) /* integrate_all found it good with the same supports */
+            SF_FAIL(err, SF_ERR_MODEL, "the shape functions at node %lld cannot be evaluated", (long long)i);
+        else if (used + w->point.count > capacity)
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "more than %lld nodes on average reach a node: support_ratio is too large",
+                    (long long)(capacity / n));
+        else {
+            memcpy(&out->phi_node[used], w->point.node, (size_t)w->point.count * sizeof *out->phi_node);
+            memcpy(&out->phi_value[used], w->point.value, (size_t)w->point.count * sizeof *out->phi_value);
+            used += w->point.count;
+            out->phi_ptr[i + 1] = used;
+        }
+    }
+    if (w)
+        merge_worst(out, w);
+    sf_grid_free(&b->grid);
+    free(w);
+    return err->status;
+}
+
+/* Calls `add` for every contribution phi_J N of one boundary face's corner. */
+static void boundary_corner(const sf_mesh *mesh, const sf_boundary_face *face, int corner,
+                            const sf_domains *d, double *flux, void (*add)(void *, int32_t, const double[3]),
+                            void *target) {
+    sf_facet_triangle t[2];
+    double weight[2][4];
+    sf_dual_boundary(mesh, face, corner, t, weight);
+    for (int s = 0; s < 2; s++) {
+        for (int c = 0; c < 3; c++)
+            *flux += t[s].centroid[c] * t[s].area[c] / 3;
+        for (int v = 0; v < face->size; v++)
+            for (int64_t k = d->phi_ptr[face->node[v]]; k < d->phi_ptr[face->node[v] + 1]; k++) {
+                double part[3];
+                for (int c = 0; c < 3; c++)
+                    part[c] = weight[s][v] * d->phi_value[k] * t[s].area[c];
+                add(target, d->phi_node[k], part);
+            }
+    }
+}
+
+/* A sparse row under construction: `slot` [n] maps a node to its place (or -1). */
+typedef struct row_sum {
+    int32_t *slot;
+    int64_t count;
+    int32_t *node; /* [n] */
+    double *sum;   /* [n][3] */
+} row_sum;
+
+static void row_add(void *target, int32_t node, const double part[3]) {
+    row_sum *row = target;
+    if (row->slot[node] < 0) {
+        row->slot[node] = (int32_t)row->count;
+        row->node[row->count] = node;
+        memset(&row->sum[3 * row->count++], 0, 3 * sizeof *row->sum);
+    }
+    double *sum = &row->sum[3 * row->slot[node]];
+    for (int c = 0; c < 3; c++)
+        sum[c] += part[c];
+}
+
+static int by_value(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The boundary corners of each node: [corner_ptr[i], corner_ptr[i+1]) are 4 * face + corner. */
+static int64_t *list_corners(const builder *b, int64_t **corner, sf_error *err) {
+    int64_t n = b->mesh->node_count;
+    int64_t *ptr = sf_alloc(err, (unsigned long)n + 2, sizeof *ptr, "boundary corners");
+    *corner = sf_alloc(err, 4 * (unsigned long)b->dual->face_count, sizeof **corner, "boundary corners");
+    if (err->status != SF_OK)
+        return ptr;
+    for (int64_t f = 0; f < b->dual->face_count; f++)
+        for (int v = 0; v < b->dual->face[f].size; v++)
+            ptr[b->dual->face[f].node[v] + 2]++;
+    for (int64_t i = 0; i < n; i++)
+        ptr[i + 2] += ptr[i + 1];
+    for (int64_t f = 0; f < b->dual->face_count; f++)
+        for (int v = 0; v < b->dual->face[f].size; v++)
+            (*corner)[ptr[b->dual->face[f].node[v] + 1]++] = 4 * f + v;
+    return ptr;
+}
+
+static void domain_row(const builder *b, const int64_t *corner_ptr, const int64_t *corner, int64_t i,
+                       row_sum *row, double *volume) {
+    row->count = 0;
+    *volume = 0;
+    row_add(row, (int32_t)i, (const double[3]){0, 0, 0});
+    for (int64_t k = b->dual->edge_ptr[i]; k < b->dual->edge_ptr[i + 1]; k++) {
+        const edge_integral *edge = &b->edge[b->dual->edge_id[k]];
+        double sign = b->dual->edge_node[k] > i ? 1 : -1;
+        *volume += sign * edge->flux;
+        for (int p = 0; p < edge->count; p++)
+            row_add(row, edge->node[p],
+                    (const double[3]){sign * edge->sum[3 * p], sign * edge->sum[3 * p + 1],
+                                      sign * edge->sum[3 * p + 2]});
+    }
+    for (int64_t k = corner_ptr[i]; k < corner_ptr[i + 1]; k++)
+        boundary_corner(b->mesh, &b->dual->face[corner[k] / 4], (int)(corner[k] % 4), b->out, volume, row_add,
+                        row);
+}
+
+/* Writes row i (sorted, divided by the volume) or, when `node` is NULL, only clears the slots. */
+static void finish_row(row_sum *row, double volume, int32_t *node, double *gradient) {
+    if (node) {
+        memcpy(node, row->node, (size_t)row->count * sizeof *node);
+        qsort(node, (size_t)row->count, sizeof *node, by_value);
+        for (int64_t k = 0; k < row->count; k++)
+            for (int c = 0; c < 3; c++)
+                gradient[3 * k + c] = row->sum[3 * row->slot[node[k]] + c] / volume;
+    }
+    for (int64_t k = 0; k < row->count; k++)
+        row->slot[row->node[k]] = -1;
+}
+
+/* Two passes over the rows: lengths first, then entries. */
+static sf_status assemble_rows(builder *b, sf_error *err) {
+    int64_t n = b->mesh->node_count, *corner = NULL;
+    sf_domains *out = b->out;
+    int64_t *corner_ptr = list_corners(b, &corner, err);
+    row_sum row = {sf_alloc(err, (unsigned long)n, sizeof *row.slot, "row"), 0,
+                   sf_alloc(err, (unsigned long)n, sizeof *row.node, "row"),
+                   sf_alloc(err, 3 * (unsigned long)n, sizeof *row.sum, "row")};
+    out->volume = sf_alloc(err, (unsigned long)n, sizeof *out->volume, "volumes");
+    out->ptr = sf_alloc(err, (unsigned long)n + 1, sizeof *out->ptr, "domains");
+    if (err->status != SF_OK)
+        goto done;
+    for (int64_t i = 0; i < n; i++)
+        row.slot[i] = -1;
+    for (int64_t i = 0; i < n; i++) {
+        domain_row(b, corner_ptr, corner, i, &row, &out->volume[i]);
+        finish_row(&row, 1, NULL, NULL);
+        out->ptr[i + 1] = out->ptr[i] + row.count;
+        if (!(out->volume[i] > 0)) {
+            const double *x = &b->mesh->position[3 * i];
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "the smoothing domain of the node at (%.6g, %.6g, %.6g) m has volume %.3g m3", x[0], x[1],
+                    x[2], out->volume[i]);
+            goto done;
+        }
+    }
+    out->node = sf_alloc(err, (unsigned long)out->ptr[n], sizeof *out->node, "domains");
+    out->b = sf_alloc(err, 3 * (unsigned long)out->ptr[n], sizeof *out->b, "domains");
+    for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
+        domain_row(b, corner_ptr, corner, i, &row, &out->volume[i]);
+        finish_row(&row, out->volume[i], &out->node[out->ptr[i]], &out->b[3 * out->ptr[i]]);
+    }
+done:
+    free(corner_ptr);
+    free(corner);
+    free(row.slot);
+    free(row.node);
+    free(row.sum);
+    return err->status;
+}
+
+sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double condition_limit, double *support,
+                           sf_domains *out, sf_error *err) {
+    memset(out, 0, sizeof *out);
+    builder b = {.mesh = mesh,
+                 .dual = dual,
+                 .cloud = {mesh->position, support},
+                 .condition_limit = condition_limit,
+                 .out = out};
+    b.edge = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge, "edge integrals");
+    b.poor = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.poor, "node marks");
+    if (err->status == SF_OK && integrate_with_growth(&b, support, err) == SF_OK &&
+        shape_at_nodes(&b, support, err) == SF_OK && assemble_rows(&b, err) == SF_OK)
+        sf_domains_round(mesh, out, err);
+    if (b.edge)
+        clear_edges(&b);
+    free(b.edge);
+    free(b.poor);
+    if (err->status != SF_OK)
+        sf_domains_free(out);
+    return err->status;
+}
+
+void sf_domains_free(sf_domains *d) {
+    free(d->volume);
+    free(d->ptr);
+    free(d->node);
+    free(d->b);
+    free(d->phi_ptr);
+    free(d->phi_node);
+    free(d->phi_value);
+    memset(d, 0, sizeof *d);
+}
+
+static void sum_add(void *target, int32_t node, const double part[3]) {
+    double *sum = target;
+    for (int c = 0; c < 3; c++)
+        sum[3 * node + c] += part[c];
+}
+
+void sf_domains_boundary_integral(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *domains,
+                                  double *sum) {
+    double flux = 0;
+    for (int64_t f = 0; f < dual->face_count; f++)
+        for (int v = 0; v < dual->face[f].size; v++)
+            boundary_corner(mesh, &dual->face[f], v, domains, &flux, sum_add, sum);
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Smoothing domains: volumes, smoothed gradients B and shape functions at the nodes (Chen, Wu, Yoon, You
+ * 2001; theory eq. 4-6).
+ *
+ * Internal facets carry the moving least squares phi at their triangles' centroids; each facet is evaluated
+ * once and added with + and - to its two domains. On the boundary phi is interpolated between the face's
+ * vertices, so that boundary tractions are exactly nodal forces of u_h: this makes the patch test with
+ * constrained u_h exact (docs/adr/0002). */
+#ifndef SF_PRE_CLOUD_DOMAINS_H
+#define SF_PRE_CLOUD_DOMAINS_H
+
+#include "core/error.h"
+#include "pre/cloud/dual.h"
+#include "pre/mesh/mesh.h"
+
+typedef struct sf_domains {
+    double *volume;             /* [n] m3 */
+    int64_t *ptr;               /* [n + 1] rows of B */
+    int32_t *node;              /* [ptr[n]] ascending within a row */
+    double *b;                  /* [ptr[n]][3] m-1, rounded (rounding.h) */
+    int64_t *phi_ptr;           /* [n + 1] rows of phi at the nodes */
+    int32_t *phi_node;          /* [phi_ptr[n]] ascending within a row */
+    double *phi_value;          /* [phi_ptr[n]] */
+    double worst_condition;     /* of the moment matrices used */
+    double worst_position[3];   /* m, where */
+    int64_t enlarged_count;     /* nodes whose support was enlarged */
+    double largest_enlargement; /* factor on R, 1 = none */
+} sf_domains;
+
+/* Builds everything. `support` [n] holds R on entry; where a moment matrix is singular or worse conditioned
+ * than `condition_limit`, the supports of the nodes around it grow by 15 % until it is not (at most 12 times,
+ * then SF_ERR_MODEL with the position), and `support` returns what was used. */
+sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double condition_limit, double *support,
+                           sf_domains *out, sf_error *err);
+void sf_domains_free(sf_domains *domains);
+
+/* Adds the integral of phi_I N over the boundary to `sum` [n][3], m2 (theory eq. 6). */
+void sf_domains_boundary_integral(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *domains,
+                                  double *sum);
+
+#endif

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/cloud/dual.h"
+
+#include "pre/mesh/cell_topology.h"
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct raw_edge {
+    int32_t low, high;
+    sf_edge_use use;
+} raw_edge;
+
+typedef struct raw_face {
+    int32_t key[4]; /* sorted vertices, -1 fills */
+    int32_t cell;
+    int8_t local;
+} raw_face;
+
+static int by_edge(const void *a, const void *b) {
+    const raw_edge *x = a, *y = b;
+    if (x->low != y->low)
+        return x->low < y->low ? -1 : 1;
+    if (x->high != y->high)
+        return x->high < y->high ? -1 : 1;
+    return (x->use.cell > y->use.cell) - (x->use.cell < y->use.cell);
+}
+
+static int by_face(const void *a, const void *b) {
+    const raw_face *x = a, *y = b;
+    for (int k = 0; k < 4; k++)
+        if (x->key[k] != y->key[k])
+            return x->key[k] < y->key[k] ? -1 : 1;
+    return (x->cell > y->cell) - (x->cell < y->cell);
+}
+
+static void sort4(int32_t key[4]) {
+    for (int i = 1; i < 4; i++)
+        for (int j = i; j > 0 && key[j] < key[j - 1]; j--) {
+            int32_t swap = key[j];
+            key[j] = key[j - 1];
+            key[j - 1] = swap;
+        }
+}
+
+static int64_t count_parts(const sf_mesh *mesh, bool edges) {
+    int64_t count = 0;
+    for (int64_t c = 0; c < mesh->cell_count; c++) {
+        const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
+        count += edges ? topology->edges : topology->faces;
+    }
+    return count;
+}
+
+static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
+    int64_t count = count_parts(mesh, true), k = 0;
+    raw_edge *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell edges");
+    if (!raw)
+        return err->status;
+    for (int64_t c = 0; c < mesh->cell_count; c++) {
+        const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
+        const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
+        for (int e = 0; e < topology->edges; e++) {
+            int32_t a = v[topology->edge[e][0]], b = v[topology->edge[e][1]];
+            raw[k++] = (raw_edge){a < b ? a : b, a < b ? b : a, {(int32_t)c, (int8_t)e, a > b}};
+        }
+    }
+    qsort(raw, (size_t)count, sizeof *raw, by_edge);
+    for (k = 0; k < count; k++)
+        dual->edge_count += k == 0 || raw[k].low != raw[k - 1].low || raw[k].high != raw[k - 1].high;
+    dual->edge = sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge, "edges");
+    dual->use_ptr = sf_alloc(err, (unsigned long)dual->edge_count + 1, sizeof *dual->use_ptr, "edges");
+    dual->use = sf_alloc(err, (unsigned long)count, sizeof *dual->use, "edges");
+    int64_t edge = -1;
+    for (k = 0; k < count && err->status == SF_OK; k++) {
+        if (k == 0 || raw[k].low != raw[k - 1].low || raw[k].high != raw[k - 1].high) {
+            edge++;
+            dual->edge[2 * edge] = raw[k].low;
+            dual->edge[2 * edge + 1] = raw[k].high;
+            dual->use_ptr[edge] = k;
+        }
+        dual->use[k] = raw[k].use;
+    }
+    if (err->status == SF_OK)
+        dual->use_ptr[dual->edge_count] = count;
+    free(raw);
+    return err->status;
+}
+
+/* Faces sorted by their vertices: alone = boundary, pairs = interior. */
+static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
+    int64_t count = count_parts(mesh, false), k = 0;
+    raw_face *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell faces");
+    dual->face = sf_alloc(err, (unsigned long)count, sizeof *dual->face, "boundary faces");
+    if (err->status != SF_OK) {
+        free(raw);
+        return err->status;
+    }
+    for (int64_t c = 0; c < mesh->cell_count; c++) {
+        const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
+        const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
+        for (int f = 0; f < topology->faces; f++, k++) {
+            raw[k] = (raw_face){{-1, -1, -1, -1}, (int32_t)c, (int8_t)f};
+            for (int p = 0; p < topology->face_size[f]; p++)
+                raw[k].key[p] = v[topology->face[f][p]];
+            sort4(raw[k].key);
+        }
+    }
+    qsort(raw, (size_t)count, sizeof *raw, by_face);
+    for (k = 0; k < count;) {
+        int64_t end = k + 1;
+        while (end < count && memcmp(raw[end].key, raw[k].key, sizeof raw[k].key) == 0)
+            end++;
+        if (end - k > 2) {
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "the mesh has a face that %lld cells share (cells %d, %d, %d): parts overlap",
+                    (long long)(end - k), raw[k].cell, raw[k + 1].cell, raw[k + 2].cell);
+            break;
+        }
+        if (end - k == 1) {
+            sf_boundary_face *face = &dual->face[dual->face_count++];
+            const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[raw[k].cell]);
+            *face = (sf_boundary_face){
+                raw[k].cell, raw[k].local, (int8_t)topology->face_size[raw[k].local], {-1, -1, -1, -1}};
+            for (int p = 0; p < face->size; p++)
+                face->node[p] = mesh->cell_node[mesh->cell_ptr[face->cell] + topology->face[face->local][p]];
+        }
+        k = end;
+    }
+    free(raw);
+    return err->status;
+}
+
+static sf_status build_adjacency(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
+    int64_t n = mesh->node_count;
+    dual->edge_ptr = sf_alloc(err, (unsigned long)n + 2, sizeof *dual->edge_ptr, "edge adjacency");
+    dual->edge_node =
+        sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_node, "edge adjacency");
+    dual->edge_id =
+        sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_id, "edge adjacency");
+    if (err->status != SF_OK)
+        return err->status;
+    for (int64_t k = 0; k < 2 * dual->edge_count; k++)
+        dual->edge_ptr[dual->edge[k] + 2]++;
+    for (int64_t i = 0; i < n; i++)
+        dual->edge_ptr[i + 2] += dual->edge_ptr[i + 1];
+    /* Edges ascend by (low, high): taking high ends first fills each row with lower neighbours first, in
+     * order. */
+    for (int end = 1; end >= 0; end--)
+        for (int64_t e = 0; e < dual->edge_count; e++) {
+            int64_t slot = dual->edge_ptr[dual->edge[2 * e + end] + 1]++;
+            dual->edge_node[slot] = dual->edge[2 * e + 1 - end];
+            dual->edge_id[slot] = e;
+        }
+    return SF_OK;
+}
+
+sf_status sf_dual_build(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
+    memset(dual, 0, sizeof *dual);
+    if (build_edges(mesh, dual, err) != SF_OK || build_faces(mesh, dual, err) != SF_OK ||
+        build_adjacency(mesh, dual, err) != SF_OK)
+        sf_dual_free(dual);
+    return err->status;
+}
+
+void sf_dual_free(sf_dual *dual) {
+    free(dual->edge);
+    free(dual->use_ptr);
+    free(dual->use);
+    free(dual->face);
+    free(dual->edge_ptr);
+    free(dual->edge_node);
+    free(dual->edge_id);
+    memset(dual, 0, sizeof *dual);
+}
+
+static void triangle(const double a[3], const double b[3], const double c[3], sf_facet_triangle *out) {
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        out->centroid[k] = (a[k] + b[k] + c[k]) / 3;
+        u[k] = b[k] - a[k];
+        v[k] = c[k] - a[k];
+    }
+    for (int k = 0; k < 3; k++)
+        out->area[k] = 0.5 * (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+}
+
+static void mean_of(const sf_mesh *mesh, int count, const int32_t *cell_node, const int *local,
+                    double out[3]) {
+    out[0] = out[1] = out[2] = 0;
+    for (int k = 0; k < count; k++)
+        for (int c = 0; c < 3; c++)
+            out[c] += mesh->position[3 * cell_node[local ? local[k] : k] + c];
+    for (int c = 0; c < 3; c++)
+        out[c] /= count;
+}
+
+void sf_dual_facet(const sf_mesh *mesh, const sf_edge_use *use, sf_facet_triangle out[2]) {
+    const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[use->cell]);
+    const int32_t *v = &mesh->cell_node[mesh->cell_ptr[use->cell]];
+    int along = topology->edge_face[use->local][0], against = topology->edge_face[use->local][1];
+    double middle[3], face_along[3], face_against[3], centre[3];
+    mean_of(mesh, 2, v, topology->edge[use->local], middle);
+    mean_of(mesh, topology->face_size[along], v, topology->face[along], face_along);
+    mean_of(mesh, topology->face_size[against], v, topology->face[against], face_against);
+    mean_of(mesh, topology->vertices, v, NULL, centre);
+    triangle(middle, face_against, centre, &out[0]);
+    triangle(middle, centre, face_along, &out[1]);
+    for (int t = 0; t < 2 && use->reversed; t++)
+        for (int k = 0; k < 3; k++)
+            out[t].area[k] = -out[t].area[k];
+}
+
+void sf_dual_boundary(const sf_mesh *mesh, const sf_boundary_face *face, int corner, sf_facet_triangle out[2],
+                      double weight[2][4]) {
+    int size = face->size, next = (corner + 1) % size, previous = (corner + size - 1) % size;
+    double centre[3], ends[2][3];
+    const double *x = &mesh->position[3 * face->node[corner]];
+    mean_of(mesh, size, face->node, NULL, centre);
+    for (int k = 0; k < 3; k++) {
+        ends[0][k] = 0.5 * (x[k] + mesh->position[3 * face->node[next] + k]);
+        ends[1][k] = 0.5 * (x[k] + mesh->position[3 * face->node[previous] + k]);
+    }
+    triangle(x, ends[0], centre, &out[0]);
+    triangle(x, centre, ends[1], &out[1]);
+    for (int t = 0; t < 2; t++) {
+        for (int k = 0; k < 4; k++)
+            weight[t][k] = k < size ? 1.0 / (3 * size) : 0;
+        weight[t][corner] += 0.5;
+        weight[t][t == 0 ? next : previous] += 1.0 / 6;
+    }
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Topology of the median dual of the background mesh: its edges with the cells around each, and its boundary
+ * faces. The smoothing domain of a node is bounded, in each cell, by one facet per cell edge that ends at the
+ * node: the quadrangle (edge midpoint, face centroid, cell centroid, face centroid), as two triangles
+ * (theory, section 2). */
+#ifndef SF_PRE_CLOUD_DUAL_H
+#define SF_PRE_CLOUD_DUAL_H
+
+#include "core/error.h"
+#include "pre/mesh/mesh.h"
+#include <stdint.h>
+
+/* One appearance of an edge in a cell. `reversed`: the cell's edge runs from the higher node to the lower
+ * one. */
+typedef struct sf_edge_use {
+    int32_t cell;
+    int8_t local; /* edge number in the cell's topology table */
+    int8_t reversed;
+} sf_edge_use;
+
+typedef struct sf_boundary_face {
+    int32_t cell;
+    int8_t local;    /* face number in the cell's topology table */
+    int8_t size;     /* 3 or 4 */
+    int32_t node[4]; /* counter-clockwise seen from outside */
+} sf_boundary_face;
+
+typedef struct sf_dual {
+    int64_t edge_count;
+    int32_t *edge;    /* [edge_count][2] low node, high node; ascending */
+    int64_t *use_ptr; /* [edge_count + 1] */
+    sf_edge_use *use; /* [..] ascending by cell within an edge */
+    int64_t face_count;
+    sf_boundary_face *face; /* [face_count] faces that belong to one cell only */
+    int64_t *edge_ptr;      /* [nodes + 1] symmetric adjacency of the edges */
+    int32_t *edge_node;     /* [2 edge_count] node at the other end, ascending within a row */
+    int64_t *edge_id;       /* [2 edge_count] which edge it is */
+} sf_dual;
+
+/* Builds the dual of a mesh; refuses a face shared by more than two cells or seen from the same side by both.
+ */
+sf_status sf_dual_build(const sf_mesh *mesh, sf_dual *dual, sf_error *err);
+void sf_dual_free(sf_dual *dual);
+
+/* A triangle of a facet: centroid (m) and area vector (m2). */
+typedef struct sf_facet_triangle {
+    double centroid[3];
+    double area[3];
+} sf_facet_triangle;
+
+/* The two triangles of the facet of one edge use; area vectors point from the edge's low node to its high
+ * node. */
+void sf_dual_facet(const sf_mesh *mesh, const sf_edge_use *use, sf_facet_triangle out[2]);
+
+/* The two boundary triangles that belong to vertex `corner` of a boundary face (outward), and for each the
+ * weights that express its centroid by the face's vertices. */
+void sf_dual_boundary(const sf_mesh *mesh, const sf_boundary_face *face, int corner, sf_facet_triangle out[2],
+                      double weight[2][4]);
+
+#endif

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Moving least squares shape functions: linear basis, cubic B-spline weight with one radius per node
+ * (Belytschko, Lu, Gu 1994; theory eq. 1-3). The basis is shifted to the point of evaluation and scaled by
+ * the local radius. */
+#ifndef SF_PRE_CLOUD_MLS_H
+#define SF_PRE_CLOUD_MLS_H
+
+#include <stdint.h>
+
+enum { SF_MLS_MAX_NODES = 1024 };
+
+/* The nodes that the approximation is built on; borrowed. */
+typedef struct sf_mls_cloud {
+    const double *position; /* [n][3] m */
+    const double *support;  /* [n] m, R */
+} sf_mls_cloud;
+
+/* Shape functions at one point. */
+typedef struct sf_mls_point {
+    int count;                      /* nodes whose support covers the point */
+    int32_t node[SF_MLS_MAX_NODES]; /* in the order of the candidates */
+    double value[SF_MLS_MAX_NODES]; /* phi */
+    double condition;               /* 1-norm condition number of the moment matrix; infinite if singular */
+} sf_mls_point;
+
+/* Evaluates phi at `x` from `count` candidate nodes (those out of reach are skipped). Returns 0, or -1 when
+ * the moment matrix is singular or too many nodes reach the point: then only `count` and `condition` are set.
+ */
+int sf_mls_evaluate(const sf_mls_cloud *cloud, const double x[3], int64_t count, const int32_t *candidate,
+                    sf_mls_point *out);
+
+/* Cubic B-spline weight of q = distance / R: 2/3 at 0, zero from 1 on. */
+double sf_mls_weight(double q);
+
+#endif

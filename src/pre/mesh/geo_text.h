@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The text of a .geo file, cut as gmsh cuts it. */
+#ifndef SF_PRE_MESH_GEO_TEXT_H
+#define SF_PRE_MESH_GEO_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum sf_geo_kind { SF_GEO_END, SF_GEO_WORD, SF_GEO_TEXT, SF_GEO_MARK } sf_geo_kind;
+
+typedef struct sf_geo_token {
+    sf_geo_kind kind;
+    const char *begin; /* in the text; of a quoted one without its quotes */
+    size_t length;
+} sf_geo_token;
+
+/* Words (names and numbers), texts in quotes, and single marks; comments vanish. Moves `*text` on. */
+sf_geo_token sf_geo_next(const char **text);
+bool sf_geo_is(sf_geo_token t, const char *text);
+
+/* The file up to its first zero byte, from malloc; NULL if it cannot be read. */
+char *sf_geo_load(const char *path);
+/* True if the name ends in .geo. */
+bool sf_geo_is_script(const char *path);
+
+#endif

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What differs between versions of gmsh's C API, from 4.8 on. No other file looks at GMSH_API_VERSION. */
+#ifndef SF_PRE_MESH_GMSH_ADAPTER_H
+#define SF_PRE_MESH_GMSH_ADAPTER_H
+
+#include <stddef.h>
+
+/* Starts gmsh without its configuration files and without its window. Returns gmsh's code: 0 on success. */
+int sf_gmsh_adapter_initialize(void);
+
+/* The version of the library that runs, for example "4.8.4", which may be newer than the header; writes at
+ * most `size` bytes to `out`. gmsh must be started. */
+void sf_gmsh_adapter_version(char *out, size_t size);
+
+#endif

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How much memory softfall-pre may take: SOFTFALL_MEMORY_MB of the environment if it is set, else what Linux
+ * calls available. */
+#ifndef SF_PRE_MESH_MEMORY_H
+#define SF_PRE_MESH_MEMORY_H
+
+/* Bytes; infinite if nobody knows. */
+double sf_memory_available(void);
+/* Makes allocations of this process beyond that fail, for a process that may be handed anything. */
+void sf_memory_limit_process(void);
+
+#endif

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The background mesh of the pad and the missile's surface, as read from a geometry: metres, nodes renumbered
+ * from 0 in gmsh's order without orphans. Everything is owned by the struct. */
+#ifndef SF_PRE_MESH_MESH_H
+#define SF_PRE_MESH_MESH_H
+
+#include "core/error.h"
+#include <stdint.h>
+
+/* A named set of nodes: those of a physical surface group. */
+typedef struct sf_node_set {
+    char *name;
+    int64_t count;
+    int32_t *node; /* [count] ascending */
+} sf_node_set;
+
+typedef struct sf_mesh {
+    int64_t node_count;
+    double *position; /* [node_count][3] m */
+    int64_t cell_count;
+    uint8_t *cell_type; /* [cell_count] SF_CELL_* */
+    int64_t *cell_ptr;  /* [cell_count + 1] */
+    int32_t *cell_node; /* [..] VTK vertex order, positive volume */
+    int set_count;
+    sf_node_set *set;     /* [set_count] every physical surface group whose nodes belong to the pad */
+    int64_t orphan_count; /* nodes of the geometry that no cell of any volume uses (told, not kept) */
+} sf_mesh;
+
+typedef struct sf_surface {
+    int64_t node_count;
+    double *position; /* [node_count][3] m */
+    int64_t triangle_count;
+    int32_t *triangle; /* [triangle_count][3] turned outwards (away from the missile's volume) */
+} sf_surface;
+
+void sf_mesh_free(sf_mesh *mesh);
+void sf_surface_free(sf_surface *surface);
+
+/* Finds a set by name; NULL if there is none. */
+const sf_node_set *sf_mesh_find_set(const sf_mesh *mesh, const char *name);
+
+/* Volume of a cell by the divergence theorem over its faces (quadrangles split at their centroid); m3. */
+double sf_mesh_cell_volume(const sf_mesh *mesh, int64_t cell);
+
+/* Mirrors the vertex order of the cells whose corners are all left-handed (readers differ in their
+ * conventions), so that their volume is positive; returns how many. Cells with mixed corners are left for
+ * sf_mesh_check to refuse. */
+int64_t sf_mesh_orient(sf_mesh *mesh);
+
+/* Refuses a mesh that has no cells, a cell with a non-positive volume at any corner (inverted), a cell
+ * smaller than 1e-6 of the mean (tiny), coinciding nodes, or non-finite positions; names the cell and its
+ * centroid. On success
+ * `*volume` is the mesh volume in m3. */
+sf_status sf_mesh_check(const sf_mesh *mesh, double *volume, sf_error *err);
+
+#endif

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The missile's surface: is it a sphere cap, and where does it first touch the pad? */
+#ifndef SF_PRE_MESH_MISSILE_SHAPE_H
+#define SF_PRE_MESH_MISSILE_SHAPE_H
+
+#include "core/error.h"
+#include "core/model.h"
+#include "pre/mesh/mesh.h"
+
+/* Least-squares sphere through the surface's nodes. `*deviation` is the largest distance of a node from it
+ * divided by the radius. Fails on fewer than 4 nodes or coplanar ones. */
+sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], double *radius,
+                                double *deviation, sf_error *err);
+
+/* Sets shape, sphere_* of the card from the surface by `rule` (0 auto, 1 sphere, 2 surface): a surface is a
+ * sphere when its nodes deviate by less than 1e-6 of the radius. */
+sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_card *card, sf_error *err);
+
+/* Distance (m, any sign) that the missile must travel along its direction until its surface touches one of
+ * the `count` points; SF_ERR_MODEL if its path misses them all. */
+sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *card, const double *position,
+                              int64_t count, const int32_t *node, double *distance, sf_error *err);
+
+#endif

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/constraint/constraint.h"
+
+#include "core/threads.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALL = 7, BATCH = 64 }; /* mask of x, y and z; rows or nodes of one call of a kernel */
+
+/* Does a node whose components in `mask` are held have a row in the range: 0 for all components in `shared`
+ * together, 1 to 3 for one of the others? */
+static bool has_row(uint8_t mask, uint8_t shared, int range) {
+    bool together = (mask & shared) == shared;
+    if (range == 0)
+        return together;
+    int bit = 1 << (range - 1);
+    return (mask & bit) != 0 && !(together && (shared & bit) != 0);
+}
+
+/* The components that most rows are to hold together: all, or the one that is held most often if no node is
+ * held in all. */
+static uint8_t choose_shared(const sf_model *m) {
+    int64_t held[3] = {0};
+    int most = 0;
+    for (int64_t k = 0; k < m->fixed_count; k++) {
+        if (m->fixed_mask[k] == ALL)
+            return ALL;
+        for (int r = 0; r < 3; r++)
+            held[r] += (m->fixed_mask[k] >> r) & 1;
+    }
+    for (int r = 1; r < 3; r++)
+        most = held[r] > held[most] ? r : most;
+    return (uint8_t)(1 << most);
+}
+
+/* The rows range by range, in the order of the model, and the ends of the ranges. */
+static sf_status list_rows(const sf_model *m, sf_constraint *c, sf_ldl_entries *a, sf_error *err) {
+    a->shared = choose_shared(m);
+    for (int range = 0; range < 4; range++) {
+        for (int64_t k = 0; k < m->fixed_count; k++)
+            c->rows += has_row(m->fixed_mask[k], a->shared, range);
+        a->part[range] = c->rows;
+    }
+    c->node = sf_alloc(err, (unsigned long)c->rows, sizeof *c->node, "constraint nodes");
+    c->base = sf_alloc(err, (unsigned long)c->rows, 1, "constraint nodes");
+    int64_t row = 0;
+    for (int range = 0; range < 4 && err->status == SF_OK; range++)
+        for (int64_t k = 0; k < m->fixed_count; k++)
+            if (has_row(m->fixed_mask[k], a->shared, range)) {
+                c->node[row] = m->fixed_node[k];
+                c->base[row++] = m->fixed_base[k];
+            }
+    return err->status;
+}
+
+/* Lists the touched nodes; `place` [n] gets their places. */
+static sf_status list_touched(const sf_model *m, sf_constraint *c, int32_t *place, sf_error *err) {
+    for (int64_t k = 0; k < c->row_ptr[c->rows]; k++)
+        place[c->row_place[k]] = 1;
+    for (int64_t i = 0; i < m->node_count; i++)
+        c->touched_count += place[i];
+    c->touched = sf_alloc(err, (unsigned long)c->touched_count, sizeof *c->touched, "constraint lists");
+    int64_t count = 0;
+    for (int64_t i = 0; i < m->node_count && err->status == SF_OK; i++)
+        if (place[i]) {
+            c->touched[count] = (int32_t)i;
+            place[i] = (int32_t)count++;
+        }
+    return err->status;
+}
+
+static void list_by_node(sf_constraint *c) {
+    for (int64_t k = 0; k < c->row_ptr[c->rows]; k++)
+        c->node_ptr[c->row_place[k] + 1]++;
+    for (int64_t t = 0; t < c->touched_count; t++)
+        c->node_ptr[t + 1] += c->node_ptr[t];
+    for (int64_t r = 0; r < c->rows; r++)
+        for (int64_t k = c->row_ptr[r]; k < c->row_ptr[r + 1]; k++) {
+            int64_t slot = c->node_ptr[c->row_place[k]]++;
+            c->node_row[slot] = (int32_t)r;
+            c->node_phi[slot] = c->row_phi[k];
+        }
+    memmove(&c->node_ptr[1], &c->node_ptr[0], (size_t)c->touched_count * sizeof *c->node_ptr);
+    c->node_ptr[0] = 0;
+}
+
+static void free_lists(sf_constraint *c) {
+    free(c->touched);
+    free(c->row_ptr);
+    free(c->row_place);
+    free(c->row_phi);
+    free(c->node_ptr);
+    free(c->node_row);
+    free(c->node_phi);
+    c->touched = c->row_place = c->node_row = NULL;
+    c->row_ptr = c->node_ptr = NULL;
+    c->row_phi = c->node_phi = NULL;
+    c->touched_count = 0;
+}
+
+/* The lists of G, from the rows' nodes. */
+static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err) {
+    int64_t entries = 0;
+    for (int64_t r = 0; r < c->rows; r++)
+        entries += m->phi_ptr[c->node[r] + 1] - m->phi_ptr[c->node[r]];
+    unsigned long all = (unsigned long)entries, rows = (unsigned long)c->rows;
+    int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "constraint lists");
+    c->row_ptr = sf_alloc(err, rows + 1, sizeof *c->row_ptr, "constraint lists");
+    c->row_place = sf_alloc(err, all, sizeof *c->row_place, "constraint lists");
+    c->row_phi = sf_alloc(err, all, sizeof *c->row_phi, "constraint lists");
+    c->node_row = sf_alloc(err, all, sizeof *c->node_row, "constraint lists");
+    c->node_phi = sf_alloc(err, all, sizeof *c->node_phi, "constraint lists");
+    entries = 0;
+    for (int64_t r = 0; r < c->rows && err->status == SF_OK; r++) {
+        for (int64_t k = m->phi_ptr[c->node[r]]; k < m->phi_ptr[c->node[r] + 1]; k++, entries++) {
+            c->row_place[entries] = m->phi_node[k];
+            c->row_phi[entries] = m->phi_value[k];
+        }
+        c->row_ptr[r + 1] = entries;
+    }
+    if (err->status == SF_OK && list_touched(m, c, place, err) == SF_OK) {
+        c->node_ptr =
+            sf_alloc(err, (unsigned long)c->touched_count + 1, sizeof *c->node_ptr, "constraint lists");
+        for (int64_t k = 0; k < entries; k++)
+            c->row_place[k] = place[c->row_place[k]];
+        if (err->status == SF_OK)
+            list_by_node(c);
+    }
+    free(place);
+    return err->status;
+}
+
+/* Lower triangle of G M^-1 G^T: all pairs of rows that share a node and a component. */
+static sf_status gram_entries(const sf_model *m, const sf_constraint *c, sf_ldl_entries *a, sf_error *err) {
+    int64_t pairs = 0;
+    for (int64_t t = 0; t < c->touched_count; t++) {
+        int64_t rows = c->node_ptr[t + 1] - c->node_ptr[t];
+        pairs += rows * (rows + 1) / 2;
+    }
+    a->row = sf_alloc(err, (unsigned long)pairs, sizeof *a->row, "constraint matrix");
+    a->column = sf_alloc(err, (unsigned long)pairs, sizeof *a->column, "constraint matrix");
+    a->value = sf_alloc(err, (unsigned long)pairs, sizeof *a->value, "constraint matrix");
+    for (int64_t t = 0; t < c->touched_count && err->status == SF_OK; t++)
+        for (int64_t p = c->node_ptr[t]; p < c->node_ptr[t + 1]; p++)
+            for (int64_t q = c->node_ptr[t]; q <= p; q++) {
+                int64_t high = c->node_row[p], low = c->node_row[q]; /* rows ascend within a node */
+                if (sf_ldl_apart(a, low, high))
+                    continue;
+                a->row[a->count] = high;
+                a->column[a->count] = low;
+                a->value[a->count++] = c->node_phi[p] * c->node_phi[q] / m->mass[c->touched[t]];
+            }
+    return err->status;
+}
+
+/* The rows in the order of the elimination. */
+static sf_status order_rows(sf_constraint *c, sf_error *err) {
+    unsigned long rows = (unsigned long)c->rows;
+    int32_t *node = sf_alloc(err, rows, sizeof *node, "constraint nodes");
+    uint8_t *base = sf_alloc(err, rows, 1, "constraint nodes");
+    for (int64_t r = 0; r < c->rows && err->status == SF_OK; r++) {
+        node[r] = c->node[c->factor.order[r]];
+        base[r] = c->base[c->factor.order[r]];
+    }
+    free(c->node);
+    free(c->base);
+    c->node = node;
+    c->base = base;
+    return err->status;
+}
+
+static sf_status build_work(const sf_model *m, sf_constraint *c, sf_error *err) {
+    unsigned long touched = (unsigned long)c->touched_count;
+    c->lambda = sf_alloc(err, (unsigned long)c->rows, sizeof *c->lambda, "constraint forces");
+    c->field = sf_alloc(err, touched, sizeof *c->field, "constraint forces");
+    c->mobility = sf_alloc(err, touched, sizeof *c->mobility, "constraint forces");
+    for (int64_t t = 0; t < c->touched_count && err->status == SF_OK; t++)
+        c->mobility[t] = 1 / m->mass[c->touched[t]];
+    return err->status;
+}
+
+sf_status sf_constraint_build(const sf_model *m, sf_constraint *c, sf_error *err) {
+    sf_ldl_entries a = {.count = 0};
+    memset(c, 0, sizeof *c);
+    if (list_rows(m, c, &a, err) == SF_OK && c->rows > 0 && build_lists(m, c, err) == SF_OK &&
+        gram_entries(m, c, &a, err) == SF_OK && sf_ldl_build(&a, &c->factor, err) == SF_OK &&
+        order_rows(c, err) == SF_OK) {
+        free_lists(c);
+        if (build_lists(m, c, err) == SF_OK)
+            build_work(m, c, err);
+    }
+    free(a.row);
+    free(a.column);
+    free(a.value);
+    if (err->status != SF_OK)
+        sf_constraint_free(c);
+    return err->status;
+}
+
+void sf_constraint_free(sf_constraint *c) {
+    free_lists(c);
+    sf_ldl_free(&c->factor);
+    free(c->node);
+    free(c->base);
+    free(c->mobility);
+    free(c->field);
+    free(c->lambda);
+    memset(c, 0, sizeof *c);
+}
+
+/* lambda = G field in a batch of rows from `first`. */
+static SF_KERNEL void apply_rows(const sf_constraint *c, int64_t first) {
+    for (int64_t r = first; r < first + BATCH && r < c->rows; r++) {
+        sf_vec sum = {0};
+        for (int64_t k = c->row_ptr[r]; k < c->row_ptr[r + 1]; k++)
+            sum += c->row_phi[k] * c->field[c->row_place[k]];
+        c->lambda[r] = sum * c->factor.mask[r];
+    }
+}
+
+/* reaction = G^T lambda at a batch of touched nodes from `first`. */
+static SF_KERNEL void set_reactions(const sf_constraint *c, int64_t first, double *reaction) {
+    for (int64_t t = first; t < first + BATCH && t < c->touched_count; t++) {
+        sf_vec sum = {0};
+        for (int64_t k = c->node_ptr[t]; k < c->node_ptr[t + 1]; k++)
+            sum += c->node_phi[k] * c->lambda[c->node_row[k]];
+        for (int r = 0; r < 3; r++)
+            reaction[3 * (int64_t)c->touched[t] + r] = sum[r];
+    }
+}
+
+/* lambda = G (force / mass) + G v / dt. Like the solution, for the threads of a parallel region. */
+static void right_side(const sf_constraint *c, const sf_constraint_step *step) {
+    double inverse = 1 / step->dt;
+#pragma omp for schedule(static)
+    for (int64_t t = 0; t < c->touched_count; t++) {
+        int64_t i = c->touched[t];
+        c->field[t] =
+            sf_vec_load(&step->force[3 * i]) * c->mobility[t] + sf_vec_load(&step->v[3 * i]) * inverse;
+    }
+#pragma omp for schedule(static)
+    for (int64_t r = 0; r < c->rows; r += BATCH)
+        apply_rows(c, r);
+}
+
+static void solve(const sf_constraint *c) {
+#pragma omp for schedule(dynamic)
+    for (int b = 0; b < SF_LDL_BRANCHES; b++)
+        sf_ldl_forward(&c->factor, b, c->lambda);
+#pragma omp single
+    sf_ldl_trunk(&c->factor, c->lambda);
+#pragma omp for schedule(dynamic)
+    for (int b = 0; b < SF_LDL_BRANCHES; b++)
+        sf_ldl_backward(&c->factor, b, c->lambda);
+}
+
+/* Resultants of the reactions. */
+static void add_resultants(const sf_constraint *c, sf_constraint_step *step) {
+    sf_vec all = {0}, base = {0};
+    for (int64_t r = 0; r < c->rows; r++) {
+        all -= c->lambda[r];
+        base -= c->lambda[r] * c->base[r];
+    }
+    for (int r = 0; r < 3; r++) {
+        step->all[r] = all[r];
+        step->base[r] = base[r];
+    }
+}
+
+void sf_constraint_project(const sf_constraint *c, sf_constraint_step *step) {
+#pragma omp parallel if (c->rows > SF_FEW_POINTS) default(none) shared(c, step)
+    {
+        right_side(c, step);
+        if (c->rows > 0)
+            solve(c);
+#pragma omp for schedule(static)
+        for (int64_t t = 0; t < c->touched_count; t += BATCH)
+            set_reactions(c, t, step->reaction);
+    }
+    add_resultants(c, step);
+}
+
+double sf_constraint_residual(const sf_model *m, const sf_constraint *c, const sf_constraint_step *step) {
+    double residual = 0;
+#pragma omp parallel if (c->rows > SF_FEW_POINTS) default(none) shared(m, c, step) reduction(max : residual)
+    {
+#pragma omp for schedule(static)
+        for (int64_t t = 0; t < c->touched_count; t++) {
+            int64_t i = c->touched[t];
+            sf_vec net = sf_vec_load(&step->force[3 * i]) - sf_vec_load(&step->reaction[3 * i]);
+            c->field[t] = sf_vec_load(&step->v[3 * i]) + net * (step->dt / m->mass[i]);
+        }
+#pragma omp for schedule(static)
+        for (int64_t r = 0; r < c->rows; r += BATCH)
+            apply_rows(c, r);
+#pragma omp for schedule(static)
+        for (int64_t r = 0; r < c->rows; r++)
+            for (int k = 0; k < 3; k++)
+                residual = fmax(residual, fabs(c->lambda[r][k]));
+    }
+    return residual;
+}

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/contact/contact_gram.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The contact points that each node supports: rows by node, entries in ascending contact point. */
+typedef struct transposed {
+    int64_t *ptr;   /* [n + 2] */
+    int32_t *point; /* [..] */
+    double *phi;    /* [..] */
+} transposed;
+
+static sf_status transpose(const sf_model *m, transposed *t, sf_error *err) {
+    int64_t count = 0;
+    for (int64_t c = 0; c < m->contact_count; c++)
+        count += m->phi_ptr[m->contact_node[c] + 1] - m->phi_ptr[m->contact_node[c]];
+    t->ptr = sf_alloc(err, (unsigned long)m->node_count + 2, sizeof *t->ptr, "contact lists");
+    t->point = sf_alloc(err, (unsigned long)count, sizeof *t->point, "contact lists");
+    t->phi = sf_alloc(err, (unsigned long)count, sizeof *t->phi, "contact lists");
+    if (err->status != SF_OK)
+        return err->status;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t c = 0; c < m->contact_count; c++)
+            for (int64_t k = m->phi_ptr[m->contact_node[c]]; k < m->phi_ptr[m->contact_node[c] + 1]; k++) {
+                if (pass == 0) {
+                    t->ptr[m->phi_node[k] + 2]++;
+                    continue;
+                }
+                int64_t slot = t->ptr[m->phi_node[k] + 1]++;
+                t->point[slot] = (int32_t)c;
+                t->phi[slot] = m->phi_value[k];
+            }
+        for (int64_t i = 0; pass == 0 && i < m->node_count; i++)
+            t->ptr[i + 2] += t->ptr[i + 1];
+    }
+    return SF_OK;
+}
+
+static int by_value(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Row c: sums into `dense` (zero on entry and exit) and lists the points touched. */
+static int64_t gram_row(const sf_model *m, const transposed *t, int64_t c, double *dense, int32_t *list,
+                        uint8_t *seen) {
+    int64_t used = 0;
+    for (int64_t k = m->phi_ptr[m->contact_node[c]]; k < m->phi_ptr[m->contact_node[c] + 1]; k++) {
+        int32_t node = m->phi_node[k];
+        for (int64_t q = t->ptr[node]; q < t->ptr[node + 1]; q++) {
+            if (!seen[t->point[q]]) {
+                seen[t->point[q]] = 1;
+                list[used++] = t->point[q];
+            }
+            dense[t->point[q]] += m->phi_value[k] * t->phi[q] / m->mass[node];
+        }
+    }
+    qsort(list, (size_t)used, sizeof *list, by_value);
+    return used;
+}
+
+static void measure_points(const sf_model *m, sf_contact_gram *gram) {
+    gram->spacing = INFINITY;
+    for (int64_t c = 0; c < m->contact_count; c++) {
+        double sum = 0;
+        for (int64_t k = m->phi_ptr[m->contact_node[c]]; k < m->phi_ptr[m->contact_node[c] + 1]; k++)
+            sum += fabs(m->phi_value[k]);
+        gram->spread = fmax(gram->spread, sum);
+        gram->spacing = fmin(gram->spacing, m->spacing[m->contact_node[c]]);
+    }
+}
+
+sf_status sf_contact_gram_build(const sf_model *m, sf_contact_gram *gram, sf_error *err) {
+    unsigned long count = (unsigned long)m->contact_count;
+    transposed t = {0};
+    memset(gram, 0, sizeof *gram);
+    measure_points(m, gram);
+    double *dense = sf_alloc(err, count, sizeof *dense, "contact matrix");
+    int32_t *list = sf_alloc(err, count, sizeof *list, "contact matrix");
+    uint8_t *seen = sf_alloc(err, count, 1, "contact matrix");
+    gram->ptr = sf_alloc(err, count + 1, sizeof *gram->ptr, "contact matrix");
+    gram->diagonal = sf_alloc(err, count, sizeof *gram->diagonal, "contact matrix");
+    if (err->status != SF_OK || transpose(m, &t, err) != SF_OK)
+        goto done;
+    for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
+        for (int64_t c = 0; c < m->contact_count; c++) {
+            int64_t used = gram_row(m, &t, c, dense, list, seen);
+            gram->ptr[c + 1] = gram->ptr[c] + used;
+            for (int64_t k = 0; k < used; k++) {
+                if (pass == 1) {
+                    gram->index[gram->ptr[c] + k] = list[k];
+                    gram->value[gram->ptr[c] + k] = dense[list[k]];
+                }
+                seen[list[k]] = 0;
+                if (list[k] == c)
+                    gram->diagonal[c] = dense[c];
+            }
+            for (int64_t k = 0; k < used; k++)
+                dense[list[k]] = 0;
+        }
+        if (pass == 0) {
+            gram->index =
+                sf_alloc(err, (unsigned long)gram->ptr[count], sizeof *gram->index, "contact matrix");
+            gram->value =
+                sf_alloc(err, (unsigned long)gram->ptr[count], sizeof *gram->value, "contact matrix");
+        }
+    }
+done:
+    free(t.ptr);
+    free(t.point);
+    free(t.phi);
+    free(dense);
+    free(list);
+    free(seen);
+    if (err->status != SF_OK)
+        sf_contact_gram_free(gram);
+    return err->status;
+}
+
+void sf_contact_gram_free(sf_contact_gram *gram) {
+    free(gram->ptr);
+    free(gram->index);
+    free(gram->value);
+    free(gram->diagonal);
+    memset(gram, 0, sizeof *gram);
+}

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/field/domain_stress.h"
+
+#include "core/stability.h"
+#include "solver/time_step.h"
+#include <math.h>
+#include <string.h>
+
+/* Adds d_J B_J^T of entries with numbers of `width` bytes to the columns of F - I. Two sums run side by side,
+ * because each addition waits for the one before. */
+static inline void add_entries(sf_gradient_part row, int width, const sf_vec *restrict d, sf_vec sum[2][3]) {
+    for (int64_t k = 0; k + 1 < row.count; k += 2) {
+        const uint8_t *b = &row.b[3 * width * k];
+        sf_vec x = d[row.local[k]], y = d[row.local[k + 1]];
+        __builtin_prefetch(b + SF_AHEAD);
+        for (int c = 0; c < 3; c++) {
+            sum[0][c] += x * sf_packed_number(b + c * width);
+            sum[1][c] += y * sf_packed_number(b + (3 + c) * width);
+        }
+    }
+    if (row.count > 0 && row.count % 2)
+        for (int c = 0; c < 3; c++)
+            sum[0][c] +=
+                d[row.local[row.count - 1]] * sf_packed_number(&row.b[(3 * (row.count - 1) + c) * width]);
+}
+
+/* Columns of F - I of domain l, from the coefficients d that its group sees. */
+static inline void displacement_gradient(const sf_model *m, const sf_operators *op, const sf_vec *d,
+                                         int64_t l, sf_vec g[3]) {
+    sf_vec sum[2][3] = {{{0}, {0}, {0}}, {{0}, {0}, {0}}};
+    add_entries(sf_gradient_takers(m, op->gradient, op->halo.local, l), 8, d, sum);
+    add_entries(sf_gradient_others(m, op->gradient, op->halo.local, l), 6, d, sum);
+    for (int c = 0; c < 3; c++)
+        g[c] = sum[0][c] + sum[1][c];
+}
+
+/* The coefficients that group g sees. */
+static SF_KERNEL void gather_group(const sf_model *m, const sf_halo *h, int64_t g, const double *d,
+                                   sf_vec *seen) {
+    for (int64_t i = sf_halo_first(g); i < sf_halo_end(m, g); i++)
+        *seen++ = sf_vec_load(&d[3 * i]);
+    for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
+        *seen++ = sf_vec_load(&d[3 * (int64_t)h->node[q]]);
+}
+
+/* Lanes first .. first + count - 1 of a batch from the state and the gathered coefficients `d`; spare lanes
+ * are an undeformed point. */
+static void load_batch(const sf_model *m, const sf_operators *op, const sf_state *s, const sf_vec *d,
+                       int64_t block, int count, sf_foam_batch *b) {
+    int64_t first = block * SF_LANES;
+    for (int l = 0; l < SF_LANES; l++) {
+        static const double rest[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+        const double *old = l < count ? &s->f[9 * (first + l)] : rest;
+        sf_vec g[3] = {{0}, {0}, {0}};
+        if (l < count)
+            displacement_gradient(m, op, d, first + l, g);
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                b->f[3 * r + c][l] = (r == c) + g[c][r];
+        for (int k = 0; k < 9; k++)
+            b->f_old[k][l] = old[k];
+        b->length[l] = l >= count ? 1 : m->foam.damp_length > 0 ? m->foam.damp_length : m->spacing[first + l];
+    }
+    if (op->foam.maxwell > 0)
+        memcpy(b->maxwell, &s->maxwell[block * 6 * SF_LANES], sizeof b->maxwell);
+    else
+        memset(b->maxwell, 0, sizeof b->maxwell);
+    memcpy(b->peak, &s->peak[block * SF_LANES], sizeof b->peak);
+    if (op->foam.curve_count > 1)
+        memcpy(b->rate, &s->rate[block * SF_LANES], sizeof b->rate);
+    else
+        memset(b->rate, 0, sizeof b->rate);
+}
+
+/* Sums and extremes of a chunk, lane by lane, so that one batch does not wait for the one before. */
+typedef struct lane_sums {
+    double stored[SF_LANES], hysteresis[SF_LANES], viscous[SF_LANES];
+    double slowness[SF_LANES]; /* s-1, largest inverse of a stable step, times 4 */
+    double load[SF_LANES], shortest[SF_LANES];
+    double jacobian[SF_LANES], block[SF_LANES]; /* smallest, and in which block of the chunk; a NaN is kept */
+} lane_sums;
+
+/* A spare lane weighs nothing and is not stiff. */
+typedef struct lane_weights {
+    double volume[SF_LANES], stability[SF_LANES];
+} lane_weights;
+
+/* Bounds of the time step (core/stability.h) and effective tangents. */
+static void bound_steps(const lane_weights *w, double tightness, double dt_old, const sf_foam_batch *b,
+                        double tangent[SF_LANES], lane_sums *sum) {
+    double inverse = dt_old > 0 ? 2 / dt_old : 0;
+    for (int l = 0; l < SF_LANES; l++)
+        tangent[l] = 0;
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double a = b->direction_tangent[i][l], eta = b->direction_viscosity[i][l];
+            tangent[l] = sf_larger(a + eta * inverse, tangent[l]);
+            sum->slowness[l] =
+                sf_larger(sf_stability_slowness(w->stability[l] * tightness, a, eta), sum->slowness[l]);
+        }
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        sum->load[l] = sf_larger(w->stability[l] * tangent[l], sum->load[l]);
+}
+
+static void add_batch(const lane_weights *w, double block, const sf_foam_batch *b, lane_sums *sum) {
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double v = w->volume[l], shorter = sf_smaller(b->stretch[0][l], sum->shortest[l]);
+        shorter = sf_smaller(b->stretch[1][l], shorter);
+        sum->shortest[l] = sf_smaller(b->stretch[2][l], shorter);
+        sum->stored[l] += v * b->stored[l];
+        sum->hysteresis[l] += v * b->lost[l];
+        sum->viscous[l] += v * b->work[l];
+        bool kept = (b->jacobian[l] >= sum->jacobian[l]) | (sum->jacobian[l] != sum->jacobian[l]);
+        sum->jacobian[l] = kept ? sum->jacobian[l] : b->jacobian[l];
+        sum->block[l] = kept ? sum->block[l] : block;
+    }
+}
+
+/* Lanes of the chunk into its sums. */
+static void merge_lanes(const lane_sums *lane, int64_t first, sf_partial *sum) {
+    double slowness = 0;
+    *sum = (sf_partial){.jacobian = INFINITY, .shortest = INFINITY};
+    for (int l = 0; l < SF_LANES; l++) {
+        sum->stored += lane->stored[l];
+        sum->hysteresis += lane->hysteresis[l];
+        sum->viscous += lane->viscous[l];
+        slowness = sf_larger(lane->slowness[l], slowness);
+        sum->load = sf_larger(lane->load[l], sum->load);
+        sum->shortest = sf_smaller(lane->shortest[l], sum->shortest);
+        if (!(lane->jacobian[l] >= sum->jacobian) && !isnan(sum->jacobian)) {
+            sum->jacobian = lane->jacobian[l];
+            sum->jacobian_node = first + (int64_t)lane->block[l] * SF_LANES + l;
+        }
+    }
+    sum->step = 4 / slowness;
+}
+
+static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, int64_t block, int count,
+                        const sf_foam_batch *b, lane_sums *sum) {
+    int64_t first = block * SF_LANES;
+    double tangent[SF_LANES];
+    lane_weights w = {{0}, {0}};
+    memcpy(w.volume, &m->volume[first], (size_t)count * sizeof *w.volume);
+    memcpy(w.stability, &op->stability[first], (size_t)count * sizeof *w.stability);
+    bound_steps(&w, s->tightness, s->dt_old, b, tangent, sum);
+    add_batch(&w, (double)(block % (SF_CHUNK / SF_LANES)), b, sum);
+    if (op->foam.maxwell > 0)
+        memcpy(&s->maxwell[block * 6 * SF_LANES], b->maxwell, sizeof b->maxwell);
+    memcpy(&s->peak[block * SF_LANES], b->peak, sizeof b->peak);
+    if (op->foam.curve_count > 1)
+        memcpy(&s->rate[block * SF_LANES], b->rate, sizeof b->rate);
+    memcpy(&s->stiffness[first], b->stiffness, (size_t)count * sizeof *b->stiffness);
+    memcpy(&s->tangent[first], tangent, (size_t)count * sizeof *tangent);
+    for (int l = 0; l < count; l++) {
+        int64_t i = first + l;
+        double v = m->volume[i];
+        for (int k = 0; k < 9; k++) {
+            s->f[9 * i + k] = b->f[k][l];
+            s->stress[9 * i + k] = v * b->p[k][l];
+        }
+        for (int k = 0; k < 6 && b->directions; k++)
+            s->directional[6 * i + k] = (float)b->directional[k][l];
+    }
+}
+
+static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf_state *s, const sf_vec *d,
+                                   int64_t chunk) {
+    lane_sums sum = {.stored = {0}};
+    for (int l = 0; l < SF_LANES; l++)
+        sum.jacobian[l] = sum.shortest[l] = INFINITY;
+    for (int64_t block = chunk * (SF_CHUNK / SF_LANES);
+         block < (chunk + 1) * (SF_CHUNK / SF_LANES) && block * SF_LANES < m->node_count; block++) {
+        sf_foam_batch batch;
+        int64_t left = m->node_count - block * SF_LANES;
+        int count = left < SF_LANES ? (int)left : SF_LANES;
+        batch.directions = sf_time_step_due(s);
+        load_batch(m, op, s, d, block, count, &batch);
+        sf_foam_update(&op->foam, s->dt_old, &batch);
+        for (int l = count; l < SF_LANES; l++) /* nor is it short */
+            batch.jacobian[l] = batch.stretch[0][l] = batch.stretch[1][l] = batch.stretch[2][l] = INFINITY;
+        store_batch(m, op, s, block, count, &batch, &sum);
+    }
+    merge_lanes(&sum, chunk * SF_CHUNK, &s->partial[chunk]);
+}
+
+void sf_domain_law(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t block,
+                   sf_foam_batch *b) {
+    memset(b, 0, sizeof *b);
+    memcpy(b->peak, &s->peak[block * SF_LANES], sizeof b->peak);
+    for (int l = 0; l < SF_LANES; l++) {
+        int64_t i = block * SF_LANES + l;
+        for (int k = 0; k < 9; k++)
+            b->f[k][l] = b->f_old[k][l] = i < m->node_count ? s->f[9 * i + k] : k % 4 == 0;
+        b->length[l] = 1;
+    }
+    sf_foam_update(&op->foam, 0, b);
+}
+
+void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {
+    static const int64_t chunks = SF_GROUP / SF_CHUNK;
+    const sf_halo *h = &op->halo;
+#pragma omp for schedule(static)
+    for (int64_t g = 0; g < h->group_count; g++) {
+        sf_vec d[SF_GROUP_SEES];
+        gather_group(m, h, g, s->d, d);
+        for (int64_t chunk = g * chunks; chunk < (g + 1) * chunks && chunk < s->chunk_count; chunk++)
+            update_chunk(m, op, s, d, chunk);
+    }
+}

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/field/halo.h"
+
+#include "solver/field/gradient.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Lists the nodes of other groups that group g sees, marked in `seen` (zero on entry and exit), into `list`
+ * if that is not NULL, and returns how many. */
+static int64_t list_others(const sf_model *m, int64_t g, uint8_t *seen, int32_t *list) {
+    int64_t own = sf_halo_first(g), end = sf_halo_end(m, g), first = own, last = end - 1, count = 0;
+    for (int64_t k = m->domain_ptr[own]; k < m->domain_ptr[end]; k++) {
+        int32_t node = m->domain_node[k];
+        seen[node] = 1;
+        first = node < first ? node : first;
+        last = node > last ? node : last;
+    }
+    memset(&seen[own], 0, (size_t)(end - own));
+    for (int64_t i = first; i <= last; i++) {
+        if (seen[i] && list)
+            list[count] = (int32_t)i;
+        count += seen[i];
+        seen[i] = 0;
+    }
+    return count;
+}
+
+/* `place` [n], `order` [longest row]: scratch. */
+static void number_entries(const sf_model *m, sf_halo *h, int32_t *place, int32_t *order) {
+    for (int64_t g = 0; g < h->group_count; g++) {
+        int64_t first = sf_halo_first(g), end = sf_halo_end(m, g);
+        for (int64_t i = first; i < end; i++)
+            place[i] = (int32_t)(i - first);
+        for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
+            place[h->node[q]] = (int32_t)(end - first + q - h->ptr[g]);
+        for (int64_t l = first; l < end; l++) {
+            int64_t start = m->domain_ptr[l];
+            sf_gradient_order(m, l, order);
+            for (int64_t k = start; k < m->domain_ptr[l + 1]; k++)
+                h->local[k] = (uint16_t)place[m->domain_node[start + order[k - start]]];
+        }
+    }
+}
+
+static void list_slots(const sf_model *m, sf_halo *h) {
+    int64_t total = h->ptr[h->group_count];
+    for (int64_t q = 0; q < total; q++)
+        h->slot_ptr[h->node[q] + 1]++;
+    for (int64_t i = 0; i < m->node_count; i++)
+        h->slot_ptr[i + 1] += h->slot_ptr[i];
+    for (int64_t q = 0; q < total; q++)
+        h->slot[h->slot_ptr[h->node[q]]++] = (int32_t)q;
+    memmove(&h->slot_ptr[1], &h->slot_ptr[0], (size_t)m->node_count * sizeof *h->slot_ptr);
+    h->slot_ptr[0] = 0;
+}
+
+sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
+    unsigned long n = (unsigned long)m->node_count;
+    memset(h, 0, sizeof *h);
+    h->group_count = (m->node_count + SF_GROUP - 1) / SF_GROUP;
+    uint8_t *seen = sf_alloc(err, n, 1, "group lists");
+    int32_t *place = sf_alloc(err, n, sizeof *place, "group lists");
+    int32_t *order = sf_alloc(err, (unsigned long)sf_gradient_longest(m), sizeof *order, "group lists");
+    h->ptr = sf_alloc(err, (unsigned long)h->group_count + 1, sizeof *h->ptr, "group lists");
+    h->slot_ptr = sf_alloc(err, n + 1, sizeof *h->slot_ptr, "group lists");
+    h->local = sf_alloc(err, (unsigned long)m->domain_nnz, sizeof *h->local, "group lists");
+    for (int64_t g = 0; g < h->group_count && err->status == SF_OK; g++) {
+        int64_t count = list_others(m, g, seen, NULL);
+        h->ptr[g + 1] = h->ptr[g] + count;
+        if (count > SF_GROUP_SEES - SF_GROUP)
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "the %d domains from node %lld see %lld nodes, more than %d: number the nodes so that "
+                    "neighbours are close",
+                    SF_GROUP, (long long)sf_halo_first(g), (long long)count + SF_GROUP, SF_GROUP_SEES);
+    }
+    if (err->status == SF_OK && h->ptr[h->group_count] > INT32_MAX)
+        SF_FAIL(err, SF_ERR_MODEL,
+                "groups of domains see %lld nodes of other groups, more than %d: number the "
+                "nodes so that neighbours are close",
+                (long long)h->ptr[h->group_count], INT32_MAX);
+    if (err->status == SF_OK) {
+        unsigned long total = (unsigned long)h->ptr[h->group_count];
+        h->node = sf_alloc(err, total, sizeof *h->node, "group lists");
+        h->slot = sf_alloc(err, total, sizeof *h->slot, "group lists");
+        h->work = sf_alloc(err, 3 * total > SF_HALO_WORK * n ? 3 * total : SF_HALO_WORK * n, sizeof *h->work,
+                           "group sums");
+    }
+    if (err->status == SF_OK) {
+        for (int64_t g = 0; g < h->group_count; g++)
+            list_others(m, g, seen, &h->node[h->ptr[g]]);
+        number_entries(m, h, place, order);
+        list_slots(m, h);
+    }
+    free(seen);
+    free(place);
+    free(order);
+    if (err->status != SF_OK)
+        sf_halo_free(h);
+    return err->status;
+}
+
+void sf_halo_free(sf_halo *h) {
+    free(h->ptr);
+    free(h->node);
+    free(h->local);
+    free(h->slot_ptr);
+    free(h->slot);
+    free(h->work);
+    memset(h, 0, sizeof *h);
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Checkpoints (docs/formats.md): a sealed HDF5 file with everything that a run needs to go on with the same
+ * bits, beside the model. It holds the state after sf_step_evaluate. */
+#ifndef SF_SOLVER_RUN_CHECKPOINT_H
+#define SF_SOLVER_RUN_CHECKPOINT_H
+
+#include "io/provenance.h"
+#include "solver/run/output.h"
+#include "solver/run/recorder.h"
+
+/* What the run was about. */
+typedef struct sf_checkpoint {
+    sf_h5 *file; /* open for sf_checkpoint_read */
+    char *path;
+    char *model_path, *model_hash, *git_revision, *compiler_flags;
+    double end_time;    /* s */
+    double time_before; /* s, of the step before the one that it holds */
+} sf_checkpoint;
+
+/* Replaces the checkpoint of `output`, whole or not at all; /peak comes from the folder. The provenance names
+ * the model. */
+sf_status sf_checkpoint_write(const sf_output *output, const sf_provenance *provenance, const sf_model *model,
+                              const sf_state *state, const sf_recorder *recorder, sf_error *err);
+
+/* Opens and checks a checkpoint. On success release with sf_checkpoint_close. */
+sf_status sf_checkpoint_open(const char *path, sf_checkpoint *checkpoint, sf_error *err);
+void sf_checkpoint_close(sf_checkpoint *checkpoint);
+
+/* State and recorder, both new, of the same model; /peak goes back into the folder of `output`. */
+sf_status sf_checkpoint_read(const sf_checkpoint *checkpoint, const sf_model *model, const sf_output *output,
+                             sf_state *state, sf_recorder *recorder, sf_error *err);
+
+#endif

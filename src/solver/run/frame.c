@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/run/frame.h"
+
+#include "core/mat3.h"
+#include "solver/field/domain_stress.h"
+#include "solver/field/stabilisation.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DISPLACEMENT, VELOCITY, CAUCHY, MISES, STRETCHES, COMPRESSION, ENERGY, FACTOR, FIELDS };
+
+static const struct {
+    const char *name, *units, *description;
+    int columns;
+} fields[FIELDS] = {
+    {"displacement", "m", "u_h at the nodes", 3},
+    {"velocity", "m s-1", "time derivative of u_h, half a step later", 3},
+    {"cauchy_stress", "Pa", "Cauchy stress xx xy xz yx yy yz zx zy zz of the smoothing domain", 9},
+    {"von_mises", "Pa", "von Mises stress", 1},
+    {"principal_stretches", "1", "principal stretches, ascending", 3},
+    {"largest_compression", "1", "1 - smallest principal stretch", 1},
+    {"energy_density", "J m-3", "W of the loading curve per reference volume", 1},
+    {"hysteresis_factor", "1", "factor on the curve's stress", 1},
+};
+
+static double determinant(const double *f) {
+    return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
+           f[2] * (f[3] * f[7] - f[4] * f[6]);
+}
+
+/* sigma = P F^T / J of one domain, with the stabilisation's couple taken out of the stored stress. */
+static void take_stress(const sf_model *m, const sf_state *s, const sf_pair_sums *pairs, int64_t i,
+                        double sigma[9], double *mises) {
+    double p[9];
+    const double *f = &s->f[9 * i];
+    double j = determinant(f), square = 0, mean;
+    for (int k = 0; k < 9; k++)
+        p[k] = (s->stress[9 * i + k] - pairs->couple[i % SF_GROUP][k % 3][k / 3]) / m->volume[i];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            sigma[3 * r + c] =
+                (p[3 * r] * f[3 * c] + p[3 * r + 1] * f[3 * c + 1] + p[3 * r + 2] * f[3 * c + 2]) / j;
+    mean = (sigma[0] + sigma[4] + sigma[8]) / 3;
+    for (int k = 0; k < 9; k++) {
+        double deviator = sigma[k] - (k % 4 == 0 ? mean : 0);
+        square += deviator * deviator;
+    }
+    *mises = sqrt(1.5 * square);
+}
+
+static void sort_stretches(const sf_foam_batch *b, int lane, double out[3]) {
+    double x = b->stretch[0][lane], y = b->stretch[1][lane], z = b->stretch[2][lane];
+    out[0] = fmin(x, fmin(y, z));
+    out[1] = fmax(fmin(x, y), fmin(fmax(x, y), z));
+    out[2] = fmax(x, fmax(y, z));
+}
+
+/* The approximation of a coefficient field at node i. */
+static void take_value(const sf_shape_rows *rows, const double *coefficient, int64_t i, double out[3]) {
+    const int64_t *ptr = &rows->ptr[i - rows->first];
+    double sum[3] = {0};
+    for (int64_t k = ptr[0] - rows->ptr[0]; k < ptr[1] - rows->ptr[0]; k++)
+        for (int c = 0; c < 3; c++)
+            sum[c] += rows->value[k] * coefficient[3 * (int64_t)rows->node[k] + c];
+    memcpy(out, sum, sizeof sum);
+}
+
+/* Cauchy or von Mises stress of nodes of one group. */
+static void take_stresses(const sf_model *m, const sf_operators *op, const sf_state *s, int kind,
+                          int64_t first, int64_t end, double *out) {
+    sf_pair_sums pairs;
+    double sigma[9], mises;
+    sf_stabilisation_group(m, &op->pairs, s->d, s->f, s->stiffness, first / SF_GROUP, &pairs);
+    for (int64_t i = first; i < end; i++) {
+        take_stress(m, s, &pairs, i, sigma, &mises);
+        if (kind == CAUCHY)
+            memcpy(&out[9 * (i - first)], sigma, sizeof sigma);
+        else
+            out[i - first] = mises;
+    }
+}
+
+/* A field of the law of nodes from the first of a block. */
+static void take_law_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind,
+                           int64_t first, int64_t end, double *out) {
+    sf_foam_batch b;
+    double stretch[3];
+    for (int64_t i = first; i < end; i++) {
+        int lane = (int)(i % SF_LANES);
+        if (lane == 0)
+            sf_domain_law(m, op, s, i / SF_LANES, &b);
+        sort_stretches(&b, lane, stretch);
+        if (kind == STRETCHES)
+            memcpy(&out[3 * (i - first)], stretch, sizeof stretch);
+        else
+            out[i - first] = kind == COMPRESSION ? 1 - stretch[0]
+                             : kind == ENERGY    ? b.energy[lane]
+                                                 : b.factor[lane];
+    }
+}
+
+/* One field of `count` nodes from node `start`, the first of a group; `shapes`: their shape functions, if the
+ * field needs them. */
+static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s,
+                       const sf_shape_rows *shapes, int kind, int64_t start, int64_t count, double *out) {
+    int columns = fields[kind].columns;
+#pragma omp parallel for default(none) schedule(static)                                                      \
+    shared(m, op, s, shapes, kind, start, count, columns, out)
+    for (int64_t first = start; first < start + count; first += SF_GROUP) {
+        int64_t end = first + SF_GROUP < start + count ? first + SF_GROUP : start + count;
+        double *rows = &out[(first - start) * columns];
+        if (kind == CAUCHY || kind == MISES)
+            take_stresses(m, op, s, kind, first, end, rows);
+        else if (kind == DISPLACEMENT || kind == VELOCITY)
+            for (int64_t i = first; i < end; i++)
+                take_value(shapes, kind == DISPLACEMENT ? s->d : s->v, i, &rows[3 * (i - first)]);
+        else
+            take_law_field(m, op, s, kind, first, end, rows);
+    }
+}
+
+static sf_status write_item(sf_h5 *file, const char *group, const char *name, const char *units,
+                            const char *description, int rank, const int64_t *dims, const double *data,
+                            sf_error *err) {
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", group, name);
+    sf_h5_info info = {path, units, description};
+    return sf_h5_write(file, &info, SF_H5_F64, rank, dims, data, err);
+}
+
+/* What a frame holds beside its fields. */
+static sf_status write_head(const sf_model *m, const sf_state *s, const char *path, sf_h5 *file,
+                            sf_error *err) {
+    const int64_t three = 3;
+    double acceleration = -s->missile.acceleration, displacement[3], reaction[3];
+    for (int c = 0; c < 3; c++) {
+        displacement[c] = s->missile.displacement * m->missile.direction[c];
+        reaction[c] = (double)m->symmetry_factor * s->base_reaction[c];
+    }
+    if (write_item(file, path, "time", "s", "time", 0, NULL, &s->time, err) != SF_OK ||
+        write_item(file, path, "acceleration", "m s-2", "of the missile, against its direction of motion", 0,
+                   NULL, &acceleration, err) != SF_OK ||
+        write_item(file, path, "missile_displacement", "m", "translation of the missile since t = 0", 1,
+                   &three, displacement, err) != SF_OK)
+        return err->status;
+    return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three, reaction,
+                      err);
+}
+
+/* One field of all nodes, through a buffer for a slab. */
+static sf_status write_field(const sf_model *m, const sf_operators *op, const sf_state *s,
+                             const sf_shapes *shapes, int kind, const char *path, double *buffer, sf_h5 *file,
+                             sf_error *err) {
+    char name[128];
+    const int64_t dims[2] = {m->node_count, fields[kind].columns};
+    sf_h5_info info = {name, fields[kind].units, fields[kind].description};
+    sf_h5_rows out;
+    snprintf(name, sizeof name, "%s/%s", path, fields[kind].name);
+    sf_h5_rows_begin(file, &info, SF_H5_F64, dims[1] > 1 ? 2 : 1, dims, &out, err);
+    for (int64_t start = 0; start < m->node_count && err->status == SF_OK; start += SF_SLAB) {
+        int64_t count = start + SF_SLAB < m->node_count ? SF_SLAB : m->node_count - start;
+        sf_shape_rows rows = {0};
+        if ((kind != DISPLACEMENT && kind != VELOCITY) ||
+            sf_shapes_read(shapes, m, start, count, &rows, err) == SF_OK) {
+            take_field(m, op, s, &rows, kind, start, count, buffer);
+            sf_h5_rows_add(&out, count, buffer, err);
+        }
+        sf_shapes_release(&rows);
+    }
+    return sf_h5_rows_end(&out, err);
+}
+
+sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s,
+                         const sf_shapes *shapes, int64_t wanted, const char *path, sf_h5 *file,
+                         sf_error *err) {
+    double *buffer = sf_alloc(err, SF_SLAB, 9 * sizeof *buffer, "fields of a frame");
+    if (buffer)
+        write_head(m, s, path, file, err);
+    for (int k = 0; k < FIELDS && err->status == SF_OK; k++)
+        if (wanted >> k & 1)
+            write_field(m, op, s, shapes, k, path, buffer, file, err);
+    free(buffer);
+    return err->status;
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A frame: the fields at the nodes at one time, as docs/formats.md lists them. */
+#ifndef SF_SOLVER_RUN_FRAME_H
+#define SF_SOLVER_RUN_FRAME_H
+
+#include "core/error.h"
+#include "core/model.h"
+#include "io/h5.h"
+#include "solver/operators.h"
+#include "solver/field/shapes.h"
+#include "solver/state.h"
+
+/* Writes the state after sf_step_evaluate to the group `path`: time, missile and the fields whose SF_FIELD_
+ * bits are set, a slab of nodes at a time; `shapes` as of sf_shapes_read. */
+sf_status sf_frame_write(const sf_model *model, const sf_operators *operators, const sf_state *state,
+                         const sf_shapes *shapes, int64_t fields, const char *path, sf_h5 *file,
+                         sf_error *err);
+
+#endif

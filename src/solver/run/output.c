@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/run/output.h"
+
+#include "solver/run/frame.h"
+#include "solver/run/results_file.h"
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { NAME_SIZE = SF_PATH_SIZE + 32 };
+
+static const char BASE[] = "base.h5", PEAK[] = "peak.h5", PEAK_GROUP[] = "/peak";
+
+static void frame_group(char group[32], int64_t index) {
+    snprintf(group, 32, "/frames/%06lld", (long long)index);
+}
+
+static void frame_name(char name[32], int64_t index) {
+    snprintf(name, 32, "frame-%06lld.h5", (long long)index);
+}
+
+/* folder/name, and the name to write it under. */
+static sf_status place(const sf_output *o, const char *name, char path[NAME_SIZE], char partial[SF_PATH_SIZE],
+                       sf_error *err) {
+    snprintf(path, NAME_SIZE, "%s/%s", o->folder, name);
+    return sf_replace_begin(path, partial, err);
+}
+
+sf_status sf_output_name(sf_output *o, const char *results, sf_error *err) {
+    memset(o, 0, sizeof *o);
+    o->lock = -1;
+    if (strlen(results) > SF_PATH_SIZE - 64)
+        return SF_FAIL(err, SF_ERR_INPUT, "the path of the results file is longer than %d bytes",
+                       SF_PATH_SIZE - 64);
+    snprintf(o->results, sizeof o->results, "%s", results);
+    snprintf(o->checkpoint, sizeof o->checkpoint, "%.4000s.restart", results);
+    snprintf(o->folder, sizeof o->folder, "%.4000s.run", results);
+    return SF_OK;
+}
+
+/* Under its own name or as `.partial`. */
+static bool is_ours(const char *name) {
+    static const char *const begin[] = {"frame-", BASE, PEAK};
+    for (size_t k = 0; k < sizeof begin / sizeof begin[0]; k++)
+        if (strncmp(name, begin[k], strlen(begin[k])) == 0)
+            return true;
+    return false;
+}
+
+/* All but the one named `kept`, if it is not NULL. */
+static void remove_files(const sf_output *o, const char *kept) {
+    DIR *folder = opendir(o->folder);
+    for (struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder))
+        if (is_ours(entry->d_name) && !(kept && strcmp(entry->d_name, kept) == 0))
+            unlinkat(dirfd(folder), entry->d_name, 0);
+    if (folder)
+        closedir(folder);
+}
+
+sf_status sf_output_open(sf_output *o, sf_error *err) {
+    if (mkdir(o->folder, 0777) != 0 && errno != EEXIST)
+        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", o->folder, strerror(errno));
+    o->lock = open(o->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (o->lock < 0)
+        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be opened: %s", o->folder, strerror(errno));
+    if (flock(o->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        sf_output_close(o);
+        return SF_FAIL(err, SF_ERR_INPUT, "another softfall-solve is writing %s", o->results);
+    }
+    return SF_OK;
+}
+
+void sf_output_close(sf_output *o) {
+    if (o->lock >= 0)
+        close(o->lock);
+    o->lock = -1;
+}
+
+void sf_output_clear(const sf_output *o) {
+    remove_files(o, NULL);
+    rmdir(o->folder);
+}
+
+/* Closes a file and gives it its name; removes it if it failed. */
+static sf_status commit(sf_h5 **file, const char *partial, const char *path, sf_error *err) {
+    sf_h5_close(file, err);
+    if (err->status == SF_OK)
+        return sf_replace_commit(partial, path, err);
+    unlink(partial);
+    return err->status;
+}
+
+sf_status sf_output_base(const sf_output *o, const sf_model *m, const sf_h5 *model_file,
+                         const sf_provenance *provenance, sf_error *err) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
+    sf_h5 *file = NULL;
+    if (place(o, BASE, path, partial, err) != SF_OK)
+        return err->status;
+    sf_results_create(partial, m, model_file, provenance, &file, err);
+    sf_h5_close(&file, err);
+    return err->status;
+}
+
+sf_status sf_output_start(const sf_output *o, bool keep, sf_error *err) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
+    if (place(o, BASE, path, partial, err) != SF_OK)
+        return err->status;
+    if (sf_replace_commit(partial, path, err) == SF_OK && !keep)
+        remove_files(o, BASE);
+    return err->status;
+}
+
+void sf_output_abandon(const sf_output *o) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
+    sf_error ignored = SF_ERROR_INIT;
+    if (o->lock < 0)
+        return;
+    if (place(o, BASE, path, partial, &ignored) == SF_OK)
+        unlink(partial);
+    rmdir(o->folder); /* fails if an earlier run has files in it */
+}
+
+/* The present state as the group of a file of the folder. */
+static sf_status write_state(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
+                             int64_t fields, const char *name, const char *group, sf_error *err) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
+    sf_h5 *file = NULL;
+    if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
+        return err->status;
+    sf_frame_write(m, op, s, o->shapes, fields, group, file, err);
+    return commit(&file, partial, path, err);
+}
+
+sf_status sf_output_frame(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
+                          int64_t index, sf_error *err) {
+    char name[32], group[32];
+    frame_name(name, index);
+    frame_group(group, index);
+    return write_state(o, m, op, s, m->run.output_fields, name, group, err);
+}
+
+sf_status sf_output_peak(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
+                         sf_error *err) {
+    return write_state(o, m, op, s, SF_FIELD_ALL, PEAK, PEAK_GROUP, err);
+}
+
+/* The group of another file as a file of the folder. */
+static sf_status recover(const sf_h5 *from, const char *group, const char *path, const char *partial,
+                         sf_error *err) {
+    sf_h5 *file = NULL;
+    if (sf_h5_create(partial, &file, err) != SF_OK)
+        return err->status;
+    sf_h5_copy(from, group, file, err);
+    return commit(&file, partial, path, err);
+}
+
+sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf_error *err) {
+    char path[NAME_SIZE], partial[SF_PATH_SIZE];
+    if (place(o, PEAK, path, partial, err) != SF_OK)
+        return err->status;
+    return recover(checkpoint, PEAK_GROUP, path, partial, err);
+}
+
+sf_status sf_output_recover(const sf_output *o, int64_t count, sf_error *err) {
+    sf_h5 *results = NULL;
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
+        char name[32], group[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
+        frame_name(name, k);
+        if (place(o, name, path, partial, err) != SF_OK || access(path, R_OK) == 0)
+            continue;
+        if (!results && sf_h5_open(o->results, &results, err) != SF_OK)
+            break;
+        frame_group(group, k);
+        if (sf_h5_exists(results, group))
+            recover(results, group, path, partial, err);
+        else
+            SF_FAIL(err, SF_ERR_IO, "%s of the run so far is lost: it is neither in %s nor in %s", group,
+                    o->results, o->folder);
+    }
+    sf_h5_close(&results, err);
+    return err->status;
+}
+
+/* One object of a file in the folder, linked or copied. */
+static sf_status take(const sf_output *o, bool copied, const char *name, const char *const *objects,
+                      sf_h5 *file, sf_error *err) {
+    char path[NAME_SIZE];
+    const char *slash = strrchr(o->folder, '/');
+    sf_h5 *part = NULL;
+    snprintf(path, sizeof path, "%s/%s", copied ? o->folder : slash ? slash + 1 : o->folder, name);
+    if (copied && sf_h5_open(path, &part, err) != SF_OK)
+        return err->status;
+    for (; *objects && err->status == SF_OK; objects++) {
+        if (copied)
+            sf_h5_copy(part, *objects, file, err);
+        else
+            sf_h5_link(file, *objects, path, err);
+    }
+    sf_h5_close(&part, err);
+    return err->status;
+}
+
+sf_status sf_output_copy_peak(const sf_output *o, sf_h5 *file, sf_error *err) {
+    return take(o, true, PEAK, (const char *const[]){PEAK_GROUP, NULL}, file, err);
+}
+
+sf_status sf_output_begin(sf_output *o, bool copied, int64_t count, sf_h5 **file, sf_error *err) {
+    static const char *const base[] = {"/provenance", "/model", NULL};
+    if (sf_replace_begin(o->results, o->partial, err) != SF_OK ||
+        sf_h5_create(o->partial, file, err) != SF_OK ||
+        sf_provenance_mark(*file, "softfall-results", err) != SF_OK)
+        return err->status;
+    take(o, copied, BASE, base, *file, err);
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
+        char name[32], group[32];
+        frame_name(name, k);
+        frame_group(group, k);
+        take(o, copied, name, (const char *const[]){group, NULL}, *file, err);
+    }
+    return err->status;
+}
+
+sf_status sf_output_commit(sf_output *o, sf_h5 **file, sf_error *err) {
+    return commit(file, o->partial, o->results, err);
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a run carries from step to step beside the state: the history, the extremes, and when
+ * the fields are due for a file: as a frame, or as those at the peak (output.h writes them). */
+#ifndef SF_SOLVER_RUN_RECORDER_H
+#define SF_SOLVER_RUN_RECORDER_H
+
+#include "solver/run/history.h"
+
+/* Extremes over the run. */
+typedef struct sf_extremes {
+    double peak_value; /* m s-2, largest acceleration; of a driven missile N, largest contact force */
+    double peak_time;  /* s */
+    double largest_compression; /* - */
+    double largest_indentation; /* m, along z */
+    double largest_penetration; /* m */
+    double largest_residual;    /* m s-1, |G v| */
+    double largest_momentum;    /* - */
+    double peak_internal;       /* J, whole pad, largest internal energy, and at that time: */
+    double stabilisation_share; /* - */
+    double contact_share;       /* - */
+} sf_extremes;
+
+typedef struct sf_recorder {
+    sf_history history;
+    sf_extremes extremes;
+    double peak_kept;   /* the peak_value that the fields written last follow */
+    int64_t frames;     /* due so far */
+    int64_t frame_step; /* step of the last of them, -1: none */
+    double next_frame;  /* s */
+    int64_t next_extra; /* index in model->frame_time */
+    double wall_time;   /* s, until the last checkpoint */
+    int64_t restarts;
+} sf_recorder;
+
+/* An empty one; release with sf_recorder_free. */
+void sf_recorder_begin(sf_recorder *recorder);
+void sf_recorder_free(sf_recorder *recorder);
+
+/* What a run is watched for: deceleration, m s-2, or the contact force, N, on a missile whose motion is
+ * prescribed. */
+double sf_recorder_measure(const sf_model *model, const sf_state *state);
+
+/* Adds the state after sf_step_evaluate: a row of history, the extremes. */
+sf_status sf_recorder_add(sf_recorder *recorder, const sf_model *model, const sf_state *state, sf_error *err);
+
+/* Are the fields of the state just added due as those at the peak? One step past every maximum that exceeds
+ * the one before by 0.1 %, which then counts as kept; and in the first step, so that a run always has them.
+ */
+bool sf_recorder_peak_due(sf_recorder *recorder, const sf_state *state);
+
+/* At the end of a run: is the curve still rising, or has the first step failed, so that the present state is
+ * the peak? */
+bool sf_recorder_peak_ahead(const sf_recorder *recorder);
+
+/* Is a frame due? Then it is counted, and both schedules move past the present time. */
+bool sf_recorder_frame_due(sf_recorder *recorder, const sf_model *model, const sf_state *state);
+
+/* To and from a checkpoint; a recorder that is read must be new. SF_ERR_IO if what is read does not belong to
+ * `state`. */
+sf_status sf_recorder_write(const sf_recorder *recorder, sf_h5 *file, sf_error *err);
+sf_status sf_recorder_read(sf_recorder *recorder, const sf_model *model, const sf_state *state,
+                           const sf_h5 *file, sf_error *err);
+
+#endif

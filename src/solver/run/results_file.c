@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/run/results_file.h"
+
+static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
+    const struct {
+        sf_h5_info info;
+        sf_h5_type type;
+        int rank;
+        int64_t dims[2];
+        const void *data;
+    } item[] = {
+        {{"/model/position", "m", "reference position of the nodes"},
+         SF_H5_F64,
+         2,
+         {m->node_count, 3},
+         m->position},
+        {{"/model/volume", "m3", "volume of the smoothing domains"},
+         SF_H5_F64,
+         1,
+         {m->node_count, 0},
+         m->volume},
+        {{"/model/cell_type", "1", "XDMF topology code"}, SF_H5_U8, 1, {m->cell_count, 0}, m->cell_type},
+        {{"/model/cell_ptr", "1", "start of each cell in cell_node"},
+         SF_H5_I64,
+         1,
+         {m->cell_count + 1, 0},
+         m->cell_ptr},
+        {{"/model/cell_node", "1", "vertices in VTK order"}, SF_H5_I32, 1, {m->cell_nnz, 0}, m->cell_node},
+        {{"/model/surface_position", "m", "missile surface at t = 0"},
+         SF_H5_F64,
+         2,
+         {m->surface_node_count, 3},
+         m->surface_position},
+        {{"/model/surface_triangle", "1", "missile surface triangles"},
+         SF_H5_I32,
+         2,
+         {m->surface_triangle_count, 3},
+         m->surface_triangle},
+        {{"/model/symmetry_factor", "1", "modelled parts that make the whole"},
+         SF_H5_I64,
+         0,
+         {0},
+         &m->symmetry_factor},
+        {{"/model/thickness", "m", "pad thickness"}, SF_H5_F64, 0, {0}, &m->thickness},
+        {{"/model/density", "kg m-3", "density of the foam"}, SF_H5_F64, 0, {0}, &m->foam.density},
+        {{"/model/missile_mass", "kg", "mass of the whole missile"}, SF_H5_F64, 0, {0}, &m->missile.mass},
+        {{"/model/missile_speed", "m s-1", "speed at t = 0"}, SF_H5_F64, 0, {0}, &m->missile.speed},
+        {{"/model/motion_count", "1", "points of the missile's prescribed motion, 0: free missile"},
+         SF_H5_I64,
+         0,
+         {0},
+         &m->motion_count},
+        {{"/model/missile_direction", "1", "direction of motion"},
+         SF_H5_F64,
+         1,
+         {3, 0},
+         m->missile.direction},
+    };
+    for (size_t k = 0; k < sizeof item / sizeof item[0]; k++)
+        if (sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err) !=
+            SF_OK)
+            return err->status;
+    return SF_OK;
+}
+
+sf_status sf_results_create(const char *path, const sf_model *m, const sf_h5 *model_file,
+                            const sf_provenance *provenance, sf_h5 **file, sf_error *err) {
+    if (sf_h5_create(path, file, err) != SF_OK)
+        return err->status;
+    if (sf_provenance_write(*file, "softfall-results", provenance, err) == SF_OK &&
+        sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK)
+        return SF_OK;
+    sf_error ignored = SF_ERROR_INIT;
+    sf_h5_close(file, &ignored);
+    return err->status;
+}

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/run/run.h"
+
+#include "solver/step.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const double REBOUND_WAIT = 1e-3;   /* s, without contact before the run may end */
+static const double PROGRESS_INTERVAL = 5; /* s of wall time between plain lines */
+
+typedef struct drop {
+    const sf_model *m;
+    const sf_operators *op;
+    sf_state *s;
+    sf_run *run;
+    sf_output *out;
+    sf_recorder r;
+    bool replay;                              /* repeats steps that are in the files already */
+    int64_t last_step;                        /* of a replay */
+    double first_time;                        /* s, where this part of the run begins */
+    double next_checkpoint;                   /* s, simulated */
+    double start, last_line, last_checkpoint; /* s, wall clock */
+} drop;
+
+static void print_progress(drop *d, bool last) {
+    const sf_model *m = d->m;
+    const sf_state *s = d->s;
+    const sf_run *run = d->run;
+    double now = sf_clock(), interval = run->terminal ? 0.2 : PROGRESS_INTERVAL;
+    if (d->replay || (!last && now - d->last_line < interval))
+        return;
+    d->last_line = now;
+    double done = (s->time - d->first_time) / (m->run.end_time - d->first_time), spent = now - d->start;
+    bool driven = m->motion_count > 0;
+    fprintf(
+        run->log,
+        "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  %s %6.1f %s  indentation %5.1f mm  compression %.3f  "
+        "energy %+.3f %%",
+        run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
+        driven ? "force" : "a", sf_recorder_measure(m, s) / (driven ? 1 : 9.80665), driven ? "N" : "g",
+        1e3 * (s->missile.displacement - m->missile.gap), s->largest_compression, 100 * s->ledger.error);
+    if (done > 0 && !last)
+        fprintf(run->log, "  left <= %.0f s  ", spent * (1 - done) / done);
+    if (!run->terminal || last)
+        fputc('\n', run->log);
+    fflush(run->log);
+}
+
+/* results.h5 as far as it is known, with the frames as links. */
+static sf_status publish(drop *d, sf_error *err) {
+    sf_h5 *file = NULL;
+    if (sf_output_begin(d->out, false, d->r.frames, &file, err) == SF_OK)
+        sf_history_write(&d->r.history, file, err);
+    return sf_output_commit(d->out, &file, err);
+}
+
+static sf_status save(drop *d, sf_error *err) {
+    double before = d->r.wall_time;
+    d->r.wall_time += sf_clock() - d->start;
+    sf_checkpoint_write(d->out, d->run->provenance, d->m, d->s, &d->r, err);
+    d->r.wall_time = before;
+    d->last_checkpoint = sf_clock();
+    d->next_checkpoint = d->s->time + d->run->checkpoint_time;
+    return err->status;
+}
+
+static bool checkpoint_is_due(const drop *d) {
+    return d->run->checkpoints && !d->replay &&
+           (d->s->time >= d->next_checkpoint || sf_clock() - d->last_checkpoint >= d->run->checkpoint_wall);
+}
+
+/* Has the missile left the pad for good? A driven one may come back. */
+static bool has_rebounded(const sf_model *m, const sf_state *s) {
+    return m->motion_count == 0 && m->run.stop_after_rebound && s->missile.velocity < 0 &&
+           s->contact_count == 0 && s->time - s->missile.release_time > REBOUND_WAIT;
+}
+
+/* A new step: forces, a row of history, the fields at the peak and a frame if they are due. */
+static sf_status take_step(drop *d, sf_error *err) {
+    if (sf_step_evaluate(d->m, d->op, d->s, err) != SF_OK || sf_recorder_add(&d->r, d->m, d->s, err) != SF_OK)
+        return err->status;
+    if (sf_recorder_peak_due(&d->r, d->s) && sf_output_peak(d->out, d->m, d->op, d->s, err) != SF_OK)
+        return err->status;
+    if (!sf_recorder_frame_due(&d->r, d->m, d->s) || d->replay)
+        return SF_OK;
+    if (sf_output_frame(d->out, d->m, d->op, d->s, d->r.frames - 1, err) != SF_OK)
+        return err->status;
+    return publish(d, err);
+}
+
+/* How the run ends with the present step, or NULL. */
+static const char *find_ending(const drop *d) {
+    if (d->replay)
+        return d->s->step == d->last_step ? "failed" : NULL;
+    if (*d->run->stop)
+        return "interrupted";
+    if (has_rebounded(d->m, d->s))
+        return "rebound";
+    return d->s->time >= d->m->run.end_time ? "finished" : NULL;
+}
+
+/* Steps to the end. A checkpoint holds a step that has been taken. */
+static sf_status run_steps(drop *d, bool taken, sf_error *err) {
+    for (;; taken = false) {
+        if (!taken && take_step(d, err) != SF_OK)
+            return err->status;
+        const char *ending = find_ending(d);
+        print_progress(d, ending != NULL);
+        if (ending) {
+            d->run->ending = ending;
+            return SF_OK;
+        }
+        if (checkpoint_is_due(d) && save(d, err) == SF_OK)
+            publish(d, err);
+        if (err->status != SF_OK)
+            return err->status;
+        sf_step_advance(d->m, d->s);
+    }
+}
+
+static sf_status write_scalar(sf_h5 *file, const char *path, const char *units, const char *text,
+                              double value, sf_error *err) {
+    sf_h5_info info = {path, units, text};
+    return sf_h5_write_scalar(file, &info, value, err);
+}
+
+static sf_status write_count(sf_h5 *file, const char *path, const char *text, int64_t value, sf_error *err) {
+    sf_h5_info info = {path, "1", text};
+    return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
+}
+
+static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, sf_error *err) {
+    const sf_model *m = d->m;
+    const sf_state *s = d->s;
+    sf_h5_info info = {"/summary/status", "1", "how the run ended"};
+    if (sf_h5_write_text(file, &info, status, err) != SF_OK ||
+        write_count(file, "/summary/steps", "time steps", s->step, err) != SF_OK ||
+        write_count(file, "/summary/threads", "OpenMP threads", d->run->threads, err) != SF_OK ||
+        write_count(file, "/summary/nodes", "nodes", m->node_count, err) != SF_OK ||
+        write_count(file, "/summary/interactions", "(domain, node) pairs", m->domain_nnz, err) != SF_OK ||
+        write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) !=
+            SF_OK ||
+        write_count(file, "/summary/restarts", "times that the run went on from a checkpoint", d->r.restarts,
+                    err) != SF_OK ||
+        write_scalar(file, "/summary/wall_time", "s", "time of the run", d->run->wall_time, err) != SF_OK)
+        return err->status;
+    return write_scalar(file, "/summary/contact_time", "s", "first contact, NaN if none",
+                        s->missile.contact_time, err);
+}
+
+/* The complete results.h5, with a frame of the last step. */
+static sf_status conclude(drop *d, const char *status, sf_error *err) {
+    sf_h5 *file = NULL;
+    int64_t frames = d->r.frames;
+    if (d->r.frame_step != d->s->step)
+        sf_output_frame(d->out, d->m, d->op, d->s, frames++, err);
+    if (err->status == SF_OK && sf_recorder_peak_ahead(&d->r))
+        sf_output_peak(d->out, d->m, d->op, d->s, err);
+    if (err->status == SF_OK && sf_output_begin(d->out, true, frames, &file, err) == SF_OK &&
+        sf_history_write(&d->r.history, file, err) == SF_OK &&
+        sf_output_copy_peak(d->out, file, err) == SF_OK)
+        write_summary(d, status, file, err);
+    return file ? sf_output_commit(d->out, &file, err) : err->status;
+}
+
+/* State and recorder from a checkpoint, or at t = 0. */
+static sf_status load(drop *d, const sf_checkpoint *from, sf_error *err) {
+    sf_recorder_begin(&d->r);
+    if (from)
+        sf_checkpoint_read(from, d->m, d->out, d->s, &d->r, err);
+    d->first_time = d->s->time;
+    return err->status;
+}
+
+/* After a failure: the same steps again up to the last that held, for a checkpoint there. */
+static sf_status replay(drop *d, sf_error *err) {
+    sf_checkpoint last = {0};
+    d->last_step = d->s->step - 1;
+    d->replay = true;
+    if (d->last_step < 0)
+        return SF_OK;
+    bool there = access(d->out->checkpoint, F_OK) == 0;
+    if (there && sf_checkpoint_open(d->out->checkpoint, &last, err) != SF_OK)
+        return err->status;
+    sf_recorder_free(&d->r);
+    sf_state_free(d->s);
+    if (sf_state_create(d->m, d->s, err) == SF_OK && load(d, there ? &last : NULL, err) == SF_OK &&
+        run_steps(d, there, err) == SF_OK)
+        save(d, err);
+    sf_checkpoint_close(&last);
+    return err->status;
+}
+
+/* Ends a run that has gone as far as it could. `late`: what failed in doing so. */
+static void end_run(drop *d, const sf_error *failure, sf_error *late) {
+    bool failed = failure->status != SF_OK;
+    sf_error unsaved = SF_ERROR_INIT; /* results without a checkpoint are better than none */
+    if (d->run->checkpoints && !failed)
+        save(d, &unsaved);
+    d->run->wall_time = d->r.wall_time + sf_clock() - d->start;
+    bool whole = conclude(d, failed ? failure->text : d->run->ending, late) == SF_OK;
+    if (d->run->checkpoints && failed)
+        replay(d, &unsaved);
+    if (whole)
+        sf_output_clear(d->out);
+    if (unsaved.status != SF_OK)
+        SF_FAIL(late, unsaved.status, "%s", unsaved.text);
+}
+
+sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf_run *run, sf_output *out,
+                      const sf_checkpoint *from, sf_error *err) {
+    drop d = {.m = m, .op = op, .s = s, .run = run, .out = out, .start = sf_clock()};
+    sf_error late = SF_ERROR_INIT;
+    d.last_checkpoint = d.start;
+    run->ending = "failed";
+    if (load(&d, from, err) == SF_OK && sf_output_recover(out, d.r.frames, err) == SF_OK) {
+        d.next_checkpoint = s->time + run->checkpoint_time;
+        d.r.restarts += from != NULL;
+        run_steps(&d, from != NULL, err);
+    }
+    run->wall_time = d.r.wall_time + sf_clock() - d.start;
+    if (err->status == SF_OK || err->status == SF_ERR_NUMERIC)
+        end_run(&d, err, &late);
+    if (late.status != SF_OK)
+        SF_FAIL(err, late.status, "%s", late.text);
+    else if (err->status == SF_OK && strcmp(run->ending, "interrupted") == 0)
+        SF_FAIL(err, SF_INTERRUPTED, "interrupted at t = %.6g s; results up to there are readable%s", s->time,
+                run->checkpoints ? ", and --restart goes on from there" : "");
+    run->extremes = d.r.extremes;
+    sf_recorder_free(&d.r);
+    return err->status;
+}
