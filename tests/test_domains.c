@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The identities of the smoothed gradient on the real graded pad (quarter, 5 mm) and on a jittered block, and
- * the supports that grow where a cloud is too sparse. Everything is measured here, not by pre/cloud/invariants.c.
+ * the supports that grow where a cloud is too sparse. Everything is measured here, not by
+ * pre/cloud/invariants.c.
  */
 #include "model_fixture.h"
 

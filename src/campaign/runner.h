@@ -45,8 +45,8 @@ typedef struct sf_runner_result {
     bool reused;
 } sf_runner_result;
 
-/* From now on SIGINT and SIGTERM are passed to the program that runs, which ends its drop; the runner then returns
- * SF_INTERRUPTED. */
+/* From now on SIGINT and SIGTERM are passed to the program that runs, which ends its drop; the runner then
+ * returns SF_INTERRUPTED. */
 void sf_runner_handle_signals(void);
 /* True once such a signal has come. */
 bool sf_runner_stopped(void);

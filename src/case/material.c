@@ -97,11 +97,10 @@ static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entr
                        inner.text);
     double last = foam->curve_count > 0 ? foam->curve_rate[foam->curve_count - 1] : 0.0;
     if (!(value > last))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: material.curves: the rate %g s-1 is not above %g s-1 before it; rates must be positive "
-            "and ascend",
-            sf_case_where(reader, rate, where), value, last);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: material.curves: the rate %g s-1 is not above %g s-1 before it; rates must be "
+                       "positive and ascend",
+                       sf_case_where(reader, rate, where), value, last);
     return read_file(reader, file, value, err);
 }
 

@@ -229,11 +229,10 @@ static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
     double *d = reader->out->missile_card.direction;
     double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     if (!(length > 0.0) || !(d[2] < 0.0) || !isfinite(length))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: missile.direction: [%g, %g, %g] does not point down to the pad; its third component "
-            "must be negative",
-            sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: missile.direction: [%g, %g, %g] does not point down to the pad; its third "
+                       "component must be negative",
+                       sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
     for (int i = 0; i < 3; i++)
         d[i] /= length;
     return SF_OK;
@@ -251,11 +250,10 @@ static sf_status check_reach(const sf_case_reader *reader, sf_error *err) {
         reach = card->speed * time - 0.5 * card->gravity * card->direction[2] * time * time;
     if (reach > card->gap)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "%s: missile.gap: the missile travels %g m until solver.end_time (%g s) and never reaches the "
-        "pad, which is %g m away",
-        sf_case_where_is(reader, "missile.gap", where), reach, time, card->gap);
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: missile.gap: the missile travels %g m until solver.end_time (%g s) and never reaches "
+                   "the pad, which is %g m away",
+                   sf_case_where_is(reader, "missile.gap", where), reach, time, card->gap);
 }
 
 /* A curve needs 3 rows of the history, one per step; frames are files' worth of fields. */
@@ -264,18 +262,17 @@ static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
     const sf_case *c = reader->out;
     const sf_run_options *run = &c->run;
     if (run->end_time < LEAST_STEPS * run->step_limit)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: solver.end_time: %g s is less than %d times solver.step_limit (%g s): there would "
-            "be no curve",
-            sf_case_where_is(reader, "solver.end_time", where), run->end_time, LEAST_STEPS, run->step_limit);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: solver.end_time: %g s is less than %d times solver.step_limit (%g s): there "
+                       "would be no curve",
+                       sf_case_where_is(reader, "solver.end_time", where), run->end_time, LEAST_STEPS,
+                       run->step_limit);
     if (run->end_time / run->frame_interval > MOST_FRAMES)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: output.frame_interval: %g s up to solver.end_time (%g s) means %.3g frames; at most "
-            "%d are written",
-            sf_case_where_is(reader, "output.frame_interval", where), run->frame_interval, run->end_time,
-            run->end_time / run->frame_interval, MOST_FRAMES);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: output.frame_interval: %g s up to solver.end_time (%g s) means %.3g frames; at "
+                       "most %d are written",
+                       sf_case_where_is(reader, "output.frame_interval", where), run->frame_interval,
+                       run->end_time, run->end_time / run->frame_interval, MOST_FRAMES);
     for (int k = 0; k < c->frame_time_count; k++)
         if (c->frame_time[k] > run->end_time)
             fprintf(stderr,
@@ -297,11 +294,10 @@ static sf_status check_case(sf_case_reader *reader, sf_error *err) {
             sf_case_where_is(reader, "material", where));
     if (sf_case_is_given(reader, "material", "ED") && c->foam.maxwell_modulus > 0.0 &&
         !sf_case_is_given(reader, "material", "BETA1"))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for example "
-            "BETA1 = \"5000 1/s\"",
-            sf_case_where_is(reader, "material.ED", where));
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for "
+                       "example BETA1 = \"5000 1/s\"",
+                       sf_case_where_is(reader, "material.ED", where));
     if (!c->missile.path && c->missile.parameter_count > 0)
         return SF_FAIL(
             err, SF_ERR_INPUT,
@@ -316,11 +312,10 @@ static sf_status check_case(sf_case_reader *reader, sf_error *err) {
         check_reach(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
-        fprintf(
-            stderr,
-            "softfall-pre: warning: %s: kernel.support_ratio = %g: from 2 on the constraint matrix is nearly "
-            "singular\n",
-            sf_case_where_is(reader, "kernel.support_ratio", where), c->support_ratio);
+        fprintf(stderr,
+                "softfall-pre: warning: %s: kernel.support_ratio = %g: from 2 on the constraint matrix is "
+                "nearly singular\n",
+                sf_case_where_is(reader, "kernel.support_ratio", where), c->support_ratio);
     return SF_OK;
 }
 

@@ -121,8 +121,7 @@ static const sf_key keys[] = {
     {"output", "times", SF_KEY_TIMES, "[]", AT(frame_time),
      "times of further frames", .quantity = SF_TIME, .count_offset = offsetof(sf_case, frame_time_count)},
     {"output", "fields", SF_KEY_FIELDS,
-     "[\"displacement\", \"velocity\", \"cauchy_stress\", \"von_mises\", \"principal_stretches\", "
-     "\"largest_compression\", \"energy_density\", \"hysteresis_factor\"]",
+     "[\"displacement\", \"velocity\", \"cauchy_stress\", \"von_mises\", \"principal_stretches\", \"largest_compression\", \"energy_density\", \"hysteresis_factor\"]",
      AT(run.output_fields), "fields of a frame (default: all)", .words = ALL_FIELDS},
 };
 /* clang-format on */

@@ -86,8 +86,7 @@ static sf_status read_quantity(sf_case_reader *reader, const sf_key *key, const 
     const char *text = config_setting_get_string(setting);
     if (!text)
         return FAIL_AT(reader, key, setting, err,
-                       "the value is %s; expected %s as a text with its unit, for example "
-                       "\"%s\"",
+                       "the value is %s; expected %s as a text with its unit, for example \"%s\"",
                        type_phrase(setting), sf_quantity_phrase(key->quantity),
                        sf_quantity_example(key->quantity));
     if (key->words && strcmp(text, key->words) == 0) {

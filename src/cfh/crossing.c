@@ -23,11 +23,10 @@ static sf_status check_points(const char *name, int count, const double *height,
             return SF_FAIL(err, SF_ERR_INPUT, "%s: point %d, %g at %g m, is not positive or out of order",
                            name, k + 1, value[k], height[k]);
         if (value[k] < (1 - MAX_FALL) * largest)
-            return SF_FAIL(
-                err, SF_ERR_NUMERIC,
-                "%s falls from %.4g at %.4g m to %.4g at %.4g m: it does not grow with the height, so "
-                "no critical height can be read",
-                name, largest, at, value[k], height[k]);
+            return SF_FAIL(err, SF_ERR_NUMERIC,
+                           "%s falls from %.4g at %.4g m to %.4g at %.4g m: it does not grow with the "
+                           "height, so no critical height can be read",
+                           name, largest, at, value[k], height[k]);
         if (value[k] > largest) {
             largest = value[k];
             at = height[k];
@@ -129,11 +128,10 @@ static sf_status find_crossing(const char *name, const double *height, double li
                                sf_error *err) {
     double d = rising_root(&out->fit, height, limit);
     if (isnan(d))
-        return SF_FAIL(
-            err, SF_ERR_NUMERIC,
-            "the quadratic through the points of %s does not rise through %g: simulate more heights "
-            "near %.4g m",
-            name, limit, exp(out->fit.centre));
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "the quadratic through the points of %s does not rise through %g: simulate more "
+                       "heights near %.4g m",
+                       name, limit, exp(out->fit.centre));
     out->height = exp(out->fit.centre + d);
     out->margin = half_width(&out->fit, d);
     out->low = out->height * exp(-out->margin);

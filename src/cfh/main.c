@@ -16,8 +16,8 @@ enum { MAX_DROPS = 8 };
 typedef struct setting {
     double speed; /* m s-1, of the case */
     double mass;  /* kg */
-    double
-        table_end; /* -, strain where the shortest compression table ends or the densification law begins */
+    /* -, strain where the shortest compression table ends or the densification law begins */
+    double table_end;
 } setting;
 
 static double find_table_end(const sf_foam_card *foam) {

@@ -178,8 +178,7 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         {"heights", KEY_HEIGHTS, "LIST", 0, "these heights instead of a search: \"0.5 m,1 m,1.5 m,2 m\"", 3},
         {"rig", KEY_RIG, "CSV", 0,
          "heights are those of a rig with friction: v^2 = 2 g_eff h, with g_eff fitted to the columns h_m "
-         "(or "
-         "height_m) and v_test_m_s (or speed_m_s)",
+         "(or height_m) and v_test_m_s (or speed_m_s)",
          3},
         {0},
     };
@@ -188,11 +187,9 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         .parser = parse_option,
         .args_doc = "CASE -o DIR",
         .doc = "Critical fall height of a pad: the lowest drop height at which a_max reaches 200 g or HIC "
-               "1000.\v"
-               "Simulates up to 8 drops with softfall-pre and softfall-solve and writes cfh.json, cfh.csv, "
-               "cfh.png "
-               "(and .gp) and report.md. An interrupted search goes on with the same command. The height is "
-               "indicative, not a certification.",
+               "1000.\vSimulates up to 8 drops with softfall-pre and softfall-solve and writes cfh.json, "
+               "cfh.csv, cfh.png (and .gp) and report.md. An interrupted search goes on with the same "
+               "command. The height is indicative, not a certification.",
     };
     parser_state state = {.options = options, .err = err};
     argp_program_version_hook = print_version;

@@ -111,10 +111,9 @@ static void put_curves(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
     fprintf(g, "'cfh.csv' skip 1 using 1:%d with points pt 7 ps 1.8 lc rgb '#08519c' title 'simulated'",
             column);
     if (any_failed(r->points))
-        fputs(
-            ", \\\n     'cfh.csv' skip 1 using ($11 == 1 ? $1 : NaN):(0) with points pt 2 ps 2.2 lw 3 lc rgb "
-            "'#606060' title 'failed'",
-            g);
+        fputs(", \\\n     'cfh.csv' skip 1 using ($11 == 1 ? $1 : NaN):(0) with points pt 2 ps 2.2 lw 3 lc "
+              "rgb '#606060' title 'failed'",
+              g);
     fputc('\n', g);
 }
 

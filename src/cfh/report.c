@@ -60,12 +60,11 @@ static void rig_text(const sf_cfh_report *r, char *text, size_t size) {
         return;
     height = sf_cfh_rig_height(r->rig, height);
     margin = sf_cfh_rig_margin(r->rig, margin);
-    snprintf(
-        text, size,
-        "On the rig: %s%.3f m (95 %% interval with that of g_eff %.3f to %.3f m); g_eff = %.3f +- %.3f m/s2 "
-        "from %d pairs.",
-        side, height, height * exp(-margin), height * exp(margin), r->rig->gravity, r->rig->standard_error,
-        r->rig->pairs);
+    snprintf(text, size,
+             "On the rig: %s%.3f m (95 %% interval with that of g_eff %.3f to %.3f m); g_eff = %.3f +- %.3f "
+             "m/s2 from %d pairs.",
+             side, height, height * exp(-margin), height * exp(margin), r->rig->gravity,
+             r->rig->standard_error, r->rig->pairs);
 }
 
 static bool is_fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
@@ -216,8 +215,8 @@ sf_status sf_cfh_write_csv(const sf_output *output, const sf_cfh_report *r, sf_e
     FILE *file = sf_output_open(output, "cfh.csv", err);
     if (!file)
         return err->status;
-    fputs("height_m,speed_m_s,a_max_g,hic_1,a_max_fit_g,hic_fit_1,v_rebound_m_s,max_indentation_mm,"
-          "max_local_strain_1,energy_error_1,failed_1",
+    fputs("height_m,speed_m_s,a_max_g,hic_1,a_max_fit_g,hic_fit_1,v_rebound_m_s,max_indentation_mm,max_local_"
+          "strain_1,energy_error_1,failed_1",
           file);
     fputs(r->rig->pairs > 0 ? ",rig_height_m\n" : "\n", file);
     for (int k = 0; k < r->points->count; k++) {
@@ -274,11 +273,10 @@ static void put_criteria_table(FILE *file, const sf_cfh_report *r) {
 
 static void put_point_table(FILE *file, const sf_cfh_report *r) {
     bool rig = r->rig->pairs > 0;
-    fprintf(
-        file,
-        "| height (m) |%s speed (m/s) | a_max (g) | residual (%%) | HIC | residual (%%) | rebound (m/s) | "
-        "largest local strain |\n",
-        rig ? " on the rig (m) |" : "");
+    fprintf(file,
+            "| height (m) |%s speed (m/s) | a_max (g) | residual (%%) | HIC | residual (%%) | rebound (m/s) "
+            "| largest local strain |\n",
+            rig ? " on the rig (m) |" : "");
     fprintf(file, "|---:|%s---:|---:|---:|---:|---:|---:|---:|\n", rig ? "---:|" : "");
     for (int k = 0; k < r->points->count; k++) {
         const sf_cfh_point *p = &r->points->point[k];

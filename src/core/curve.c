@@ -13,8 +13,8 @@ static sf_status build_densification(const sf_foam_card *foam, double stress, do
                        curve->limit, curve->start);
     if (!(slope > 0 && stress > 0))
         return SF_FAIL(err, SF_ERR_INPUT,
-                       "the compression curve is flat (stress %g Pa, slope %g Pa) at the strain %g "
-                       "where densification starts",
+                       "the compression curve is flat (stress %g Pa, slope %g Pa) at the strain %g where "
+                       "densification starts",
                        stress, slope, curve->start);
     double room = curve->limit - curve->start;
     curve->exponent = foam->densification_exponent > 0 ? foam->densification_exponent : room * slope / stress;

@@ -55,8 +55,8 @@ typedef struct sf_foam_card {
     double maxwell_rate;     /* s-1, BETA1 > 0 */
     double kelvin_viscosity; /* Pa s, eta >= 0 */
     double tension_cutoff;   /* Pa, largest tensile nominal stress; huge = none */
-    double
-        densification_start; /* -, strain from which the densification law replaces the table; 0 = its end */
+    /* -, strain from which the densification law replaces the table; 0 = its end */
+    double densification_start;
     double densification_limit;    /* -, strain eps_L at which the stress becomes infinite; 1 for rule H1 */
     double densification_exponent; /* -, exponent; 0 = the one that makes the additive constant vanish */
     double rate_filter_time;       /* s, time constant of the strain-rate filter when curve_count > 1 */

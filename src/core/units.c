@@ -129,10 +129,10 @@ static sf_status convert(const sf_units *units, const char *text, double number,
     *si = cv_convert_double(converter, number);
     cv_free(converter);
     if (zero != 0.0 || !isfinite(*si))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "\"%s\" has no finite value on a scale that begins at zero; expected %s, "
-                       "for example \"%s\"",
-                       text, want->phrase, want->example);
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "\"%s\" has no finite value on a scale that begins at zero; expected %s, for example \"%s\"",
+            text, want->phrase, want->example);
     return SF_OK;
 }
 
@@ -160,8 +160,7 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
         length < (int)sizeof name && is_plain_unit_text(name) ? ut_parse(units->system, name, UT_UTF8) : NULL;
     if (!unit)
         return SF_FAIL(err, SF_ERR_INPUT,
-                       "\"%s\": \"%s\" is not a unit that UDUNITS-2 knows; expected %s, for "
-                       "example \"%s\"",
+                       "\"%s\": \"%s\" is not a unit that UDUNITS-2 knows; expected %s, for example \"%s\"",
                        text, name, want->phrase, want->example);
     sf_status status = convert(units, text, number, unit, kind, si, err);
     ut_free(unit);

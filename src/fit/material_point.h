@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A material point of the solver's own foam law (solver/material/foam.h) in uniaxial compression: what a written card
- * gives in the test that it was fitted to. */
+/* A material point of the solver's own foam law (solver/material/foam.h) in uniaxial compression: what a
+ * written card gives in the test that it was fitted to. */
 #ifndef SF_FIT_MATERIAL_POINT_H
 #define SF_FIT_MATERIAL_POINT_H
 

@@ -39,13 +39,12 @@ void sf_gnuplot_draw(const sf_output *output, const char *script, const char *pi
     int code = run_gnuplot(output->staging, script);
     if (code == -1)
         snprintf(warning, size,
-                 "%s was not drawn, as gnuplot cannot be run (%s): install it and run "
-                 "\"gnuplot %s\" in the output directory",
+                 "%s was not drawn, as gnuplot cannot be run (%s): install it and run \"gnuplot %s\" in the "
+                 "output directory",
                  picture, strerror(errno), script);
     else if (code != 0 || !sf_output_has(output, picture))
-        snprintf(
-            warning, size,
-            "%s was not drawn: gnuplot ended with code %d; run \"gnuplot %s\" in the output directory to see "
-            "why",
-            picture, code, script);
+        snprintf(warning, size,
+                 "%s was not drawn: gnuplot ended with code %d; run \"gnuplot %s\" in the output directory "
+                 "to see why",
+                 picture, code, script);
 }

@@ -78,16 +78,16 @@ sf_status sf_contact_instant(const sf_series *curve, const char *name, double *i
     double a_max = curve->value[peak], low = 0, high = 0;
     if (!(a_max > 0))
         return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s has no positive acceleration (largest value %g g): positive means that "
-                       "the missile is slowed down",
+                       "%s has no positive acceleration (largest value %g g): positive means that the "
+                       "missile is slowed down",
                        name, a_max);
     double t_low = last_rise(curve, peak, 0.02 * a_max, &low);
     double t_high = last_rise(curve, peak, 0.10 * a_max, &high);
     if (!(t_high > t_low) || !(high > low))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s begins at %g g, above 10 %% of its peak %g g: its contact cannot be found, "
-                       "give --shift",
-                       name, curve->value[0], a_max);
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s begins at %g g, above 10 %% of its peak %g g: its contact cannot be found, give --shift",
+            name, curve->value[0], a_max);
     *instant = t_low - low * (t_high - t_low) / (high - low);
     return SF_OK;
 }

@@ -128,11 +128,10 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         .options = known,
         .parser = parse_option,
         .args_doc = "RESULTS.h5 -o DIR",
-        .doc =
-            "Injury figures, curves and ParaView files of a softfall drop.\v"
-            "Writes summary.json, history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and pad.h5. "
-            "Of a prescribed motion compression.csv and .png instead of the acceleration. "
-            "Open pad.xdmf in ParaView. The figures are indicative, not a certification.",
+        .doc = "Injury figures, curves and ParaView files of a softfall drop.\vWrites summary.json, "
+               "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and pad.h5. Of a prescribed "
+               "motion compression.csv and .png instead of the acceleration. Open pad.xdmf in ParaView. The "
+               "figures are indicative, not a certification.",
     };
     argp_program_version_hook = print_version;
     *o = (options){.cfc = 1000, .compare = {.shift = NAN, .window = {NAN, NAN}}, .err = SF_ERROR_INIT};

@@ -58,8 +58,8 @@ static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
     fputs("plot ", g);
     if (f->injury.hic.value > 0)
         fprintf(g,
-                "'history.csv' skip 1 using 1:($1 >= %.9g && $1 <= %.9g ? $3 : NaN) with filledcurves y=0 "
-                "fc rgb '#c6dbef' title 'HIC %.1f: %.2f to %.2f ms', \\\n     ",
+                "'history.csv' skip 1 using 1:($1 >= %.9g && $1 <= %.9g ? $3 : NaN) with filledcurves y=0 fc "
+                "rgb '#c6dbef' title 'HIC %.1f: %.2f to %.2f ms', \\\n     ",
                 f->injury.hic.t1 * 1e3, f->injury.hic.t2 * 1e3, f->injury.hic.value, f->injury.hic.t1 * 1e3,
                 f->injury.hic.t2 * 1e3);
     fputs("'history.csv' skip 1 using 1:2 with lines lw 1.2 lc rgb '#fd8d3c' title 'raw', \\\n     ", g);
@@ -69,8 +69,8 @@ static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
     fputc('\'', g);
     if (c)
         fprintf(g,
-                ", \\\n     'reference.csv' skip 1 using 1:2 with lines lw 3 dt 2 lc rgb '#202020' "
-                "title 'measured: a_max %.1f g, HIC %.1f'",
+                ", \\\n     'reference.csv' skip 1 using 1:2 with lines lw 3 dt 2 lc rgb '#202020' title "
+                "'measured: a_max %.1f g, HIC %.1f'",
                 c->injury.a_max_g, c->injury.hic.value);
     fputc('\n', g);
 }

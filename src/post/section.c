@@ -226,8 +226,7 @@ sf_status sf_section_write(const sf_output *output, const sf_results *results, b
     if (!file)
         goto done;
     fputs("set,node,x_mm,y_mm,z_mm,depth_mm,displacement_x_mm,displacement_y_mm,displacement_z_mm,von_mises_"
-          "kPa,"
-          "stress_zz_kPa,largest_compression_1\n",
+          "kPa,stress_zz_kPa,largest_compression_1\n",
           file);
     write_rows(file, results, &frame, err);
     if (sf_output_close(file, "section.csv", err) == SF_OK)

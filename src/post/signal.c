@@ -151,10 +151,10 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
         return err->status;
     double pole = 2 * M_PI * cfc * 2.0775;
     if (!(cfc > 0) || pole * step / 2 > 0.45 * M_PI)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "CFC %g cannot be applied to samples at %.6g Hz: the class must be above 0 "
-                       "and at most %.0f",
-                       cfc, 1 / step, 0.45 / (2.0775 * step));
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "CFC %g cannot be applied to samples at %.6g Hz: the class must be above 0 and at most %.0f", cfc,
+            1 / step, 0.45 / (2.0775 * step));
     /* The impulse response fades as exp(-pole t / sqrt 2): to 1e-9 in 30 / pole. */
     int64_t pad = (int64_t)ceil(30 / (pole * step)) + 2;
     int64_t total = uniform->count + 2 * pad;

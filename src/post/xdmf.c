@@ -119,13 +119,12 @@ static void put_missile(FILE *x, const sf_results *r, double time, int64_t index
     if (r->surface_triangle_count == 0)
         return;
     put_grid_start(x, "missile", time);
-    fprintf(
-        x,
-        "          <Topology TopologyType=\"Triangle\" NumberOfElements=\"%lld\"><DataItem Format=\"HDF\" "
-        "NumberType=\"Int\" Precision=\"4\" Dimensions=\"%lld "
-        "3\">pad.h5:/missile/triangle</DataItem></Topology>\n"
-        "          <Geometry GeometryType=\"XYZ\">",
-        (long long)r->surface_triangle_count, (long long)r->surface_triangle_count);
+    fprintf(x,
+            "          <Topology TopologyType=\"Triangle\" NumberOfElements=\"%lld\"><DataItem "
+            "Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" Dimensions=\"%lld "
+            "3\">pad.h5:/missile/triangle</DataItem></Topology>\n"
+            "          <Geometry GeometryType=\"XYZ\">",
+            (long long)r->surface_triangle_count, (long long)r->surface_triangle_count);
     put_float_item(x, index, "missile_position", r->surface_node_count, 3);
     fputs("</Geometry>\n        </Grid>\n", x);
 }

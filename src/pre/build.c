@@ -138,8 +138,7 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
         if (fabs(c->missile_card.direction[axis]) > 1e-12)
             return SF_FAIL(err, SF_ERR_INPUT,
                            "missile.direction has the component %g normal to the symmetry plane \"%s\": an "
-                           "oblique impact "
-                           "needs a model without that plane",
+                           "oblique impact needs a model without that plane",
                            c->missile_card.direction[axis], set->name);
         if (seen & (1 << axis))
             return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is a second plane normal to %c",

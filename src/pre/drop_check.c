@@ -24,11 +24,10 @@ static sf_status check_mass(const sf_model *m, sf_error *err) {
         heaviest = fmax(heaviest, m->mass[m->contact_node[k]]);
     if (m->motion_count > 0 || share > heaviest)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "missile.mass: %g kg, of which the model has 1/%lld, is not more than the heaviest node of the "
-        "contact surface (%g kg)",
-        m->missile.mass, (long long)m->symmetry_factor, heaviest);
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "missile.mass: %g kg, of which the model has 1/%lld, is not more than the heaviest node "
+                   "of the contact surface (%g kg)",
+                   m->missile.mass, (long long)m->symmetry_factor, heaviest);
 }
 
 /* ---- symmetry ---- */
@@ -79,20 +78,18 @@ static sf_status check_plane(const sf_model *m, int axis, double place, const ch
         double off = m->missile.sphere_centre[axis] - place;
         if (fabs(off) <= AT_PLANE * m->missile.sphere_radius)
             return SF_OK;
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "the centre of the missile's sphere lies %g mm off the symmetry plane \"%s\" (%c = %g mm): "
-            "it must lie on it",
-            1e3 * off, name, 'x' + axis, 1e3 * place);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "the centre of the missile's sphere lies %g mm off the symmetry plane \"%s\" (%c = %g "
+                       "mm): it must lie on it",
+                       1e3 * off, name, 'x' + axis, 1e3 * place);
     }
     double before = side_of_pad(m, axis, place) > 0 ? place - low : high - place, behind = extent - before;
     if (fabs(before) <= AT_PLANE * extent || fabs(before - behind) <= SYMMETRIC * extent)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "the missile spans %c = %g to %g mm, neither one side of the symmetry plane \"%s\" (%c = %g mm) "
-        "from that plane on nor both sides alike",
-        'x' + axis, 1e3 * low, 1e3 * high, name, 'x' + axis, 1e3 * place);
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "the missile spans %c = %g to %g mm, neither one side of the symmetry plane \"%s\" (%c = "
+                   "%g mm) from that plane on nor both sides alike",
+                   'x' + axis, 1e3 * low, 1e3 * high, name, 'x' + axis, 1e3 * place);
 }
 
 typedef struct edge {
@@ -146,11 +143,10 @@ static sf_status check_whole(const sf_model *m, const edge *list, int axis, sf_e
     bool below = is_cut(m, list, axis, low, high - low);
     if (!below && !is_cut(m, list, axis, high, high - low))
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: half a "
-        "missile over a whole pad",
-        'x' + axis, 1e3 * round_off(below ? low : high, high - low));
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: "
+                   "half a missile over a whole pad",
+                   'x' + axis, 1e3 * round_off(below ? low : high, high - low));
 }
 
 static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
@@ -188,8 +184,7 @@ static void tell_free_planes(const sf_case *c, const sf_mesh *mesh) {
         if (strncmp(mesh->set[k].name, "symmetry", 8) == 0 && !holds(c, mesh->set[k].name))
             fprintf(stderr,
                     "softfall-pre: warning: pad.symmetry leaves out the group \"%s\" of the geometry: that "
-                    "side is "
-                    "free, and what is modelled counts as the whole pad\n",
+                    "side is free, and what is modelled counts as the whole pad\n",
                     mesh->set[k].name);
 }
 

@@ -28,7 +28,8 @@ static void request_stop(int signal_number) {
  * another process wants a processor. The OpenMP runtimes read their policy from the environment before main,
  * so the program starts itself once more with the passive one; what the user has set stands. */
 static void limit_spinning(char **argv) {
-    /* a spin of some 0.2 ms bridges the barriers of a step, and costs little where threads share a processor */
+    /* a spin of some 0.2 ms bridges the barriers of a step, and costs little where threads share a processor
+     */
     if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 1) == 0 &&
         setenv("GOMP_SPINCOUNT", "5000", 0) == 0)
         execv("/proc/self/exe", argv); /* returns only if it cannot: then the run is merely slower */
@@ -183,9 +184,8 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
     if (isnan(s->missile.contact_time))
         warn("the missile never touched the pad");
     if (x->largest_indentation > m->thickness)
-        warn("the missile went %.4g mm into a pad of %.4g mm: it is smaller than "
-             "the spacing "
-             "of the contact points and passed between them",
+        warn("the missile went %.4g mm into a pad of %.4g mm: it is smaller than the spacing of the contact "
+             "points and passed between them",
              1e3 * x->largest_indentation, 1e3 * m->thickness);
 }
 
@@ -353,11 +353,10 @@ int main(int argc, char **argv) {
         .options = list,
         .parser = parse,
         .args_doc = "MODEL",
-        .doc =
-            "Solves the drop in MODEL (from softfall-pre). Ctrl-C (SIGINT, SIGTERM) ends the run after the "
-            "present step with readable results and a checkpoint, from which --restart goes on.\vExit code: "
-            "0 done, 2 wrong input, 3 a file failed, 4 wrong model, 5 numerical failure, 6 out of memory, "
-            "7 a library failed, 130 interrupted (SIGINT, SIGTERM)."};
+        .doc = "Solves the drop in MODEL (from softfall-pre). Ctrl-C (SIGINT, SIGTERM) ends the run after "
+               "the present step with readable results and a checkpoint, from which --restart goes on.\vExit "
+               "code: 0 done, 2 wrong input, 3 a file failed, 4 wrong model, 5 numerical failure, 6 out of "
+               "memory, 7 a library failed, 130 interrupted (SIGINT, SIGTERM)."};
     limit_spinning(argv);
     options o = {.threads = omp_get_max_threads(), .checkpoint_wall = 60, .checkpoint_time = INFINITY};
     sf_error err = SF_ERROR_INIT;

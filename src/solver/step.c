@@ -24,13 +24,13 @@ static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *e
             continue;
         const double *x = &m->position[3 * p->jacobian_node];
         bool finite = isfinite(p->jacobian);
-        return SF_FAIL(err, SF_ERR_NUMERIC,
-                       "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, %s: det F "
-                       "= %.3g. %s",
-                       s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2],
-                       finite ? "has collapsed" : "has lost its numbers", p->jacobian,
-                       finite ? "The curve is too soft for this impact there; check its densification"
-                              : "The step before was unstable; try a smaller solver.step_safety");
+        return SF_FAIL(
+            err, SF_ERR_NUMERIC,
+            "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, %s: det F = %.3g. %s",
+            s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2],
+            finite ? "has collapsed" : "has lost its numbers", p->jacobian,
+            finite ? "The curve is too soft for this impact there; check its densification"
+                   : "The step before was unstable; try a smaller solver.step_safety");
     }
     return SF_OK;
 }
@@ -67,11 +67,10 @@ static sf_status check_finite(const sf_model *m, const sf_state *s, sf_error *er
                        "displacement %g m. The contact was unstable; try a smaller solver.step_safety",
                        s->time, (long long)s->step, s->missile.acceleration, s->missile.displacement);
     const double *x = &m->position[3 * node], *f = &s->force[3 * node];
-    return SF_FAIL(
-        err, SF_ERR_NUMERIC,
-        "at t = %.6g s (step %lld) node %lld, X = (%.5g, %.5g, %.5g) m, has lost its numbers: its force "
-        "is (%g, %g, %g) N. The step before was unstable; try a smaller solver.step_safety",
-        s->time, (long long)s->step, (long long)node, x[0], x[1], x[2], f[0], f[1], f[2]);
+    return SF_FAIL(err, SF_ERR_NUMERIC,
+                   "at t = %.6g s (step %lld) node %lld, X = (%.5g, %.5g, %.5g) m, has lost its numbers: its "
+                   "force is (%g, %g, %g) N. The step before was unstable; try a smaller solver.step_safety",
+                   s->time, (long long)s->step, (long long)node, x[0], x[1], x[2], f[0], f[1], f[2]);
 }
 
 static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed) {
@@ -102,19 +101,16 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
             err, SF_ERR_NUMERIC,
             "at t = %.6g s (step %lld) contact or stabilisation has put %.3g J into the pad (contact %.3g J, "
             "stabilisation %.3g J; limit %.2f %% of the %s); fastest is node %lld at (%.5g, %.5g, %.5g) m, "
-            "%.3g "
-            "m/s: is the missile pressed in beyond its touching surface?",
+            "%.3g m/s: is the missile pressed in beyond its touching surface?",
             s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
             100 * m->run.energy_limit, m->motion_count > 0 ? "largest work of the motion" : "impact energy",
             (long long)node, x[0], x[1], x[2], speed);
-    return SF_FAIL(
-        err, SF_ERR_NUMERIC,
-        "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step %.3g s); "
-        "fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: the run is unstable or the limit too "
-        "strict; try a "
-        "smaller solver.step_safety",
-        s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt, (long long)node,
-        x[0], x[1], x[2], speed);
+    return SF_FAIL(err, SF_ERR_NUMERIC,
+                   "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step "
+                   "%.3g s); fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: the run is unstable or "
+                   "the limit too strict; try a smaller solver.step_safety",
+                   s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt,
+                   (long long)node, x[0], x[1], x[2], speed);
 }
 
 /* v += dt_v (force - reaction) / m, with the kinetic energy at the present time, and momentum and largest

@@ -55,8 +55,7 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
         {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier fit in DIR", 0},
         {"simulate", KEY_SIMULATE, "CASE", 0,
          "press a cube of the fitted material between platens too, as CASE says "
-         "(examples/compression/case.cfg), and "
-         "compare it with the material point",
+         "(examples/compression/case.cfg), and compare it with the material point",
          1},
         {"friction", KEY_FRICTION, "MU", 0, "of the upper platen in --simulate (default: that of CASE)", 1},
         {0},
@@ -65,9 +64,9 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
         .options = known,
         .parser = parse_option,
         .args_doc = "FIT.cfg -o DIR",
-        .doc = "A material file from compression tests of a foam.\v"
-               "Writes material.cfg with its curves, report.md, fit.json, fit.png (and .gp), fit.csv and "
-               "loading_curve.csv. docs/identification.md explains FIT.cfg and the report.",
+        .doc = "A material file from compression tests of a foam.\vWrites material.cfg with its curves, "
+               "report.md, fit.json, fit.png (and .gp), fit.csv and loading_curve.csv. "
+               "docs/identification.md explains FIT.cfg and the report.",
     };
     argv[0] = name;
     if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)

@@ -34,11 +34,10 @@ static sf_status check_rate(const sf_config *file, const config_setting_t *entry
                             const sf_compression_config *c, sf_error *err) {
     for (int k = 0; k < c->test_count; k++)
         if (fabs(log(rate / c->test[k].rate)) < 1e-6)
-            return sf_config_refuse(
-                file, config_setting_get_member(entry, "rate"), err,
-                "the rate %g 1/s is that of %s already; give each rate once (join the tests or "
-                "take their mean)",
-                rate, c->test[k].path);
+            return sf_config_refuse(file, config_setting_get_member(entry, "rate"), err,
+                                    "the rate %g 1/s is that of %s already; give each rate once (join the "
+                                    "tests or take their mean)",
+                                    rate, c->test[k].path);
     return SF_OK;
 }
 
@@ -98,11 +97,10 @@ static sf_status read_name(const sf_config *file, const config_setting_t *root, 
 static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
     const config_setting_t *root = config_root_setting(&file->config);
     int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
-    if (sf_config_names(
-            file, root,
-            "name|density|tests|DAMP|E_range|rate_model|densification|densification_start|confidence|"
-            "specimen",
-            err) != SF_OK ||
+    if (sf_config_names(file, root,
+                        "name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
+                        "confidence|specimen",
+                        err) != SF_OK ||
         sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err) != SF_OK ||
         read_name(file, root, c, err) != SF_OK ||
         sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err) != SF_OK ||
@@ -127,11 +125,10 @@ static sf_status check_together(const char *path, const sf_compression_config *c
     for (int k = 0; k < c->test_count; k++)
         shortest = fmin(shortest, c->test[k].largest_strain);
     if (c->densification_start > 0.97 * shortest)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: densification_start = %g leaves no data to fit the densification to: the tests reach "
-            "a strain of %g",
-            path, c->densification_start, shortest);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: densification_start = %g leaves no data to fit the densification to: the tests "
+                       "reach a strain of %g",
+                       path, c->densification_start, shortest);
     for (int i = 0; i < c->test[0].loading; i++)
         below += c->test[0].strain[i] <= c->modulus_range;
     if (below < 4)

@@ -47,11 +47,10 @@ static sf_status write_motion(const char *path, double displacement, double turn
 
 static sf_status check_specimen(const sf_compression_config *c, sf_error *err) {
     if (!(c->side > 0 && fabs(c->side - c->thickness) <= 1e-9 * c->side))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "the simulated specimen is a cube: give specimen = { side = \"50 mm\"; thickness = \"50 mm\"; } "
-            "with equal lengths (they are %g mm and %g mm)",
-            1e3 * c->side, 1e3 * c->thickness);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "the simulated specimen is a cube: give specimen = { side = \"50 mm\"; thickness = "
+                       "\"50 mm\"; } with equal lengths (they are %g mm and %g mm)",
+                       1e3 * c->side, 1e3 * c->thickness);
     return SF_OK;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The foam law of solver/material/foam.c at a material point in uniaxial compression at a constant nominal rate
- * (lateral stretches 1), as a function of the parameters that compression tests identify, with its
+/* The foam law of solver/material/foam.c at a material point in uniaxial compression at a constant nominal
+ * rate (lateral stretches 1), as a function of the parameters that compression tests identify, with its
  * derivatives. The loading curve is a cubic spline whose coefficients ascend, and beyond the densification
  * start the law of theory eq. (23), joined with its slope; the hysteresis is eq. (14), the Maxwell stress the
  * closed form of eq. (19). DAMP, which at the rates of these tests is nothing, is left out.

@@ -224,8 +224,7 @@ static void print_summary(const sf_compression_fit *fit, const sf_compression_ch
     if (fit->misfit > 2)
         fprintf(stderr,
                 "softfall-fit: warning: the law misses the data by %.3g times their scatter (fit.png, lower "
-                "panel); "
-                "the intervals are widened by as much\n",
+                "panel); the intervals are widened by as much\n",
                 sqrt(fit->misfit));
     if (*warning)
         fprintf(stderr, "softfall-fit: warning: %s\n", warning);

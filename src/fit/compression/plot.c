@@ -61,16 +61,14 @@ static void put_deviations(FILE *g, const sf_compression_fit *fit) {
           "+-2)'\n"
           "set key top center horizontal samplen 1\n"
           "set object 1 rectangle from graph 0, first -2 to graph 1, first 2 fc rgb '#f0f0f0' fs solid "
-          "noborder "
-          "behind\nplot ",
+          "noborder behind\nplot ",
           g);
     for (int k = 0; k < tests; k++)
         for (int side = 0; side < 2; side++) {
             const char *branch = side ? "unloading" : "loading";
             fprintf(g,
                     "'fit.csv' skip 1 using ($1 == %d && strcol(2) eq '%s' ? $3 : NaN):7 with points pt %d "
-                    "ps 0.7 lc "
-                    "rgb '%s' ",
+                    "ps 0.7 lc rgb '%s' ",
                     k + 1, branch, side ? 6 : 7, side ? POINT[k] : LINE[k]);
             if (k == 0)
                 fprintf(g, "title '%s', \\\n     ", branch);

@@ -12,11 +12,9 @@ static void put_tests(FILE *out, const sf_compression_fit *fit, const sf_compres
         fprintf(out, "Specimen %.4g mm x %.4g mm, %.4g mm thick, %.4g kg/m3.\n\n", 1e3 * c->side,
                 1e3 * c->side, 1e3 * c->thickness, c->density);
     fputs("Deviation: root mean square of data less fit, over the scatter (1: nothing but scatter) and in "
-          "percent "
-          "of the stress (counted as a hundredth of the largest at least).\n\n"
+          "percent of the stress (counted as a hundredth of the largest at least).\n\n"
           "| file | rate (1/s) | points, loading + unloading | largest strain | largest stress (kPa) | "
-          "deviation / "
-          "scatter, loading | unloading | deviation, loading (%) | unloading (%) |\n"
+          "deviation / scatter, loading | unloading | deviation, loading (%) | unloading (%) |\n"
           "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
           out);
     for (int k = 0; k < c->test_count; k++) {
@@ -57,10 +55,8 @@ static void put_parameters(FILE *out, const sf_compression_fit *fit) {
     }
     fprintf(out,
             "\nE is the slope of a straight line through the loading of the slowest test below a strain of "
-            "%g; where "
-            "the curve bends within that range the slope at rest is steeper. The loading curve with its "
-            "interval is "
-            "in loading_curve.csv.\n",
+            "%g; where the curve bends within that range the slope at rest is steeper. The loading curve "
+            "with its interval is in loading_curve.csv.\n",
             fit->data.config->modulus_range);
 }
 
@@ -79,8 +75,7 @@ static double lowest_bic(const sf_candidate *c, int count) {
 
 static void put_choice(FILE *out, const sf_compression_fit *fit) {
     static const char head[] =
-        "| form | parameters | chi2 | BIC above the lowest | |\n| --- | ---: | ---: | ---: | --- "
-        "|\n";
+        "| form | parameters | chi2 | BIC above the lowest | |\n| --- | ---: | ---: | ---: | --- |\n";
     double rate = lowest_bic(fit->rate, SF_RATE_MODELS), rule = lowest_bic(fit->rule, SF_RULES);
     fprintf(out, "\n## Choice of the law\n\nRate dependence: %s.\n\n",
             sf_compression_rate_phrase(fit->model.form.rate));
@@ -104,8 +99,7 @@ static void put_choice(FILE *out, const sf_compression_fit *fit) {
         fputs("It was prescribed.\n", out);
     }
     fputs("\nBIC = n ln(chi2/n) + p ln n; a form that is 10 above the lowest has the data clearly against "
-          "it, one "
-          "within 2 is as good.\n",
+          "it, one within 2 is as good.\n",
           out);
 }
 
@@ -114,10 +108,8 @@ static void put_quality(FILE *out, const sf_compression_fit *fit, const sf_compr
             "\n## How good it is\n\n"
             "- Scatter of the data about a free smooth curve: %.3g kPa and %.3g %% of the stress.\n"
             "- Misfit chi2/(n - p) = %.3g with n = %d points and p = %d parameters (%d coefficients for each "
-            "loading "
-            "curve). 1: the law leaves nothing but scatter; above it the law misses the data, and the "
-            "standard errors "
-            "are widened by its root.\n"
+            "loading curve). 1: the law leaves nothing but scatter; above it the law misses the data, and "
+            "the standard errors are widened by its root.\n"
             "- Correlation of neighbouring deviations %.3g; the variances are multiplied by %.3g for it.\n"
             "- The written card, in the solver's own law, differs from the fit by at most %.2g %%.\n\n"
             "![Data and fit](fit.png)\n",
@@ -130,12 +122,9 @@ static void put_simulation(FILE *out, const sf_compression_fit *fit, const sf_co
     if (!check->simulated)
         return;
     fputs("\n## The simulated test\n\nA cube of the fitted material between platens (softfall-solve), in a "
-          "time that "
-          "runs faster with everything that depends on the rate, against the material point of the fit; "
-          "means over "
-          "blocks of time. Differences in percent of the stress, counted as a hundredth of the largest at "
-          "least. "
-          "simulation.csv holds the curves.\n\n"
+          "time that runs faster with everything that depends on the rate, against the material point of the "
+          "fit; means over blocks of time. Differences in percent of the stress, counted as a hundredth of "
+          "the largest at least. simulation.csv holds the curves.\n\n"
           "| rate (1/s) | speed-up | largest difference, loading (%) | unloading (%) | energy error |\n"
           "| ---: | ---: | ---: | ---: | ---: |\n",
           out);
@@ -157,24 +146,21 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
     if (fit->model.form.rate == SF_RATE_MAXWELL)
         fprintf(out,
                 "- Rates beyond %.3g 1/s: a drop is faster by orders of magnitude, there the branch is a "
-                "spring of ED = "
-                "%.4g kPa.\n",
+                "spring of ED = %.4g kPa.\n",
                 fastest, 1e-3 * e[SF_ESTIMATE_ED].value);
     else if (fit->rate_count > 1)
         fprintf(out,
                 "- Rates beyond %.3g 1/s: the solver holds the fastest curve; a drop is faster by orders of "
-                "magnitude, "
-                "and the foam may be stiffer there.\n",
+                "magnitude, and the foam may be stiffer there.\n",
                 fastest);
     else
         fprintf(out, "- Rates other than those of the tests (to %.3g 1/s): the law has no rate effect.\n",
                 fastest);
-    fputs(
-        "- Unloading faster than in the tests, and reloading: the law unloads on the slowest curve, and its "
-        "hysteresis does not depend on the rate.\n"
-        "- Tension: it takes the modulus E, which compression does not show.\n"
-        "- DAMP is not identified; it is written as given.\n",
-        out);
+    fputs("- Unloading faster than in the tests, and reloading: the law unloads on the slowest curve, and "
+          "its hysteresis does not depend on the rate.\n"
+          "- Tension: it takes the modulus E, which compression does not show.\n"
+          "- DAMP is not identified; it is written as given.\n",
+          out);
     if (!isfinite(e[SF_ESTIMATE_HU].error))
         fprintf(out, "- HU = %.4g and SHAPE = %.4g: %s.\n", e[SF_ESTIMATE_HU].value,
                 e[SF_ESTIMATE_SHAPE].value, e[SF_ESTIMATE_HU].note);

@@ -77,17 +77,15 @@ static sf_status check_size(const sf_compression_test *t, sf_error *err) {
         return SF_FAIL(err, SF_ERR_INPUT, "%s: %d points of loading; a test needs at least %d", t->path,
                        t->loading, SF_COMPRESSION_LOADING_POINTS);
     if (unloading > 0 && unloading < SF_COMPRESSION_UNLOADING_POINTS)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s:%d: strain falls from this line on, but unloading has %d points; it needs at least "
-            "%d, or none",
-            t->path, t->line[t->loading], unloading, SF_COMPRESSION_UNLOADING_POINTS);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s:%d: strain falls from this line on, but unloading has %d points; it needs at "
+                       "least %d, or none",
+                       t->path, t->line[t->loading], unloading, SF_COMPRESSION_UNLOADING_POINTS);
     if (t->largest_strain < SMALL_STRAIN)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: the largest strain is %g %%; a test must reach %g %% (is the column in percent and "
-            "named strain, or the other way round?)",
-            t->path, 100 * t->largest_strain, 100 * SMALL_STRAIN);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: the largest strain is %g %%; a test must reach %g %% (is the column in percent "
+                       "and named strain, or the other way round?)",
+                       t->path, 100 * t->largest_strain, 100 * SMALL_STRAIN);
     return SF_OK;
 }
 
@@ -99,10 +97,10 @@ static sf_status check_sign(const sf_compression_test *t, double scale, sf_error
         return SF_FAIL(err, SF_ERR_INPUT, "%s: the stress is zero everywhere", t->path);
     for (int i = 0; i < t->count; i++)
         if (t->stress[i] < -STRESS_ZERO * size)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s:%d: stress %g is negative, beyond the scatter about zero; compression must be "
-                           "positive",
-                           t->path, t->line[i], t->stress[i] / scale);
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s:%d: stress %g is negative, beyond the scatter about zero; compression must be positive",
+                t->path, t->line[i], t->stress[i] / scale);
     return SF_OK;
 }
 
@@ -111,11 +109,10 @@ static sf_status check_loading(const sf_compression_test *t, double scale, sf_er
     int where = 0;
     for (int i = 0; i < t->loading; i++) {
         if (t->stress[i] < (1 - FALL) * highest - SLACK * t->largest_stress)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
-                "%s:%d: stress %g has fallen by more than a tenth from %g at line %d while loading; "
-                "the foam law rises",
-                t->path, t->line[i], t->stress[i] / scale, highest / scale, t->line[where]);
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s:%d: stress %g has fallen by more than a tenth from %g at line %d while "
+                           "loading; the foam law rises",
+                           t->path, t->line[i], t->stress[i] / scale, highest / scale, t->line[where]);
         if (t->stress[i] > highest) {
             highest = t->stress[i];
             where = i;

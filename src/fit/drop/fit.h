@@ -41,8 +41,8 @@ typedef struct sf_drop_fit {
     double *gradient; /* [responses][parameters] by the parameters: corrected columns, for predictions plain;
                          owned */
     double *response_sd; /* [responses] standard deviation by the parameters; owned */
-    double
-        *without; /* [responses] each measured drop predicted by the others; NaN if there are none; owned */
+    /* [responses] each measured drop predicted by the others; NaN if there are none; owned */
+    double *without;
     /* what the drops say about the curve, by strain bin: sum over the data of (d response / d ln sigma /
      * sd)^2 */
     double information[SF_FIT_STRAIN_BINS];

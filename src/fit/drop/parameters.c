@@ -115,8 +115,8 @@ sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARA
         card->densification_exponent = 0;
         if (!(curve.pressure < curve.modulus && curve.exponent > 1))
             SF_FAIL(err, SF_ERR_NUMERIC,
-                    "p0 = %g Pa is not below E = %g Pa, or m = %g not above 1: no rising curve of "
-                    "initial slope E",
+                    "p0 = %g Pa is not below E = %g Pa, or m = %g not above 1: no rising curve of initial "
+                    "slope E",
                     curve.pressure, curve.modulus, curve.exponent);
         else
             sf_gas_curve_tabulate(&curve, card, err);

@@ -96,11 +96,10 @@ static void put_difference(FILE *f, double scaled, double measured) {
 static void put_drops(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     fputs("## Drops\n\nThe simulation with the identified material against the measurement. \"from the "
-          "others\": the same "
-          "drop left out of the fit and predicted by the rest (corrected surrogate).\n\n"
+          "others\": the same drop left out of the fit and predicted by the rest (corrected surrogate).\n\n"
           "| drop | a_max measured (g) | simulated | | from the others | HIC measured | simulated | | from "
-          "the others | "
-          "curve RMSE (g) | largest local strain |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+          "the others | curve RMSE (g) | largest local strain "
+          "|\n|---|---|---|---|---|---|---|---|---|---|---|\n",
           f);
     for (int d = 0; d < in->drop_count && !in->drop[d].predicted; d++) {
         const sf_fit_drop *drop = &in->drop[d];
@@ -141,9 +140,8 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
     if (!any)
         return;
     fputs("The speeds are known with a standard deviation only, and are unknowns of the fit; the table above "
-          "is simulated with "
-          "the given ones.\n\n| drop | given (m/s) | standard deviation (%) | in the fit (%) | 95 % "
-          "|\n|---|---|---|---|---|\n",
+          "is simulated with the given ones.\n\n| drop | given (m/s) | standard deviation (%) | in the fit "
+          "(%) | 95 % |\n|---|---|---|---|---|\n",
           f);
     for (int d = 0; d < fit->measured_drops; d++) {
         int k = fit->speed[d];
@@ -162,8 +160,7 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
     if (!has_predictions(in))
         return;
     fputs("## Predictions\n\nDrops that were not used. The 95 % intervals hold the uncertainty of the "
-          "parameters; that of "
-          "the discretisation and of the model's form come on top.\n\n"
+          "parameters; that of the discretisation and of the model's form come on top.\n\n"
           "| drop | a_max (g) | 95 % | HIC | 95 % | largest local strain |\n|---|---|---|---|---|---|\n",
           f);
     for (int d = 0; d < in->drop_count; d++) {
@@ -180,8 +177,7 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
 
 static void put_parameters(FILE *f, const sf_drop_fit *fit) {
     fputs("## Parameters\n\n95 % intervals (of the logarithm, linearised). A parameter that keeps 90 % or "
-          "more of its "
-          "prior's width was hardly seen by the drops.\n\n"
+          "more of its prior's width was hardly seen by the drops.\n\n"
           "| parameter | value | 95 % | prior | prior factor (1 sd) | width left of the prior | meaning |\n"
           "|---|---|---|---|---|---|---|\n",
           f);
@@ -232,8 +228,7 @@ static void put_strains(FILE *f, const sf_drop_fit *fit) {
         sum += fit->information[b];
     fprintf(f,
             "## Which strains the drops see\n\nNine tenths of the information lie between strains of %.2f "
-            "and %.2f. "
-            "Outside, the curve is what its form and the priors make it.\n\n"
+            "and %.2f. Outside, the curve is what its form and the priors make it.\n\n"
             "| strain | part of the information | standard deviation of the stress | before the data |\n"
             "|---|---|---|---|\n",
             low, high);
@@ -249,12 +244,11 @@ static sf_status write_report(const sf_drop_fit *fit, const char *input_path, co
     FILE *f = sf_output_open(output, "report.md", err);
     if (!f)
         return err->status;
-    fprintf(
-        f,
-        "# Identification from drops: %s\n\nsoftfall-fit %s (%s) from %s: %s after %d simulations of every "
-        "measured drop.\n\n",
-        fit->input->material_name, SF_VERSION, SF_GIT_REVISION, input_path,
-        fit->result.converged ? "converged" : "**not converged**", fit->result.iterations);
+    fprintf(f,
+            "# Identification from drops: %s\n\nsoftfall-fit %s (%s) from %s: %s after %d simulations of "
+            "every measured drop.\n\n",
+            fit->input->material_name, SF_VERSION, SF_GIT_REVISION, input_path,
+            fit->result.converged ? "converged" : "**not converged**", fit->result.iterations);
     put_drops(f, fit);
     put_speeds(f, fit);
     put_predictions(f, fit);
@@ -439,8 +433,8 @@ static double peak_time_ms(const sf_series *curve) {
 static void put_strain_panels(FILE *f) {
     fputs("set key left top Left reverse samplen 2\nset xlabel 'engineering strain'\nset xrange [0:0.95]\n"
           "set ylabel 'nominal stress (kPa)'\nset logscale y\n"
-          "plot 'fit-curve.csv' skip 1 u 1:3:4 w filledcurves fc rgb '#c6dbef' t '95 %', "
-          "'' skip 1 u 1:2 w l lw 3 lc rgb '#08519c' t 'loading curve'\n"
+          "plot 'fit-curve.csv' skip 1 u 1:3:4 w filledcurves fc rgb '#c6dbef' t '95 %', '' skip 1 u 1:2 w l "
+          "lw 3 lc rgb '#08519c' t 'loading curve'\n"
           "unset logscale y\nset ylabel 'part of what the drops say about the curve'\nset yrange [0:*]\n"
           "set boxwidth 0.045\nset style fill solid 0.6\n"
           "plot 'fit-curve.csv' skip 1 u 1:5 w boxes lc rgb '#fd8d3c' t 'information by strain'\n",

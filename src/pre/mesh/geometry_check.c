@@ -154,11 +154,10 @@ static sf_status check_file(const char *path, int depth, sf_error *err) {
     for (size_t k = 0; k < sizeof data_formats / sizeof data_formats[0]; k++)
         if (strcasecmp(ending(path), data_formats[k]) == 0)
             return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "%s: gmsh takes an unknown format for a script: the name must end in .geo, .msh, .step, .iges, .brep "
-        "or another format of data",
-        path);
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: gmsh takes an unknown format for a script: the name must end in .geo, .msh, .step, "
+                   ".iges, .brep or another format of data",
+                   path);
 }
 
 sf_status sf_geometry_check(const char *path, sf_error *err) {

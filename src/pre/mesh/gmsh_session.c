@@ -360,11 +360,10 @@ static sf_status add_elements(const sf_gmsh *session, const destination *to, int
         size_t local_length = 0;
         gmshModelMeshGetElementProperties(type, &name, &dimension, &order, &count, &local, &local_length,
                                           &primary, &ierr);
-        SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: %s %d has elements of the type \"%s\"; only linear tetrahedra, pyramids, prisms, hexahedra, "
-            "triangles and quadrangles are supported",
-            session->file, kind_of(to->dimension), to->tag, name ? name : "unknown");
+        SF_FAIL(err, SF_ERR_INPUT,
+                "%s: %s %d has elements of the type \"%s\"; only linear tetrahedra, pyramids, prisms, "
+                "hexahedra, triangles and quadrangles are supported",
+                session->file, kind_of(to->dimension), to->tag, name ? name : "unknown");
         gmshFree(name);
         gmshFree(local);
         return err->status;

@@ -108,16 +108,14 @@ sf_status sf_gmsh_check_size(const char *file, sf_error *err) {
     if (child < 0)
         return SF_FAIL(err, SF_ERR_IO, "no process to estimate the mesh of %s in: %s", file, strerror(errno));
     if (received != (ssize_t)sizeof e)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: meshing its curves alone takes more than %.3g GB of memory or %d s: the mesh size is too "
-            "small, or gmsh fails on the geometry",
-            file, 1e-9 * available, TRIAL_SECONDS);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: meshing its curves alone takes more than %.3g GB of memory or %d s: the mesh "
+                       "size is too small, or gmsh fails on the geometry",
+                       file, 1e-9 * available, TRIAL_SECONDS);
     if (!(e.nodes * BYTES_PER_NODE > available))
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "%s: a spacing of %.3g (in the geometry's unit) means about %.2g nodes and %.3g GB of memory, of "
-        "which %.3g GB are available: take a coarser one, or set SOFTFALL_MEMORY_MB",
-        file, e.spacing, e.nodes, 1e-9 * e.nodes * BYTES_PER_NODE, 1e-9 * available);
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: a spacing of %.3g (in the geometry's unit) means about %.2g nodes and %.3g GB of "
+                   "memory, of which %.3g GB are available: take a coarser one, or set SOFTFALL_MEMORY_MB",
+                   file, e.spacing, e.nodes, 1e-9 * e.nodes * BYTES_PER_NODE, 1e-9 * available);
 }

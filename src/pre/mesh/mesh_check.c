@@ -225,11 +225,10 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
         corner_range(mesh, k, &low, &high);
         if (!(low > 0.0) || !(v > 0.0)) {
             centroid(mesh, k, c);
-            return SF_FAIL(
-                err, SF_ERR_MODEL,
-                "cell %lld (%s) at (%g, %g, %g) m is inverted or flat: its volume is %g m3 and its "
-                "smallest corner Jacobian %g m3; both must be positive",
-                (long long)k, type_name(mesh->cell_type[k]), c[0], c[1], c[2], v, low);
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "cell %lld (%s) at (%g, %g, %g) m is inverted or flat: its volume is %g m3 and "
+                           "its smallest corner Jacobian %g m3; both must be positive",
+                           (long long)k, type_name(mesh->cell_type[k]), c[0], c[1], c[2], v, low);
         }
         if (v < smallest) {
             smallest = v;

@@ -74,11 +74,10 @@ sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_c
     sf_status status = sf_missile_fit_sphere(surface, centre, &radius, &deviation, &quiet);
     if (status != SF_OK || deviation > SPHERE_TOLERANCE) {
         if (rule == 1)
-            return SF_FAIL(
-                err, SF_ERR_MODEL,
-                "missile.shape is \"sphere\", but the surface deviates from the best sphere by %.3g of its "
-                "radius (bound %.0e)",
-                deviation, SPHERE_TOLERANCE);
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "missile.shape is \"sphere\", but the surface deviates from the best sphere by "
+                           "%.3g of its radius (bound %.0e)",
+                           deviation, SPHERE_TOLERANCE);
         return SF_OK;
     }
     card->shape = SF_SHAPE_SPHERE;
@@ -148,10 +147,9 @@ sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *
         }
     }
     if (!isfinite(*distance))
-        return SF_FAIL(
-            err, SF_ERR_MODEL,
-            "the missile, moving along (%g, %g, %g), never touches the contact group: check its position "
-            "over the pad and missile.direction",
-            card->direction[0], card->direction[1], card->direction[2]);
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the missile, moving along (%g, %g, %g), never touches the contact group: check its "
+                       "position over the pad and missile.direction",
+                       card->direction[0], card->direction[1], card->direction[2]);
     return SF_OK;
 }

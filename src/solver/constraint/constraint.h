@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Essential boundary conditions on u_h by the transformation method, as an exact projection (Chen, Pan, Wu,
  * Liu 1996; theory, section "Constraints"): with G the rows phi(X_c) of the held nodes, (G M^-1 G^T) lambda =
- * G a* + (G v) / dt,    a = a* - M^-1 G^T lambda. The factor is made once (solver/constraint/ldl.h). A row of G
- * stands for a node held in all components, or for one component of a node that is held in some. */
+ * G a* + (G v) / dt,    a = a* - M^-1 G^T lambda. The factor is made once (solver/constraint/ldl.h). A row of
+ * G stands for a node held in all components, or for one component of a node that is held in some. */
 #ifndef SF_SOLVER_CONSTRAINT_CONSTRAINT_H
 #define SF_SOLVER_CONSTRAINT_CONSTRAINT_H
 

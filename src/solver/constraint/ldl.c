@@ -196,11 +196,10 @@ static sf_status factorize(builder *w, int range, cholmod_factor **out, sf_error
         return fail_library(w, err);
     double condition = is_positive(l) ? cholmod_l_rcond(l, &w->common) : 0;
     if (!(condition > SINGULAR))
-        return SF_FAIL(
-            err, SF_ERR_MODEL,
-            "the constraints of %lld nodes depend on each other (reciprocal condition %.3g): choose "
-            "a smaller kernel.support_ratio",
-            (long long)w->rows, condition);
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the constraints of %lld nodes depend on each other (reciprocal condition %.3g): "
+                       "choose a smaller kernel.support_ratio",
+                       (long long)w->rows, condition);
     return SF_OK;
 }
 

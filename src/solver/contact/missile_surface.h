@@ -17,8 +17,8 @@ typedef struct sf_missile_surface {
     const int32_t *triangle; /* borrowed */
     double *normal;          /* [triangles][3] unit, outward */
     double *vertex_normal;   /* [nodes][3] angle-weighted pseudo-normal (Baerentzen, Aanaes 2005) */
-    double
-        *edge_normal; /* [triangles][3 edges][3] sum of the two faces' normals, edge k from vertex k to k+1 */
+    /* [triangles][3 edges][3] sum of the two faces' normals, edge k from vertex k to k+1 */
+    double *edge_normal;
     uint8_t *rim_edge;      /* [triangles][3 edges] 1 = no second face */
     uint8_t *rim_vertex;    /* [nodes] 1 = end of such an edge */
     double reach;           /* m, gaps beyond this are not looked for */

@@ -75,8 +75,8 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
     }
     if (err->status == SF_OK && h->ptr[h->group_count] > INT32_MAX)
         SF_FAIL(err, SF_ERR_MODEL,
-                "groups of domains see %lld nodes of other groups, more than %d: number the "
-                "nodes so that neighbours are close",
+                "groups of domains see %lld nodes of other groups, more than %d: number the nodes so that "
+                "neighbours are close",
                 (long long)h->ptr[h->group_count], INT32_MAX);
     if (err->status == SF_OK) {
         unsigned long total = (unsigned long)h->ptr[h->group_count];

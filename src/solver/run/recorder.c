@@ -117,10 +117,10 @@ sf_status sf_recorder_read(sf_recorder *r, const sf_model *m, const sf_state *s,
     bool whole = r->history.rows == s->step + 1 && r->frames >= 0 && r->frames <= r->history.rows &&
                  r->next_frame > s->time && r->next_extra >= 0 && r->next_extra <= m->frame_time_count;
     if (!whole)
-        return SF_FAIL(
-            err, SF_ERR_IO,
-            "the checkpoint's record is not possible: %lld rows at step %lld, %lld frames, the next at "
-            "%g s after %g s",
-            (long long)r->history.rows, (long long)s->step, (long long)r->frames, r->next_frame, s->time);
+        return SF_FAIL(err, SF_ERR_IO,
+                       "the checkpoint's record is not possible: %lld rows at step %lld, %lld frames, the "
+                       "next at %g s after %g s",
+                       (long long)r->history.rows, (long long)s->step, (long long)r->frames, r->next_frame,
+                       s->time);
     return SF_OK;
 }

@@ -34,13 +34,12 @@ static void print_progress(drop *d, bool last) {
     d->last_line = now;
     double done = (s->time - d->first_time) / (m->run.end_time - d->first_time), spent = now - d->start;
     bool driven = m->motion_count > 0;
-    fprintf(
-        run->log,
-        "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  %s %6.1f %s  indentation %5.1f mm  compression %.3f  "
-        "energy %+.3f %%",
-        run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
-        driven ? "force" : "a", sf_recorder_measure(m, s) / (driven ? 1 : 9.80665), driven ? "N" : "g",
-        1e3 * (s->missile.displacement - m->missile.gap), s->largest_compression, 100 * s->ledger.error);
+    fprintf(run->log,
+            "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  %s %6.1f %s  indentation %5.1f mm  compression "
+            "%.3f  energy %+.3f %%",
+            run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
+            driven ? "force" : "a", sf_recorder_measure(m, s) / (driven ? 1 : 9.80665), driven ? "N" : "g",
+            1e3 * (s->missile.displacement - m->missile.gap), s->largest_compression, 100 * s->ledger.error);
     if (done > 0 && !last)
         fprintf(run->log, "  left <= %.0f s  ", spent * (1 - done) / done);
     if (!run->terminal || last)
