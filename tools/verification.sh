@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs the verification studies and writes docs/verification.md from what they print.
-#   tools/verification.sh            all studies (more than an hour; their sections say what the longest take)
+# Runs the verification studies and assembles docs/verification.md from their output.
+#   tools/verification.sh            all studies (more than an hour; the sections state the time of the longest)
 #   tools/verification.sh NAME...    only these; the sections of the others stay as they are
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -34,14 +34,14 @@ done
     cat <<'TEXT'
 # Verification
 
-Every table and plot below is printed by a study in `verify/` and put here by
+The studies in `verify/` print every table and plot of this page, and this command assembles it:
 
     tools/verification.sh            # all, or: tools/verification.sh NAME...
 
-A study measures, compares with the bound that is required, and fails if one is missed. `ctest -L verify` runs the short
-ones with every test run, `ctest -L slow` the long ones (calculix, mesh, sensitivity); a study that is not below has not
-been run for this document yet. Equation numbers are those of
-[theory.md](theory.md). Wall times depend on the machine; everything else repeats to the last digit on one machine.
+A study measures, compares with the required bounds, and fails if it misses one. `ctest -L verify` runs the short
+studies, `ctest -L slow` the long ones (calculix, mesh, sensitivity). A study without a section below has not been run
+for this document yet. Equation numbers are those of [theory.md](theory.md). Wall times depend on the machine; all
+other figures repeat to the last digit on one machine.
 
 TEXT
     for name in $order; do

@@ -78,24 +78,22 @@ static void study_law(sf_study *s, const sf_indentation *in) {
     double eva = distance_from_eva(law, &err), table = table_error(in, &err), bend = 0;
     for (int k = 1; k <= 30; k++)
         bend = fmax(bend, fabs(over_line(law, 1 + 0.01 * k)));
-    sf_study_text(s,
-                  "### The law\n\nBoth codes get T(λ) = Σ 2μ/α (λ^(α−1) − 1/λ), separable in the principal "
-                  "stretches: CalculiX as "
-                  "`*HYPERFOAM` with ν = 0, softfall as a table of its compression branch. Two terms, μ = "
-                  "%.1f and %.1f kPa, "
-                  "α = %g and %g, follow the EVA-like curve of verify/materials/eva_like.csv between 10 and "
-                  "85 %% strain (the knee below "
-                  "is given up). "
-                  "In tension softfall has the straight line E (λ − 1) with E = 2 Σ μ = %.1f kPa; the law "
-                  "leaves it by %+.1f %% at "
-                  "λ = 1.5 and %+.1f %% at λ = 2.\n\n",
-                  1e-3 * law->mu[0], 1e-3 * law->mu[1], law->alpha[0], law->alpha[1],
-                  1e-3 * sf_ogden_modulus(law), 100 * over_line(law, 1.5), 100 * over_line(law, 2));
+    sf_study_text(
+        s,
+        "### The law\n\nBoth codes use T(λ) = Σ 2μ/α (λ^(α−1) − 1/λ), separable in the principal "
+        "stretches: CalculiX as `*HYPERFOAM` with ν = 0, softfall as a table of the compression "
+        "branch. Two terms, μ = %.1f and %.1f kPa, α = %g and %g, approximate the "
+        "EVA-like curve of verify/materials/eva_like.csv between "
+        "10 and 85 %% strain, but not its knee at lower strain. In tension softfall uses the "
+        "straight line E (λ − 1) with E = 2 Σ μ = %.1f kPa; the law differs from it by %+.1f %% at λ "
+        "= 1.5 and %+.1f %% at λ = 2.\n\n",
+        1e-3 * law->mu[0], 1e-3 * law->mu[1], law->alpha[0], law->alpha[1], 1e-3 * sf_ogden_modulus(law),
+        100 * over_line(law, 1.5), 100 * over_line(law, 2));
     if (err.status != SF_OK) {
         sf_study_fail(s, &err);
         return;
     }
-    sf_study_check(s, eva, 0, 0.08, "distance of the law from that curve, 10 to 85 %% strain");
+    sf_study_check(s, eva, 0, 0.08, "distance of the law from the EVA-like curve, 10 to 85 %% strain");
     sf_study_check(s, bend, 0, 0.01,
                    "distance of the law from softfall's straight line in tension, λ to 1.3");
     sf_study_check(s, table, 0, 1e-4, "error of softfall's curve against the closed form, 1 to 92 %% strain");
@@ -132,9 +130,10 @@ static void study_element(sf_study *s, const sf_indentation *in) {
             sf_ccx_forces_free(&f);
         }
     }
-    sf_study_text(s, "### One element of CalculiX\n\nOne C3D8 with all its nodes prescribed, 50 increments: "
-                     "the force on each face "
-                     "against T(λ) of its own direction, relative.\n\n");
+    sf_study_text(s,
+                  "### One element of CalculiX\n\nOne C3D8 element with prescribed displacements of "
+                  "all nodes, in 50 increments. The checks compare the force on each face with T(λ) of its "
+                  "direction (relative difference).\n\n");
     if (err.status != SF_OK) {
         sf_study_fail(s, &err);
         return;
@@ -193,8 +192,8 @@ static void extrapolate_pair(const pair *p, pair *limit) {
 }
 
 static void print_forces(sf_study *s, const pair *p, const pair *limit) {
-    sf_study_text(s, "Force in N (softfall / CalculiX) and difference; h → 0: the fit F = F₀ + a h² over the "
-                     "three finest meshes.\n\n| depth");
+    sf_study_text(s, "The table gives the force in N (softfall / CalculiX) and the difference. h → 0: the "
+                     "fit F = F₀ + a h² over the three finest meshes.\n\n| depth");
     for (int m = 0; m < MESHES; m++)
         sf_study_text(s, " | %.3g mm | ", spacing(m));
     sf_study_text(s, " | h → 0 | |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
@@ -305,13 +304,12 @@ static sf_status study_pad(sf_study *s, const sf_indentation *in, pair p[MESHES]
     pair limit;
     extrapolate_pair(p, &limit);
     sf_study_text(
-        s, "### Indentation\n\nA quarter of a pad 200 × 200 × 50 mm, glued at its base, and the rigid sphere "
-           "of 160 mm, without "
-           "friction. The same lattice of hexahedra, node for node: 10, 7.14, 5 and 3.85 mm. CalculiX: C3D8, "
-           "static, contact face to "
-           "face with a linear penalty of 100 N/mm³, triangles of 3 mm for the sphere. softfall: the exact "
-           "sphere of "
-           "10⁵ kg at 1 m/s (DAMP 0.05, no other viscosity), force averaged over ±0.25 mm of depth.\n\n");
+        s, "### Indentation\n\nA rigid sphere of 160 mm diameter indents a quarter of a pad of 200 × 200 "
+           "× 50 mm, glued at its base, without friction. Both codes use the same lattice of hexahedra, "
+           "node for node, with spacings of 10, 7.14, 5 and 3.85 mm. CalculiX: C3D8, static, "
+           "face-to-face contact with a linear penalty of 100 N/mm³, triangles of 3 mm for the sphere. "
+           "softfall: the exact sphere, of 10⁵ kg, at 1 m/s (DAMP 0.05, no other viscosity); the force "
+           "is averaged over ±0.25 mm of depth.\n\n");
     print_forces(s, p, &limit);
     check_forces(s, p, &limit);
     write_data(s, p, &limit);
@@ -333,8 +331,8 @@ static sf_status study_influences(sf_study *s, const sf_indentation *in, const p
         sf_indentation_calculix(in, &sphere, &d, err) != SF_OK)
         return err->status;
     const double *softfall = coarse->softfall.force, *calculix = coarse->calculix.force;
-    sf_study_text(s, "### What else could matter\n\nChange of the force on the 10 mm mesh, every point from "
-                     "10 to 40 mm.\n\n");
+    sf_study_text(s, "### Other influences\n\nLargest relative change of the force on the 10 mm mesh, "
+                     "over every point from 10 to 40 mm.\n\n");
     sf_study_check(s, largest_difference(a.force, softfall, a.count, 10, 40), 0, 0.005,
                    "softfall at half the speed");
     sf_study_check(s, largest_difference(b.force, softfall, b.count, 10, 40), 0, 0.02,
@@ -345,7 +343,9 @@ static sf_status study_influences(sf_study *s, const sf_indentation *in, const p
                    "CalculiX with triangles of 1.5 mm for the sphere (reached %.1f mm)",
                    1e3 * d.depth_reached);
     int last = point_at(42);
-    sf_study_text(s, "At 42 mm the 10 %% of tension are worth %+.1f %%, the contact stiffness %+.1f %%.\n\n",
+    sf_study_text(s,
+                  "At 42 mm the 10 %% more stiffness in tension changes the force by %+.1f %%, the "
+                  "contact stiffness by %+.1f %%.\n\n",
                   100 * (b.force[last] / softfall[last] - 1), 100 * (c.force[last] / calculix[last] - 1));
     return SF_OK;
 }
@@ -354,10 +354,11 @@ static sf_status study_influences(sf_study *s, const sf_indentation *in, const p
 static void print_stretches(sf_study *s, const sf_ogden *law, const sf_indentation_curve *c) {
     static const int depths[] = {10, 20, 30, 38, 40, 42};
     double largest = 1;
-    sf_study_text(s,
-                  "Tension in softfall at %.3g mm spacing, largest principal stretch and part of the volume "
-                  "above 1.3:\n\n| depth | stretch | volume above 1.3 |\n|---|---|---|\n",
-                  spacing(FINEST));
+    sf_study_text(
+        s,
+        "Tension in softfall at %.3g mm spacing: the largest principal stretch, and the part of "
+        "the volume with a stretch above 1.3:\n\n| depth | stretch | volume above 1.3 |\n|---|---|---|\n",
+        spacing(FINEST));
     for (size_t i = 0; i < sizeof depths / sizeof *depths; i++) {
         int k = point_at(depths[i]);
         if (k >= c->frames)
@@ -367,12 +368,13 @@ static void print_stretches(sf_study *s, const sf_ogden *law, const sf_indentati
     }
     sf_study_text(
         s,
-        "\nAt 42 mm the difference is above 3 %% on every mesh, and the limits differ too. One reason "
-        "is known: up to 38 mm the stretch stays below 1.3, where the two laws differ by less than 1 "
-        "%%, beyond it the foam beside the sphere is stretched further; at the largest stretch of the "
-        "table CalculiX's law lies %.1f %% above softfall's line. By what tension is worth (above) that "
-        "can be about half of the difference of the limits at 42 mm. The other half is not explained; "
-        "a stiffer contact in CalculiX would add to it.\n\n",
+        "\nAt 42 mm the difference is above 3 %% on every mesh, and the limits differ too. One reason is "
+        "known. Up to 38 mm the stretch stays below 1.3, where the two laws differ by less than 1 "
+        "%%. At greater depths the foam beside the sphere is stretched further; at the largest "
+        "stretch of the table CalculiX's law lies %.1f %% above softfall's line. According to the "
+        "effect of the stiffness in tension (above), this can cause about half of the difference of "
+        "the limits at 42 mm. The other half is not explained; a stiffer contact in CalculiX would "
+        "increase it.\n\n",
         100 * over_line(law, largest));
 }
 
@@ -386,12 +388,13 @@ static sf_status study_end_of_range(sf_study *s, const sf_indentation *in, sf_er
     if (sf_indentation_calculix(in, &deep, &a, err) != SF_OK ||
         sf_indentation_calculix(in, &nodes, &b, err) != SF_OK)
         return err->status;
-    sf_study_text(s,
-                  "### Where CalculiX stops\n\nAsked for 49.5 mm (99 %% of the thickness) on the 10 mm mesh, "
-                  "CalculiX reached %.2f mm%s%s%s. With "
-                  "contact node to surface instead of face to face it reached %.2f mm%s%s%s.\n\n",
-                  1e3 * a.depth_reached, a.ending[0] ? " (" : "", a.ending, a.ending[0] ? ")" : "",
-                  1e3 * b.depth_reached, b.ending[0] ? " (" : "", b.ending, b.ending[0] ? ")" : "");
+    sf_study_text(
+        s,
+        "### Where CalculiX stops\n\nWith a prescribed depth of 49.5 mm (99 %% of the "
+        "thickness) on the 10 mm mesh, CalculiX reached %.2f mm%s%s%s. With node-to-surface instead "
+        "of face-to-face contact it reached %.2f mm%s%s%s.\n\n",
+        1e3 * a.depth_reached, a.ending[0] ? " (" : "", a.ending, a.ending[0] ? ")" : "",
+        1e3 * b.depth_reached, b.ending[0] ? " (" : "", b.ending, b.ending[0] ? ")" : "");
     return SF_OK;
 }
 
@@ -411,7 +414,8 @@ int main(int argc, char **argv) {
     }
     sf_study_text(
         &s,
-        "CalculiX %s, an implicit finite element code that shares nothing with softfall but the mesh.\n\n",
+        "The reference is CalculiX %s, an implicit finite element code. It shares only the mesh with "
+        "softfall.\n\n",
         version);
     if (sf_indentation_begin(&in, &err) == SF_OK) {
         study_law(&s, &in);

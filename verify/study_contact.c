@@ -119,13 +119,13 @@ static void hertz_depths(sf_study *s, double spacing) {
 static void hertz_study(sf_study *s) {
     static const double spacing[LEVELS] = {5, 2.5, 5.0 / 3, 1.25, 1};
     double error[LEVELS], ratio[LEVELS];
-    sf_study_text(s, "### Rigid sphere on a thick linear pad\n\nThe linear foam (stress = E strain in both "
-                     "directions) is isotropic with ν = 0 at "
-                     "small strain. A quarter of a block of 400 × 400 × 200 mm, bonded at its base, is "
-                     "indented by a sphere of radius 200 mm to 0.5 mm "
-                     "(contact radius a = 10 mm), held until the pad is at rest. Reference: Hertz with the "
-                     "finite-thickness series of Dimitriadis et al. 2002 "
-                     "(4 %% at that depth).\n\n");
+    sf_study_text(
+        s, "### Rigid sphere on a thick linear pad\n\nThe linear foam (stress = E × strain in "
+           "tension and in compression) is isotropic with ν = 0 at small strain. A sphere of radius 200 "
+           "mm indents a quarter of a block of 400 × 400 × 200 mm, bonded at its base, to a depth of "
+           "0.5 mm (contact radius a = 10 mm), and is held there until the pad is at rest. Reference: "
+           "Hertz with the finite-thickness series of Dimitriadis et al. 2002 (a correction of 4 %% at "
+           "that depth).\n\n");
     sf_study_text(s, "| spacing h, mm | a/h | force / closed form |\n|---|---|---|\n");
     for (int k = 0; k < LEVELS; k++) {
         fixture f;
@@ -252,9 +252,8 @@ static comparison compare(const sf_series *force, const sf_series *reference, FI
 
 static void check_column(sf_study *s, const comparison *c, const char *what) {
     sf_study_check(s, c->peak / c->reference_peak, 0.99, 1.01, "%s: largest force / reference", what);
-    sf_study_check(s, c->largest, 0, 0.01, "%s: largest difference of the force, of the peak (CFC 1000)",
-                   what);
-    sf_study_check(s, c->rms, 0, 0.01, "%s: root mean square of it", what);
+    sf_study_check(s, c->largest, 0, 0.01, "%s: largest difference of the force / peak (CFC 1000)", what);
+    sf_study_check(s, c->rms, 0, 0.01, "%s: root mean square of this difference", what);
     sf_study_check(s, c->energy, 0, 1e-3, "%s: energy error", what);
 }
 
@@ -275,11 +274,11 @@ static void plate_study(sf_study *s) {
     FILE *data = sf_study_file(s, "plate.txt");
     sf_study_text(
         s,
-        "### Plate on a column\n\nA plate as wide as the pad, 460 kg/m² at 4.5 m/s on 50 mm of foam with "
-        "curve and hysteresis. First with a foam of 0.35 kg/m³, whose "
-        "inertia is negligible (pad / plate %.1e; the first wave carries ρcv = %.1f kPa), "
-        "against the ordinary differential equation; then "
-        "with 35 kg/m³ and the Maxwell branch, against a one-dimensional wave model of 200 elements.\n\n",
+        "### Plate on a column\n\nA plate as wide as the pad, of 460 kg/m², falls at 4.5 m/s on 50 mm of "
+        "foam with curve and hysteresis. The first foam has 0.35 kg/m³, so that its inertia is "
+        "negligible (mass of pad / plate %.1e; the first wave carries ρcv = %.1f kPa); the reference "
+        "is the ordinary differential equation. The second foam has 35 kg/m³ and the Maxwell branch; "
+        "the reference is a one-dimensional wave model of 200 elements.\n\n",
         0.35 * 0.05 / 460, 1e-3 * column.speed * sqrt(0.35 * sf_formula_slope(0)));
     const fixture_block coarse = {.cells = {6, 6, 4}, .spacing = 0.0125};
     const fixture_block fine = {.cells = {6, 6, 20}, .spacing = 0.0125, .flatness = 0.2};
@@ -425,9 +424,9 @@ static void friction_study(sf_study *s) {
     const double stuck = 0.5 * tan(TILT * PI / 180);
     sf_study_text(s,
                   "### Friction\n\nA plate moves at %g degrees into a wide block (110 × 110 × 15 mm) of the "
-                  "linear foam, to 0.3 %% strain. If it sticks, tangential over normal "
-                  "force is half the tangent of that angle (shear modulus E/2) away from the block's edges: "
-                  "%.2f. So it must slide for smaller coefficients.\n\n"
+                  "linear foam, to 0.3 %% strain. If the plate sticks, the ratio of tangential to normal "
+                  "force away from the block's edges is half the tangent of that angle (shear modulus E/2): "
+                  "%.2f. With smaller coefficients of friction it must slide.\n\n"
                   "| friction coefficient | tangential / normal force | in the middle | points on the bound "
                   "| slip in the middle, mm | friction work, J |\n|---|---|---|---|---|---|\n",
                   TILT, stuck);
@@ -448,7 +447,7 @@ static void friction_study(sf_study *s) {
     }
     sf_study_text(s, "\n");
     sf_study_check(s, beyond, -INFINITY, 1e-6,
-                   "largest tangential force over its bound, - 1, all points and coefficients");
+                   "largest tangential force / its bound - 1, all points and coefficients");
     sf_study_check(s, sliding_error, 0, 0.01,
                    "sliding (0.1, 0.3, 0.45): middle point's ratio against the coefficient, relative error");
     sf_study_check(s, least_work, 1e-8, INFINITY, "sliding: friction work, J");
@@ -506,11 +505,12 @@ static void drop_study(sf_study *s) {
     enum { SIZES = 3 };
     static const double spacing[SIZES] = {20, 10, 20.0 / 3};
     double lost[SIZES], imbalance = 0;
-    sf_study_text(s, "### Base reaction and energy of the 50 mm drop at 4.5 m/s\n\nIn every step the "
-                     "missile's force, the base's reaction and the rate of the pad's momentum must add up. "
-                     "Contact loses the energy of the surface nodes that it catches up.\n\n| spacing, mm | "
-                     "largest missile force, N | largest base reaction, N | lost in contact / internal "
-                     "energy |\n|---|---|---|---|\n");
+    sf_study_text(
+        s, "### Base reaction and energy of the 50 mm drop at 4.5 m/s\n\nIn every step the "
+           "missile's force, the base's reaction and the rate of change of the pad's momentum must "
+           "balance. Contact loses energy by the inelastic impact of surface nodes.\n\n| spacing, mm | "
+           "largest missile force, N | largest base reaction, N | lost in contact / internal "
+           "energy |\n|---|---|---|---|\n");
     for (int k = 0; k < SIZES; k++) {
         FILE *data = k == 1 ? sf_study_file(s, "drop.txt") : NULL;
         drop_record r = run_drop(spacing[k], data);
@@ -522,9 +522,9 @@ static void drop_study(sf_study *s) {
     }
     sf_study_text(s, "\n");
     sf_study_check(s, imbalance, 0, 1e-6,
-                   "missile force + base reaction + inertia, any step, over the largest force");
+                   "missile force + base reaction + inertia, largest of all steps / largest force");
     sf_study_check(s, lost[SIZES - 1], 0, 1e-3,
-                   "energy lost in contact at the finest spacing, of the internal energy");
+                   "energy lost in contact at the finest spacing / internal energy");
     sf_study_check(s, sf_order_fit(SIZES, spacing, lost, SIZES), 0.9, INFINITY,
                    "order in h of the energy lost in contact");
     sf_study_plot(s, "drop.png", "Missile force and base reaction of the drop, 10 mm",

@@ -228,10 +228,10 @@ static void report_coverage(sf_study *s, const coverage c[QUANTITIES]) {
         else
             snprintf(name, sizeof name, "curve at strain %g", PLACE[k - SF_ESTIMATES]);
         double mean = c[k].sum / REPETITIONS, spread = sqrt(c[k].square / REPETITIONS - mean * mean);
-        sf_study_check(
-            s, c[k].held, bounds[0], bounds[1],
-            "%s: intervals of %d that hold the truth %.5g (bias %.2f, stated error %.2f of the spread)", name,
-            REPETITIONS, c[k].truth, mean / spread, c[k].error / REPETITIONS / spread);
+        sf_study_check(s, c[k].held, bounds[0], bounds[1],
+                       "%s: intervals of %d that contain the true value %.5g (bias %.2f, "
+                       "stated error %.2f of the spread)",
+                       name, REPETITIONS, c[k].truth, mean / spread, c[k].error / REPETITIONS / spread);
     }
 }
 
@@ -246,7 +246,7 @@ static void study_coverage(sf_study *s, const truth *t, gsl_rng *random) {
             report_coverage(s, c);
             sf_study_check(s, misfit[0], 0.95, 1.05, "mean misfit chi2/(n - p)");
             sf_study_check(s, misfit[1], 0, 0.1,
-                           "part of the repetitions in which scatter was taken for correlated");
+                           "part of the repetitions in which the fit judged the scatter to be correlated");
         }
     }
     if (err.status != SF_OK)
@@ -282,8 +282,9 @@ static void study_choice(sf_study *s, const truth *t, gsl_rng *random) {
     if (err.status == SF_OK && t->rule == SF_RULE_H2)
         sf_study_text(
             s,
-            "%s: %d of %d find the limit below 1; the others take H1, which follows data to %g %% as well "
-            "with a parameter less. Only longer tests tell.\n\n",
+            "%s: %d of %d fits find the limit below 1. The others choose H1, which fits data to %g %% "
+            "equally well with one parameter less. Only tests to larger strain can distinguish the two "
+            "rules.\n\n",
             t->name, rule, CHOICES, 100 * TURN);
     else if (err.status == SF_OK)
         sf_study_check(s, rule, CHOICES - 2, CHOICES, "%s: choices of %d that find the densification rule",
@@ -297,10 +298,10 @@ int main(int argc, char **argv) {
     sf_study_begin(&s, "identification", "Identification from compression tests", argc, argv);
     sf_study_text(
         &s,
-        "Three tests (0.1, 2 and 10 per minute, to %g %% and back, %d points each) are made by the solver's "
-        "foam law from hidden parameters, with independent normal scatter of %g kPa and %g %% of the stress, "
-        "and identified by the library of softfall-fit. Bounds of the counts: what a binomial variable of "
-        "%g %% leaves with a probability of %g.\n\n",
+        "The solver's foam law generates three tests (0.1, 2 and 10 per minute, to %g %% and back, %d "
+        "points each) from hidden parameters, with independent normal scatter of %g kPa and %g %% of "
+        "the stress. The library of softfall-fit identifies the parameters. The counts must lie "
+        "within bounds that a binomial variable of %g %% leaves with a probability of %g.\n\n",
         100 * TURN, LOADING + UNLOADING, 1e-3 * ABSOLUTE, 100 * RELATIVE, 100 * CONFIDENCE, 2 * TAIL);
     for (int k = 0; k < TRUTHS_COUNT; k++) {
         sf_study_text(&s, "\n### %s\n\n", TRUTHS[k].name);

@@ -180,11 +180,10 @@ int main(int argc, char **argv) {
     }
     sf_study_text(
         &study,
-        "%d foams drawn from the prior, each dropped on at 4.5, 5.2 and 6.2 m/s on 70 mm; a_max measured "
-        "with "
-        "%.0f %%, HIC with %.0f %% noise; the simulation has 15 %% more area and 3 %% less thickness than "
-        "the "
-        "surrogate. On average %.1f simulations of each drop.\n\n"
+        "The study draws %d foams from the prior. Each has drops at 4.5, 5.2 and 6.2 m/s on 70 mm, with a "
+        "noise of %.0f %% in the measured a_max and %.0f %% in HIC. The simulation has 15 %% more "
+        "area and 3 %% less thickness than the surrogate. A fit takes %.1f simulations of each drop "
+        "on average.\n\n"
         "| parameter | truth inside its 95 %% interval | width left of the prior |\n|---|---|---|\n",
         REPEATS, 100 * A_MAX_SD, 100 * HIC_SD, (double)t.simulations / REPEATS);
     int inside = 0;
@@ -199,9 +198,10 @@ int main(int argc, char **argv) {
     sf_study_check(&study, (double)t.converged / REPEATS, 0.95, 1, "fits that converged");
     sf_study_check(&study, (double)t.simulations / REPEATS, 2, 6, "simulations of each drop");
     /* 95 % of 40 foams, five parameters of a foam being almost one observation: three binomial deviations */
-    sf_study_check(&study, (double)inside / (UNKNOWNS * REPEATS), 0.90, 1, "truth inside the 95 %% interval");
+    sf_study_check(&study, (double)inside / (UNKNOWNS * REPEATS), 0.90, 1,
+                   "true value inside the 95 %% interval");
     sf_study_check(&study, (double)least / REPEATS, 0.825, 1, /* less has a probability of 0.001 */
-                   "the same, of the parameter with the fewest");
+                   "the same, for the parameter with the fewest");
     sf_study_check(&study, t.squares / (UNKNOWNS * REPEATS), 0.6, 1.3,
                    "mean square of (estimate - truth) / deviation");
     sf_study_check(&study, (double)t.predicted / REPEATS, 0.87, 1,

@@ -238,8 +238,8 @@ static void check_field(sf_study *study) {
     }
     sf_study_text(
         study,
-        "Principal stretches of the exact solution: %.2f to %.2f. The law has a kink at 1, where b would "
-        "jump:\n\n",
+        "The principal stretches of the exact solution are %.2f to %.2f. They must not come near 1, where "
+        "the law has a kink and b would jump:\n\n",
         smallest, largest);
     sf_study_check(study, nearest, 0.05, INFINITY, "distance of the stretches from 1");
     sf_foam_free(&foam);
@@ -285,9 +285,9 @@ static void study_family(sf_study *study, enum cloud cloud, enum rule rule, cons
         fprintf(file, "\n\n");
     sf_study_text(study, "\n");
     sf_study_check(study, sf_order_fit(LEVELS, h, displacement, FITTED), 1.8, INFINITY,
-                   "order of u_h in L2, last three");
+                   "order of u_h in L2, last three meshes");
     sf_study_check(study, sf_order_fit(LEVELS, h, gradient, FITTED), 0.9, INFINITY,
-                   "order of F in L2, last three");
+                   "order of F in L2, last three meshes");
 }
 
 static void plot(sf_study *study) {
@@ -308,19 +308,16 @@ int main(int argc, char **argv) {
     sf_study_begin(&study, "mms", "Manufactured finite-strain solution", argc, argv);
     FILE *file = sf_study_file(&study, "orders.dat");
     sf_study_text(
-        &study,
-        "A cube of 50 mm of an EVA-like foam (its nonlinear curve, without losses), compressed to 65 %% of "
-        "its "
-        "height and stretched by 15 %% sideways, with an irregular field w on top of it that vanishes on the "
-        "surface and has gradients up to 0.2. A body force b = − Div P of the exact field holds it, P by the "
-        "program's own foam law, Div by differences of fourth order. u_h is held on all of the surface. "
-        "Static "
-        "equilibrium of the program's forces (stabilisation 0.1) by dynamic relaxation to a residual of 1e-7 "
-        "of "
-        "the body force. The body force is integrated as the stresses are, at the nodes: f_I = Σ_L V_L "
-        "b(X_L) "
-        "φ_I(X_L); as a second choice lumped, f_I = V_I b(X_I), as the program treats inertia. Errors at the "
-        "nodes, weighted with their volumes: u_h relative to w, F relative to the gradient of w.\n\n");
+        &study, "The exact solution deforms a cube of 50 mm of an EVA-like foam (with its nonlinear curve, "
+                "without losses): it compresses the cube to 65 %% of its height, stretches it by 15 %% "
+                "sideways, and adds an irregular field w, which vanishes on the surface and has gradients up "
+                "to 0.2. A body force b = − Div P of the exact field keeps the cube in equilibrium; P comes "
+                "from the program's own foam law, Div from fourth-order differences. u_h is held on the "
+                "whole surface. Dynamic relaxation finds the static equilibrium of the program's forces "
+                "(stabilisation 0.1), to a residual of 1e-7 of the body force. The body force is integrated "
+                "at the nodes like the stresses, f_I = Σ_L V_L b(X_L) φ_I(X_L), or lumped like the inertia, "
+                "f_I = V_I b(X_I). The errors are taken at the nodes and weighted with their volumes: u_h "
+                "relative to w, F relative to the gradient of w.\n\n");
     check_field(&study);
     study_family(&study, REGULAR, GALERKIN, "Regular lattice", file);
     study_family(&study, JITTERED, GALERKIN, "Jittered lattice", file);

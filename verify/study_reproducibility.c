@@ -216,12 +216,12 @@ int main(int argc, char **argv) {
     char folder[] = "/tmp/softfall-study-XXXXXX", first[600];
     sf_study_begin(&study, "reproducibility", "Reproducibility", argc, argv);
     sf_study_text(&study,
-                  "The 50 mm, 4.5 m/s drop at 10 mm core spacing, run again with one change at a time "
-                  "(`tools/verification.sh reproducibility`). Compared with the first run (Release, one "
-                  "thread, quarter of the pad) are acceleration and indentation over time, and every "
-                  "node's displacement and Cauchy stress at the peak: largest difference, relative to "
-                  "the largest value; 0 means the same bits. The full model has other nodes: its a_max "
-                  "and HIC are compared.\n\n");
+                  "The study repeats the 50 mm, 4.5 m/s drop at 10 mm core spacing with one change at a "
+                  "time (`tools/verification.sh reproducibility`). It compares acceleration and indentation "
+                  "over time, and every node's displacement and Cauchy stress at the peak, with those of the "
+                  "first run (Release, one thread, quarter of the pad). The table gives the largest "
+                  "difference, relative to the largest value; 0 means the same bits. The full model has "
+                  "different nodes, so only a_max and HIC are compared.\n\n");
     if (!mkdtemp(folder)) {
         SF_FAIL(&err, SF_ERR_IO, "no temporary folder");
         sf_study_fail(&study, &err);
@@ -244,10 +244,10 @@ int main(int argc, char **argv) {
     }
     sf_study_text(
         &study,
-        "\nBuilds with and without optimisation agree because `-ffp-contract=off` keeps compilers from "
-        "fusing multiplications with additions, and no option that reorders sums is used. The Debug "
-        "build also shares its small loops among threads (core/threads.h). Quarter and full model at "
-        "5 mm: `tools/verification.sh sensitivity`.\n");
+        "\nBuilds with and without optimisation agree because `-ffp-contract=off` prevents the compiler "
+        "from fusing multiplications and additions, and no compiler option reorders sums. The Debug "
+        "build also runs its small loops on several threads (core/threads.h). `tools/verification.sh "
+        "sensitivity` compares the quarter and the full model at 5 mm.\n");
     unlink(first);
     rmdir(folder);
     return sf_study_end(&study);

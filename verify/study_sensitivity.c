@@ -9,8 +9,8 @@ enum { MAX_OVERRIDES = 3 };
 
 typedef enum group { NUMERICS, PAD, MATERIAL, KINDS } group;
 static const char *const kind_name[KINDS] = {
-    "numerics (model size, stabilisation, support, time step, spacing outside, triangles)",
-    "what holds and touches the pad (its size, glue, friction)", "foam and drop"};
+    "numerics (model size, stabilisation, support, time step, outer spacing, triangles)",
+    "boundary of the pad (its size, glue, friction)", "foam and drop"};
 
 typedef struct variation {
     group kind;
@@ -87,19 +87,19 @@ int main(int argc, char **argv) {
     sf_study study;
     sf_drop base, drop[VARIATIONS];
     sf_error err = SF_ERROR_INIT;
-    sf_study_begin(&study, "sensitivity", "What matters: sensitivity of the 50 mm, 4.5 m/s drop", argc, argv);
+    sf_study_begin(&study, "sensitivity", "Sensitivity of the 50 mm, 4.5 m/s drop", argc, argv);
     if (sf_drop_run("eva50-v4.5", NULL, 1, NULL, &base, &err) != SF_OK) {
         sf_study_fail(&study, &err);
         return sf_study_end(&study);
     }
-    sf_study_text(&study,
-                  "One change at a time; foam of verify/materials/eva_like.cfg. Without a change a_max %.3f "
-                  "g, HIC %.2f, largest "
-                  "local strain %.4f, rebound "
-                  "%.3f m/s in %.0f steps.\n\n| change | a_max (%%) | HIC (%%) | largest local strain | "
-                  "rebound (%%) | steps "
-                  "|\n|---|---|---|---|---|---|\n",
-                  base.a_max_g, base.hic, base.max_local_strain, base.v_rebound_m_s, base.steps);
+    sf_study_text(
+        &study,
+        "Each row has one change; the foam is that of verify/materials/eva_like.cfg. Without a "
+        "change the drop has a_max %.3f g, HIC %.2f, largest local strain %.4f and rebound %.3f m/s "
+        "in %.0f steps.\n\n| change | a_max (%%) | HIC (%%) | largest local strain | "
+        "rebound (%%) | steps "
+        "|\n|---|---|---|---|---|---|\n",
+        base.a_max_g, base.hic, base.max_local_strain, base.v_rebound_m_s, base.steps);
     for (int k = 0; k < VARIATIONS; k++) {
         const sf_drop *d = &drop[k];
         sf_error failed = SF_ERROR_INIT;

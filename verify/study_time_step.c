@@ -340,14 +340,15 @@ static void one_state(sf_study *s, int cloud, int material, int deformation, ext
 
 static void all_states(sf_study *s) {
     extremes e = {.estimate_low = INFINITY, .bound_low = INFINITY, .growth = INFINITY};
-    sf_study_text(s, "The tangent stiffness of all three components is assembled by central differences of "
-                     "the solver's forces (stabilisation "
-                     "included; each domain keeps its branch, loading or unloading) and its largest "
-                     "eigenvalue found by a dense solver (GSL). With viscosity the "
-                     "exact limit is where 4M − 2ΔtC − Δt²K becomes singular. Estimate: what the solver "
-                     "takes at `step_safety` 1.\n\n"
-                     "| cloud | foam | state | exact limit, µs | bound / exact | estimate / exact "
-                     "|\n|---|---|---|---|---|---|\n");
+    sf_study_text(
+        s, "The study assembles the tangent stiffness of all three components by central "
+           "differences of the solver's forces (including the stabilisation; each domain stays on its "
+           "branch, loading or unloading). A dense solver (GSL) computes its largest eigenvalue. With "
+           "viscosity the exact limit is the Δt at which 4M − 2ΔtC − Δt²K becomes singular. *Bound*: "
+           "the guaranteed bound (theory, eq. 31). *Estimate*: the solver's time step at `step_safety` "
+           "1.\n\n"
+           "| cloud | foam | state | exact limit, µs | bound / exact | estimate / exact "
+           "|\n|---|---|---|---|---|---|\n");
     for (int cloud = 0; cloud < CLOUDS; cloud++)
         for (int material = 0; material < MATERIALS; material++)
             for (int deformation = 0; deformation < DEFORMATIONS; deformation++)
@@ -360,7 +361,7 @@ static void all_states(sf_study *s) {
     sf_study_check(s, e.calm, 0, 5,
                    "leap-frog at 0.95 of the limit, 1000 steps: largest growth of the highest mode");
     sf_study_check(s, e.growth, 1e3, INFINITY,
-                   "leap-frog at 1.05 of the limit, 40 steps: smallest growth of it");
+                   "leap-frog at 1.05 of the limit, 40 steps: smallest growth of this mode");
 }
 
 /* The solver itself, steps forced, from a small random motion of a linear block at rest: largest coefficient
@@ -408,7 +409,7 @@ static void linear_block(sf_study *s) {
     sf_study_check(s, free_vibration(&f, 0.95 * limit, 2000, 1e6), 0, 20,
                    "free linear block through sf_step, 0.95 of the limit, 2000 steps: largest growth");
     sf_study_check(s, free_vibration(&f, 1.05 * limit, 200, 1e6), 1e6, INFINITY,
-                   "the same at 1.05 of the limit, within 200 steps");
+                   "the same block at 1.05 of the limit, within 200 steps");
     gsl_matrix_free(k);
     probe_end(&p);
     fixture_free(&f);
@@ -465,13 +466,12 @@ static void small_drop(sf_study *s) {
         fclose(steps);
         fclose(exact_file);
     }
-    sf_study_text(s,
-                  "A drop on the pad of %lld nodes with the foam of the examples; the step in use is "
-                  "compared with the exact limit "
-                  "in every 25th step. It includes the slow growth after stiffer states (2 %% a step, and "
-                  "only when the frequency is "
-                  "measured).\n\n",
-                  (long long)f.model.node_count);
+    sf_study_text(
+        s,
+        "A drop on the pad of %lld nodes with the foam of the examples. In every 25th step the "
+        "study compares the step in use with the exact limit. The step in use includes the slow "
+        "growth after stiffer states (2 %% a step, and only when the solver measures the frequency).\n\n",
+        (long long)f.model.node_count);
     sf_study_check(s, high, 0, 1, "drop: largest step (at safety 1) / exact limit");
     sf_study_check(s, low, 0.8, INFINITY, "drop: smallest step (at safety 1) / exact limit");
     sf_study_check(s, sum / count, 0.8, 1, "drop: mean step, with the default safety / exact limit");
@@ -515,11 +515,13 @@ static void power_iteration(sf_study *s) {
     }
     if (err.status != SF_OK)
         sf_study_fail(s, &err);
-    sf_study_text(s,
-                  "The same drop with %lld nodes, in every measurement: the square of the frequency in use "
-                  "(from up to 80 products at first, then 4 to 8 each "
-                  "time, with a margin of 8 %%) against 240 more products. %lld products in %lld steps.\n\n",
-                  (long long)n, (long long)products, (long long)st->step);
+    sf_study_text(
+        s,
+        "The same drop with %lld nodes. At every measurement the study compares the square of "
+        "the frequency in use (from up to 80 Lanczos products at first, then 4 to 8 each time, with "
+        "a margin of 8 %%) with the result of 240 more products. The drop took %lld products in %lld "
+        "steps.\n\n",
+        (long long)n, (long long)products, (long long)st->step);
     sf_study_check(s, low, 1, INFINITY, "smallest square of the frequency in use / converged");
     sf_study_check(s, high, 1, 1.1, "largest square of the frequency in use / converged");
     fixture_free(&f);

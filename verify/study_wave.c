@@ -115,8 +115,9 @@ static void vibration_in_h(sf_study *study) {
     FILE *file = sf_study_file(study, "vibration.dat");
     sf_study_text(
         study,
-        "### Free vibration: error against the spacing\n\nColumn of 100 × 25 × 25 mm, one end held, lowest "
-        "longitudinal mode, two periods, time step L/(160 c) on every mesh; exact: ω = (π/2L) √(E/ρ) = "
+        "### Free vibration: error against the spacing\n\nA column of 100 × 25 × 25 mm with one end held "
+        "vibrates in its lowest longitudinal mode for two periods, with a time step of L/(160 c) on "
+        "every mesh. Exact: ω = (π/2L) √(E/ρ) = "
         "%.3f rad/s.\n\n| cells along L | h, mm | ω, rad/s | error |\n|---|---|---|---|\n",
         exact);
     for (int k = 0; k < LEVELS; k++) {
@@ -130,7 +131,7 @@ static void vibration_in_h(sf_study *study) {
     }
     sf_study_text(study, "\n");
     sf_study_check(study, sf_order_fit(LEVELS, h, error, LEVELS), 1.8, INFINITY,
-                   "order of the frequency in h");
+                   "order of the frequency's error in h");
     if (file)
         fclose(file);
 }
@@ -143,8 +144,9 @@ static void vibration_in_dt(sf_study *study) {
     FILE *file = sf_study_file(study, "step.dat");
     sf_study_text(
         study,
-        "### Free vibration: error against the time step\n\nThe column of 8 cells with forced steps, "
-        "against a step of 1/64 of the stability limit (%.3g µs). Central differences raise the frequency by "
+        "### Free vibration: error against the time step\n\nThe column of 8 cells with prescribed time "
+        "steps, compared with a step of 1/64 of the stability limit (%.3g µs). "
+        "Central differences raise the frequency by "
         "(ω Δt)²/24.\n\n| Δt / limit | error | (ω Δt)²/24 |\n|---|---|---|\n",
         1e6 * limit);
     for (int k = 0; k < LEVELS; k++) {
@@ -157,7 +159,7 @@ static void vibration_in_dt(sf_study *study) {
     }
     sf_study_text(study, "\n");
     sf_study_check(study, sf_order_fit(LEVELS, dt, error, LEVELS), 1.8, INFINITY,
-                   "order of the frequency in Δt");
+                   "order of the frequency's error in Δt");
     sf_study_check(study, 24 * error[0] / pow(reference * dt[0], 2), 0.95, 1.05,
                    "error / ((ω Δt)²/24), largest step");
     if (file)
@@ -205,9 +207,9 @@ static void travelling_pulse(sf_study *study) {
     enum { LEVELS = 4 };
     double h[LEVELS], error[LEVELS];
     FILE *file = sf_study_file(study, "pulse.dat");
-    sf_study_text(study,
-                  "### Travelling pulse\n\nA pulse cos⁴ of total width L/2 runs 0.4 L through a column, time "
-                  "step 0.5 h/c; error of u_h in L2, relative.\n\n| cells along L | error |\n|---|---|\n");
+    sf_study_text(study, "### Travelling pulse\n\nA cos⁴ pulse of total width L/2 travels 0.4 L through a "
+                         "column, with a time step of 0.5 h/c. The error is that of u_h in L2, relative.\n\n"
+                         "| cells along L | error |\n|---|---|\n");
     for (int k = 0; k < LEVELS; k++) {
         int n = 20 << k;
         h[k] = LENGTH / n;
@@ -218,7 +220,7 @@ static void travelling_pulse(sf_study *study) {
     }
     sf_study_text(study, "\n");
     sf_study_check(study, sf_order_fit(LEVELS, h, error, 3), 1.8, INFINITY,
-                   "order of the pulse in h and Δt together, last three");
+                   "order of the pulse's error in h and Δt together, last three meshes");
     if (file)
         fclose(file);
     sf_study_plot(
@@ -323,10 +325,10 @@ static void dispersion(sf_study *study) {
     sf_study_text(
         study,
         "### Dispersion\n\nLongitudinal plane waves d = a cos(k·X) on the infinite lattice with lumped "
-        "mass: "
-        "ω² from the program's own force on a node (stabilisation 0.1 and none), beside lumped trilinear "
-        "hexahedra (fully integrated, ν = 0; ω h/c = 2 sin(kh/2) along an axis). Ratio of the phase speed to "
-        "the exact one, k along an axis:\n\n");
+        "mass. The program's own force on a node gives ω², with stabilisation 0.1 and without. For "
+        "comparison: trilinear hexahedra with lumped mass (fully integrated, ν = 0; ω h/c = 2 "
+        "sin(kh/2) along an axis). The tables give the ratio of the phase speed to the exact one. k "
+        "along an axis:\n\n");
     dispersion_table(study, &lattice, &plain, 1);
     sf_study_text(study, "k along the diagonal of space:\n\n");
     dispersion_table(study, &lattice, &plain, 3);
@@ -343,7 +345,7 @@ static void dispersion(sf_study *study) {
                    "sawtooth along an axis: ω h/c over √(4 α/3)");
     sf_study_check(
         study, lattice_frequency(&plain, 1, PI), 0, 1e-4,
-        "the same without stabilisation: ω h/c (a zero-energy mode; the root of a rounding error)");
+        "the same without stabilisation: ω h/c (a zero-energy mode: the square root of a rounding error)");
     dispersion_plot(study, &lattice, &plain);
     fixture_free(&lattice);
     fixture_free(&plain);
