@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what is missing, builds, and runs the main example or the tests.
+# Installs missing packages, builds, and runs the main example or the tests.
 set -euo pipefail
 
 usage() {
@@ -12,9 +12,9 @@ usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
   slow     build, then run the slow tests
   build    build only: the programs are in build/bin
 
-  --force        demo: run the drop again though its results are up to date
-  --label LABEL  test: only the tests with such a label: unit, pipeline or verify, or several joined by |
-  --no-install   install nothing; say which packages are missing and go on
+    --force        demo: run the drop again even if its results are up to date
+  --label LABEL  test: only the tests with this label: unit, pipeline or verify, or several joined by |
+  --no-install   install nothing; list the missing packages and continue
 TEXT
 }
 
@@ -43,7 +43,7 @@ missing_packages() {
 install_packages() {
     local missing as_root=() log
     if ! command -v dpkg-query >/dev/null; then
-        echo "This is not Debian: packages.txt names what is needed; going on with what is here."
+                echo "This is not Debian: no packages are installed; packages.txt lists those needed."
         return
     fi
     missing=$(missing_packages "$@")
@@ -54,7 +54,7 @@ install_packages() {
     fi
     if [ "$(id -u)" -ne 0 ]; then
         command -v sudo >/dev/null ||
-            fail "packages are missing, and neither root nor sudo is at hand. As root: apt-get install --no-install-recommends $missing"
+            fail "packages are missing, and neither root nor sudo is available. As root: apt-get install --no-install-recommends $missing"
         as_root=(sudo)
         [ -t 0 ] || as_root=(sudo -n)
     fi
@@ -65,12 +65,12 @@ install_packages() {
     # shellcheck disable=SC2086
     if ! { "${as_root[@]}" update && "${as_root[@]}" install -y --no-install-recommends $missing; } >"$log" 2>&1; then
         tail -n 20 "$log" >&2
-        fail "apt-get could not install them: the lines above say why, $log has all of them"
+        fail "apt-get failed: see its last lines above; the whole log is $log"
     fi
     rm -f "$log"
 }
 
-# build [CMAKE OPTION]...: the preset "default" in build/. Ninja itself configures again when a CMakeLists.txt changes.
+# build [CMAKE OPTION]...: the preset "default" in build/. Ninja reconfigures when a CMakeLists.txt changes.
 build() {
     if [ ! -f build/build.ninja ] || [ CMakePresets.json -nt build/build.ninja ]; then
         cmake --preset default
@@ -92,9 +92,9 @@ demo() {
         tools/run_case.sh examples/eva50-v4.5/case.cfg "$dir"
     fi
     echo "  $dir/model.h5           the model of softfall-pre"
-    echo "  $dir/results.h5         everything that softfall-solve computed"
+        echo "  $dir/results.h5         the results of softfall-solve"
     echo "  $report         the lines above"
-    echo "All of them are in $PWD. Next: README.md says how to read and change them."
+        echo "The files are in $PWD. Next: README.md explains how to read the results and change the case."
 }
 
 run_tests() {
@@ -114,13 +114,13 @@ while [ $# -gt 0 ]; do
     -h | --help | help) usage && exit 0 ;;
     -*) usage >&2 && fail "unknown option $1" ;;
     *)
-        [ -z "$word" ] || { usage >&2 && fail "one word at a time: $1 is one too many"; }
+        [ -z "$word" ] || { usage >&2 && fail "only one word is allowed: $1 is the second"; }
         word=$1
         ;;
     esac
     shift
 done
-[ "$word" = test ] || [ "$label" = . ] || fail "--label goes with the word test"
+[ "$word" = test ] || [ "$label" = . ] || fail "--label is only for the word test"
 cd "$(dirname "${BASH_SOURCE[0]}")"
 case $word in
 demo)
@@ -131,7 +131,7 @@ demo)
 test)
     install_packages build run test
     build
-    # One test per core and one thread per test: those that are about threads ask for their own number.
+        # One test per core and one thread per test; tests of threading set their own number.
     OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(nproc)"
     ;;
 slow)

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Critical fall heights of the 50 mm and the 70 mm pad of examples/ into out/cfh50 and out/cfh70, and the table of docs/cfh.md.
+# Computes the critical fall heights of the 50 mm and the 70 mm pad of examples/ into out/cfh50 and out/cfh70, and prints
+# the table of docs/cfh.md.
 #
-#     tools/cfh_examples.sh            some minutes; drops that are there are used again
-#     tools/cfh_examples.sh --docs     the same, and put table and picture into docs/
+#     tools/cfh_examples.sh            some minutes; finished drops of an earlier call are used again
+#     tools/cfh_examples.sh --docs     the same, and writes table and picture into docs/
 #
 # The programs are those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail

@@ -4,8 +4,8 @@
 # prints the table of docs/systems.md that compares their figures.
 #
 #     tools/compare_systems.sh            about 15 minutes on two cores
-#     tools/compare_systems.sh --table    only the table, of the results that are there
-#     tools/compare_systems.sh --docs     the same, and put it into docs/systems.md
+#     tools/compare_systems.sh --table    only the table, from existing results
+#     tools/compare_systems.sh --docs     the same, and writes it into docs/systems.md
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -3,9 +3,9 @@
 
     xvfb-run -a pvbatch --force-offscreen-rendering tools/draw_pad.py DIR/pad.xdmf PICTURE.png [--time MS]
 
-Draws the frame nearest to MS, in ms of the run; by default the one nearest to the largest acceleration, which
-summary.json beside the .xdmf names. Half of the pad is shown, cut through the axis of the drop: a quarter model is
-mirrored at x = 0, a full one is cut at y = 0. Needs the .xdmf with the field von_mises.
+Draws the frame nearest to MS, in ms of the run; by default the frame nearest to the largest acceleration, from
+summary.json beside the .xdmf. The picture shows half of the pad, cut through the axis of the drop: a quarter model is
+mirrored at x = 0, a full model is cut at y = 0. Needs the .xdmf with the field von_mises.
 """
 import argparse
 import json
@@ -19,7 +19,7 @@ INK = [0.13, 0.13, 0.15]
 COLOURS = ["ecece6", "9ecae1", "3d85c6", "35a583", "f2d24b", "ec7a32", "b2182b", "67001f"]
 MISSILE_COLOUR = [0.70, 0.72, 0.75]
 STRESS = "von_mises_kPa"
-LOWEST_KPA = 3.0  # below it the foam is as good as unloaded
+LOWEST_KPA = 3.0  # below it the foam is practically unloaded
 
 
 def fail(text):

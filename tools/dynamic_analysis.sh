@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sanitizers and valgrind; fails at the first finding.   tools/dynamic_analysis.sh [memory] [threads] [valgrind]
+# Runs sanitizers and valgrind; fails at the first finding.   tools/dynamic_analysis.sh [memory] [threads] [valgrind]
 #   memory    gcc's address and undefined-behaviour sanitizers, all tests that are not slow
-#   threads   gcc's thread sanitizer with LLVM's OpenMP and libarcher, 3 threads: a loop with a race, which must be found, the
-#             tests of everything that runs in parallel, and a coarse drop; no loop is too short for threads there
+#   threads   gcc's thread sanitizer with LLVM's OpenMP and libarcher, 3 threads: a loop with a race, which the sanitizer
+#             must find, the tests of the parallel loops, and a coarse drop; even short loops run on several threads
 #   valgrind  memcheck on a coarse drop through softfall-pre, -solve and -post of the default build, with the kernels for
-#             AVX2 (valgrind's processor has no AVX-512); tests/valgrind.supp says what of gmsh is left out, and why
+#             AVX2 (valgrind's processor has no AVX-512); tests/valgrind.supp lists the suppressions for gmsh with reasons
 # Packages: section analysis of packages.txt.
 set -euo pipefail
 place=
@@ -17,7 +17,7 @@ build() {
     cmake --build "$1"
 }
 
-# coarse_drop BIN [COMMAND...]: the three programs under a command, in a folder that goes away.
+# coarse_drop BIN [COMMAND...]: runs the three programs under a command, in a temporary folder.
 coarse_drop() {
     local bin=$PWD/$1 example=$PWD/examples/eva50-v4.5/case.cfg
     shift

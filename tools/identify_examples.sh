@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Identifies the EVA foam of the paper from its three measured drops, predicts the drops on the thinner pad, makes the
-# result the examples' material and puts the tables into docs/validation.md. Some ten minutes on two cores; an
-# interrupted run goes on where it stopped.
+# Identifies the EVA foam of the paper from its three measured drops, predicts the drops on the thinner pad, writes the
+# result as the examples' material and the tables into docs/validation.md. About ten minutes on two cores; after an
+# interruption, run it again to resume.
 #
 #     tools/identify_examples.sh
 set -euo pipefail
@@ -14,7 +14,7 @@ mkdir -p out
 "${SF_BIN_DIR:-build/bin}"/softfall-fit drop examples/fit/eva35_drops.cfg -o "$out" --force
 cp "$out/eva35.cfg" "$out/eva35.csv" examples/materials/
 cp "$out/fit.png" docs/images/eva35_fit.png
-# Each section of the report between its markers <!-- name --> and <!-- end --> of the document.
+# Replaces the text between the markers <!-- name --> and <!-- end --> of the document by the report's section of that name.
 awk -v report="$out/report.md" '
     BEGIN {
         while ((getline line < report) > 0) {

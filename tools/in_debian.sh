@@ -6,10 +6,11 @@
 #     tools/in_debian.sh trixie ./setup.sh demo
 #     tools/in_debian.sh --fetch out/other other ./setup.sh demo
 #
-# RELEASE is bookworm (12), trixie (13), or other: the one of them that this machine does not run. debootstrap makes the
-# system in a temporary folder, from the mirror of this machine's apt sources, in about half a minute; the command runs
-# there by chroot, as root, in the clone's folder. Afterwards the folder is removed; --fetch copies the clone's out/ to DIR
-# first. The command's exit code is this one's; without root it is 77. Needs the packages debootstrap and git.
+# RELEASE is bookworm (12), trixie (13), or other: the one of them that this machine does not run. debootstrap installs
+# the system in a temporary folder, from the mirror of this machine's apt sources, in about half a minute. The command
+# runs there by chroot, as root, in the clone's folder. Afterwards the script removes the folder; with --fetch it first
+# copies the clone's out/ to DIR. The exit code is that of the command, or 77 without root. Needs the packages debootstrap
+# and git.
 set -euo pipefail
 
 fail() {
@@ -41,7 +42,7 @@ fi
 for program in debootstrap git unshare apt-get; do
     command -v "$program" >/dev/null || fail "$program is missing: apt-get install debootstrap git"
 done
-# Debian's archive as this machine reaches it, neither its security nor its updates part.
+# The mirror of Debian's main archive that this machine uses, without the security and updates parts.
 mirror=$(apt-get indextargets --format '$(ORIGIN)|$(LABEL)|$(CODENAME)|$(REPO_URI)' 'Created-By: Packages' |
     awk -F'|' '$1 == "Debian" && $2 == "Debian" && $3 ~ /^(bookworm|trixie|sid|forky)$/ { print $4; exit }')
 [ -n "$mirror" ] || fail "the apt sources of this machine name no Debian archive: run apt-get update"
@@ -53,14 +54,14 @@ debootstrap --variant=minbase --include=ca-certificates,git "$release" "$system"
     fail "debootstrap failed; its last line: $(tail -n 1 "$system.log"); all of them: $system.log"
 rm -f "$system.log"
 cp /etc/resolv.conf "$system/etc/"
-for file in /etc/apt/apt.conf.d/*; do # how this machine reaches the archive, not its hooks
+for file in /etc/apt/apt.conf.d/*; do # settings for access to the archive, without hooks
     ! grep -qsi 'Acquire::' "$file" || cp "$file" "$system/etc/apt/apt.conf.d/"
 done
 git clone --quiet --no-hardlinks "$root" "$system/softfall"
 [ -z "$(git -C "$root" status --porcelain --untracked-files=no)" ] ||
-    echo "in_debian.sh: changes that are not committed are not in the clone" >&2
+        echo "in_debian.sh: the clone does not contain uncommitted changes" >&2
 echo "in_debian.sh: $* in a fresh clone ($(git -C "$root" describe --always)) on Debian $release"
-# The mounts live in a name space of their own and are gone when the command ends, however it ends.
+# The mounts are in a separate mount namespace, which ends with the command in every case.
 status=0
 # shellcheck disable=SC2016 # $1 and $@ belong to the inner shell
 unshare --mount --propagation private bash -ec '

@@ -3,8 +3,8 @@
 
     python3 tools/results_table.py [--into FILE.md] DIR...
 
-With --into it replaces the table in that file, the one that begins with "| drop |", instead.
-A run with a prescribed motion, which is no drop, has no row. Beside a_max and HIC stand, in brackets, the measured values of the same thickness and speed, if
+With --into it instead replaces the table in that file that begins with "| drop |". Runs with a prescribed motion are no
+drops and have no row. Brackets beside a_max and HIC give the measured values of the same thickness and speed, if
 examples/data/penta2018_table2_70mm.csv has them.
 """
 import csv

@@ -4,11 +4,11 @@
 #
 #     tools/run_case.sh CASE DIR [OPTION OF softfall-pre, e.g. --set missile.velocity="5.2 m/s"]...
 #
-# DIR gets model.h5, results.h5, the output of softfall-post and report.txt, its printed lines. The programs are those in
-# build/bin, or in $SF_BIN_DIR.
+# Writes model.h5, results.h5, the output of softfall-post and its printed lines (report.txt) into DIR. The programs are
+# those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
 
-# Threads that wait do not spin: beside other busy programs spinning made the drop six times slower.
+# Waiting threads do not spin: with spinning, a drop beside other busy programs took six times as long.
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 
 if [ $# -lt 2 ]; then
@@ -23,7 +23,7 @@ if [ ! -x "$bin/softfall-pre" ]; then
     exit 1
 fi
 mkdir -p "$dir"
-rm -f "$dir/report.txt" # stands only beside the results of a whole run
+rm -f "$dir/report.txt" # exists only beside the results of a complete run
 "$bin/softfall-pre" "$case_file" -o "$dir/model.h5" --force "$@"
 echo
 "$bin/softfall-solve" "$dir/model.h5" -o "$dir/results.h5" --force

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs every case of examples/ into out/NAME and prints the table of the drops' results that stands in README.md.
+# Runs every case of examples/ into out/NAME and prints the table of results of README.md.
 #
 #     tools/run_examples.sh            some minutes
-#     tools/run_examples.sh --table    only the table, of the results that are there
-#     tools/run_examples.sh --readme   the same, and put it into README.md
+#     tools/run_examples.sh --table    only the table, from existing results
+#     tools/run_examples.sh --readme   the same, and writes it into README.md
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -3,8 +3,8 @@
 
     python3 tools/systems_table.py [--table | --docs] FIRST SECOND
 
-FIRST and SECOND are named as the releases are. --docs replaces the table in docs/systems.md, the one that begins with
-"| drop on two systems |", instead. Exit code 1 if a_max or HIC of a drop differs by more than 0.5 %.
+FIRST and SECOND have the names of the releases. --docs instead replaces the table in docs/systems.md that begins with
+"| drop on two systems |". Exit code 1 if a_max or HIC of a drop differs by more than 0.5 %.
 """
 import glob
 import os
