@@ -83,8 +83,7 @@ static uint64_t hash_values(uint64_t hash, const char *values) {
 static sf_status hash_case(const sf_case *c, uint64_t *hash, sf_error *err) {
     const sf_foam_card *foam = &c->foam;
     size_t points = (size_t)foam->curve_points * sizeof *foam->curve_strain,
-           curves = (size_t)foam->curve_count * sizeof *foam->curve_rate,
-           motion = (size_t)c->motion_count * sizeof *c->motion_time;
+           curves = (size_t)foam->curve_count * sizeof *foam->curve_rate, motion = sf_case_motion_bytes(c);
     *hash = hash_values(FNV_OFFSET, c->parameters);
     *hash = hash_bytes(*hash, foam->curve_strain, points);
     *hash = hash_bytes(*hash, foam->curve_stress, points);

@@ -72,6 +72,9 @@ sf_status sf_case_read(const char *path, int count, const char *const *overrides
                        sf_error *err);
 void sf_case_free(sf_case *c);
 
+/* Bytes of motion_time, and of motion_displacement; 0: the missile is free. */
+size_t sf_case_motion_bytes(const sf_case *c);
+
 /* Writes the table of all keys (value, bounds, default, meaning) as Markdown: `softfall-pre --keys`,
  * docs/case.md. */
 void sf_case_print_keys(FILE *file);

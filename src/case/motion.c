@@ -80,10 +80,14 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     return SF_OK;
 }
 
+size_t sf_case_motion_bytes(const sf_case *c) {
+    return (size_t)c->motion_count * sizeof *c->motion_time;
+}
+
 sf_status sf_case_check_motion(const sf_case_reader *reader, sf_error *err) {
     static const char *const replaced[] = {"mass", "velocity", "gravity"};
     char where[SF_CASE_WHERE_SIZE], path[64];
-    sf_case *c = reader->out;
+    const sf_case *c = reader->out;
     if (c->motion_count == 0) {
         for (int k = 0; k < 2; k++)
             if (!sf_case_is_given(reader, "missile", replaced[k]))
@@ -98,7 +102,6 @@ sf_status sf_case_check_motion(const sf_case_reader *reader, sf_error *err) {
                 "%s: %s has no meaning when missile.motion prescribes the displacement: leave it out",
                 sf_case_where_is(reader, path, where), path);
     }
-    c->missile_card.gravity = 0.0;
     double end = c->motion_time[c->motion_count - 1];
     if (!(c->run.end_time <= end * (1 + SF_MOTION_SLACK)))
         return SF_FAIL(err, SF_ERR_INPUT,

@@ -3,6 +3,7 @@
  */
 #include "case/keys.h"
 
+#include "core/mat3.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -226,15 +227,13 @@ static sf_status check_densification(const sf_case_reader *reader, sf_error *err
 
 static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    double *d = reader->out->missile_card.direction;
-    double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    if (!(length > 0.0) || !(d[2] < 0.0) || !isfinite(length))
+    const double *d = reader->out->missile_card.direction;
+    double square = sf_dot3(d, d);
+    if (!(square > 0.0) || !(d[2] < 0.0) || !isfinite(square))
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: missile.direction: [%g, %g, %g] does not point down to the pad; its third "
                        "component must be negative",
                        sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
-    for (int i = 0; i < 3; i++)
-        d[i] /= length;
     return SF_OK;
 }
 
@@ -282,11 +281,10 @@ static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
-/* Rules that join several keys. */
-static sf_status check_case(sf_case_reader *reader, sf_error *err) {
+/* Rules that join several keys, on the values as they are given. */
+static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    sf_case *c = reader->out;
-    c->symmetry_given = sf_case_is_given(reader, "pad", "symmetry");
+    const sf_case *c = reader->out;
     if (c->foam.curve_count == 0)
         return SF_FAIL(
             err, SF_ERR_INPUT,
@@ -307,9 +305,27 @@ static sf_status check_case(sf_case_reader *reader, sf_error *err) {
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
                        sf_case_where_is(reader, "pad.fixed", where));
-    if (check_densification(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
-        sf_case_check_motion(reader, err) != SF_OK || check_times(reader, err) != SF_OK ||
-        check_reach(reader, err) != SF_OK)
+    if (check_densification(reader, err) != SF_OK || check_direction(reader, err) != SF_OK)
+        return err->status;
+    return sf_case_check_motion(reader, err);
+}
+
+/* What follows from values that are allowed. The only function that changes what was read. */
+static void complete(const sf_case_reader *reader, sf_case *c) {
+    sf_missile_card *card = &c->missile_card;
+    double length = sqrt(sf_dot3(card->direction, card->direction));
+    for (int i = 0; i < 3; i++)
+        card->direction[i] /= length;
+    if (c->motion_count > 0)
+        card->gravity = 0.0;
+    c->symmetry_given = sf_case_is_given(reader, "pad", "symmetry");
+}
+
+/* Rules on the complete case. */
+static sf_status check_complete(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    if (check_times(reader, err) != SF_OK || check_reach(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
         fprintf(stderr,
@@ -350,7 +366,10 @@ sf_status sf_case_read(const char *path, int count, const char *const *overrides
     out->text = sf_case_load_text(path, count, overrides, &reader.source, err);
     if (!out->text || parse_text(&reader, count, overrides, err) != SF_OK || read_keys(&reader, err) != SF_OK)
         goto done;
-    check_case(&reader, err);
+    if (check_given(&reader, err) == SF_OK) {
+        complete(&reader, out);
+        check_complete(&reader, err);
+    }
 done:
     if (reader.listing)
         fclose(reader.listing);
