@@ -14,6 +14,13 @@ static inline void sf_cross3(const double a[3], const double b[3], double out[3]
         out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
+/* a . (b x c): the volume that they span, positive for a right-handed set. */
+static inline double sf_triple3(const double a[3], const double b[3], const double c[3]) {
+    double normal[3];
+    sf_cross3(b, c, normal);
+    return sf_dot3(a, normal);
+}
+
 /* Largest eigenvalue of a symmetric matrix: trigonometric solution of the characteristic equation (Smith
  * 1961, doi:10.1145/355578.366316), accurate to rounding relative to the matrix norm. */
 static inline double sf_sym3_largest(const double s[6]) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/dual.h"
 
+#include "core/mat3.h"
 #include "pre/mesh/cell_topology.h"
 #include <stdbool.h>
 #include <stdlib.h>
@@ -181,8 +182,9 @@ static void triangle(const double a[3], const double b[3], const double c[3], sf
         u[k] = b[k] - a[k];
         v[k] = c[k] - a[k];
     }
+    sf_cross3(u, v, out->area);
     for (int k = 0; k < 3; k++)
-        out->area[k] = 0.5 * (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+        out->area[k] *= 0.5;
 }
 
 static void mean_of(const sf_mesh *mesh, int count, const int32_t *cell_node, const int *local,

@@ -2,6 +2,7 @@
 /* Is the background mesh fit to carry smoothing domains? */
 #include "pre/mesh/mesh.h"
 
+#include "core/mat3.h"
 #include "core/model.h"
 #include "pre/mesh/cell_topology.h"
 
@@ -63,11 +64,6 @@ static const char *type_name(int type) {
     }
 }
 
-static double triple(const double a[3], const double b[3], const double c[3]) {
-    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-           a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
 /* Positions of the cell's vertices relative to its first one: what is far from the origin loses no digits. */
 static int local_vertices(const sf_mesh *mesh, int64_t cell, double x[MAX_VERTICES][3]) {
     const int32_t *node = mesh->cell_node + mesh->cell_ptr[cell];
@@ -87,14 +83,14 @@ double sf_mesh_cell_volume(const sf_mesh *mesh, int64_t cell) {
     for (int f = 0; f < shape->faces; f++) {
         const int *v = shape->face[f];
         if (shape->face_size[f] == 3) {
-            six += triple(x[v[0]], x[v[1]], x[v[2]]);
+            six += sf_triple3(x[v[0]], x[v[1]], x[v[2]]);
             continue;
         }
         double centre[3];
         for (int i = 0; i < 3; i++)
             centre[i] = 0.25 * (x[v[0]][i] + x[v[1]][i] + x[v[2]][i] + x[v[3]][i]);
         for (int a = 0; a < 4; a++)
-            six += triple(centre, x[v[a]], x[v[(a + 1) % 4]]);
+            six += sf_triple3(centre, x[v[a]], x[v[(a + 1) % 4]]);
     }
     return six / 6.0;
 }
@@ -112,7 +108,7 @@ static void corner_range(const sf_mesh *mesh, int64_t cell, double *low, double 
         for (int a = 0; a < 3; a++)
             for (int i = 0; i < 3; i++)
                 e[a][i] = x[v[a + 1]][i] - x[v[0]][i];
-        double jacobian = triple(e[0], e[1], e[2]);
+        double jacobian = sf_triple3(e[0], e[1], e[2]);
         *low = fmin(*low, jacobian);
         *high = fmax(*high, jacobian);
     }

@@ -116,11 +116,8 @@ static double triangle_travel(const double *a, const double *b, const double *c,
         v[k] = c[k] - a[k];
         r[k] = x[k] - a[k];
     }
-    for (int k = 0; k < 3; k++) {
-        int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-        p[k] = direction[k1] * v[k2] - direction[k2] * v[k1];
-        q[k] = r[k1] * u[k2] - r[k2] * u[k1];
-    }
+    sf_cross3(direction, v, p);
+    sf_cross3(r, u, q);
     double determinant = sf_dot3(u, p), slack = 1e-9;
     if (determinant == 0)
         return INFINITY;

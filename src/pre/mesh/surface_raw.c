@@ -2,6 +2,7 @@
 /* The missile's surface from raw faces: triangles, and which side of them is outside. */
 #include "pre/mesh/mesh_raw.h"
 
+#include "core/mat3.h"
 #include "pre/mesh/cell_topology.h"
 
 #include <stdlib.h>
@@ -130,9 +131,7 @@ static double side(const surface_builder *b, size_t face) {
         d[i] = r[i] - p[i];
         e[i] = s[i] - q[i];
     }
-    const double *o = b->outward + 3 * face;
-    return (d[1] * e[2] - d[2] * e[1]) * o[0] + (d[2] * e[0] - d[0] * e[2]) * o[1] +
-           (d[0] * e[1] - d[1] * e[0]) * o[2];
+    return sf_triple3(b->outward + 3 * face, d, e);
 }
 
 /* 1 where a face must be reversed. With a cell behind it each face decides for itself; without, those of a
