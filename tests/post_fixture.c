@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post_fixture.h"
 
+#include "core/units.h"
 #include "io/h5.h"
 #include "post/injury.h"
 #include "post/results.h"

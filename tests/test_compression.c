@@ -161,7 +161,7 @@ static void missile_follows_its_table_without_drift(void **state) {
     }
     assert_true(friction >= 0);
     assert_close(sf_motion_displacement(&f.model, 0.084), 0.0045, 1e-15); /* the last piece goes on */
-    assert_close(sf_motion_top_speed(&f.model), SPEED, 1e-12);
+    assert_close(sf_motion_measure(&f.model).speed, SPEED, 1e-12);
     fixture_free(&f);
 }
 

@@ -125,7 +125,8 @@ static void check_coulomb(const fixture *f, double (*old)[3], double travel, fri
     const sf_model *m = &f->model;
     const sf_state *s = &f->state;
     const double *e = m->missile.direction;
-    double mu = m->missile.friction, step = s->missile.displacement - s->missile_old, strongest = 0;
+    double mu = m->missile.friction, step = s->missile.displacement - s->missile.displacement_old,
+           strongest = 0;
     for (int64_t c = 0; c < m->contact_count; c++)
         strongest = fmax(strongest, -s->contact_force[3 * c + 2]);
     for (int64_t c = 0; c < m->contact_count; c++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-post as a user runs it, on synthetic results with a closed-form history. */
+#include "core/units.h"
 #include "post/injury.h"
 #include "post/results.h"
 #include "post/section.h"

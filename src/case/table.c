@@ -92,7 +92,7 @@ static const sf_key keys[] = {
     {"missile", "shape", SF_KEY_CHOICE, "\"auto\"", AT(shape_rule),
      "contact with an exact sphere, with the surface's triangles, or (auto) a sphere if the surface is one",
      .words = "auto|sphere|surface"},
-    {"missile", "gravity", SF_KEY_QUANTITY, "\"9.80665 m/s2\"", AT(missile_card.gravity),
+    {"missile", "gravity", SF_KEY_QUANTITY, "\"" SF_STANDARD_GRAVITY_TEXT "\"", AT(missile_card.gravity),
      "along -z, on the missile", .quantity = SF_ACCELERATION, .high = 1e4},
     {"missile", "gap", SF_KEY_QUANTITY, "\"0 mm\"", AT(missile_card.gap),
      "distance to the pad at the start", .quantity = SF_LENGTH, .high = 1e3},

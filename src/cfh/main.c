@@ -41,7 +41,7 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
         list[count++] = o->overrides[k];
     if (sf_case_read(o->case_path, count, list, &c, err) == SF_OK) {
         *out = (setting){c.missile_card.speed, c.missile_card.mass, find_table_end(&c.foam)};
-        if (c.missile_card.direction[2] > -1 + 1e-9)
+        if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_FAIL(err, SF_ERR_INPUT,
                     "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");
         sf_case_free(&c);

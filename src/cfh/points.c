@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cfh/points.h"
 
-#include "post/injury.h"
+#include "core/units.h"
 #include <assert.h>
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cfh/rig.h"
 
-#include "post/injury.h"
+#include "core/units.h"
 #include <ctype.h>
 #include <errno.h>
 #include <gsl/gsl_cdf.h>

@@ -119,6 +119,22 @@ const sf_model_field *sf_model_fields(size_t *count) {
     return fields;
 }
 
+double sf_model_whole(const sf_model *model) {
+    return (double)model->symmetry_factor;
+}
+
+bool sf_missile_is_driven(const sf_model *model) {
+    return model->motion_count > 0;
+}
+
+double sf_missile_card_depth(const sf_missile_card *card, double displacement) {
+    return -card->direction[2] * (displacement - card->gap);
+}
+
+bool sf_missile_card_is_vertical(const sf_missile_card *card) {
+    return card->direction[2] <= -1 + 1e-9;
+}
+
 void sf_model_free(sf_model *model) {
     for (size_t k = 0; k < sizeof fields / sizeof fields[0]; k++)
         if (fields[k].rows_offset != SIZE_MAX)

@@ -158,6 +158,19 @@ typedef struct sf_model {
     sf_run_options run;
 } sf_model;
 
+/* Modelled parts that make the whole pad and missile: what a force, an energy, a mass or an area of the
+ * modelled part is multiplied by for that of the whole, and divided by for the way back. A power of two:
+ * exact. */
+double sf_model_whole(const sf_model *model);
+
+/* Has the missile a prescribed motion (core/motion.h)? Else it is free. */
+bool sf_missile_is_driven(const sf_model *model);
+/* Depth (m) of the first touching point below the undeformed top of the pad after the missile's displacement
+ * (m) along its direction; negative before contact. */
+double sf_missile_card_depth(const sf_missile_card *card, double displacement);
+/* Does the missile move straight down? */
+bool sf_missile_card_is_vertical(const sf_missile_card *card);
+
 /* Releases every array and zeroes the model. Safe on a zeroed model. */
 void sf_model_free(sf_model *model);
 

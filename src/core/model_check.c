@@ -97,12 +97,12 @@ static sf_status check_motion(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL,
                        "the end time %g s lies beyond the missile's motion, which ends at %g s",
                        m->run.end_time, m->motion_time[last]);
-    return check_bound("largest speed of the missile's motion (m/s)", sf_motion_top_speed(m), 1e-9,
+    return check_bound("largest speed of the missile's motion (m/s)", sf_motion_measure(m).speed, 1e-9,
                        SF_MOTION_MAX_SPEED, err);
 }
 
 static sf_status check_cards(const sf_model *m, sf_error *err) {
-    bool driven = m->motion_count > 0;
+    bool driven = sf_missile_is_driven(m);
     const struct {
         const char *name;
         double value, low, high;

@@ -27,9 +27,13 @@ double sf_motion_velocity(const sf_model *m, double time) {
     return slope(m, piece_of(m, time));
 }
 
-double sf_motion_top_speed(const sf_model *m) {
-    double largest = 0;
-    for (int64_t k = 0; k + 1 < m->motion_count; k++)
-        largest = fmax(largest, fabs(slope(m, k)));
-    return largest;
+sf_motion_range sf_motion_measure(const sf_model *m) {
+    sf_motion_range range = {.points = m->motion_count};
+    for (int64_t k = 0; k < m->motion_count; k++) {
+        range.end_time = m->motion_time[k];
+        range.displacement = fmax(range.displacement, m->motion_displacement[k]);
+        if (k > 0)
+            range.speed = fmax(range.speed, fabs(slope(m, k - 1)));
+    }
+    return range;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The prescribed motion of a missile that a machine drives (model->motion_*): displacement along its
- * direction, linear between the points of the table, whatever the forces. For models with motion_count > 0
- * only. */
+ * direction, linear between the points of the table, whatever the forces. Only for models whose
+ * missile is driven (sf_missile_is_driven). */
 #ifndef SF_CORE_MOTION_H
 #define SF_CORE_MOTION_H
 
@@ -16,7 +16,15 @@
 double sf_motion_displacement(const sf_model *model, double time);
 /* Velocity (m s-1) of the piece that begins at or before `time`. */
 double sf_motion_velocity(const sf_model *model, double time);
-/* Largest speed of all pieces (m s-1). */
-double sf_motion_top_speed(const sf_model *model);
+
+typedef struct sf_motion_range {
+    int64_t points;      /* of the table; 0 of a free missile, and all else 0 */
+    double end_time;     /* s, of the table */
+    double displacement; /* m, largest; at least 0 */
+    double speed;        /* m s-1, largest of all pieces */
+} sf_motion_range;
+
+/* For free missiles too. */
+sf_motion_range sf_motion_measure(const sf_model *model);
 
 #endif

@@ -20,7 +20,7 @@ static const quantity_info quantities[SF_QUANTITY_COUNT] = {
     [SF_MASS] = {"a mass", "kg", "4.6 kg"},
     [SF_TIME] = {"a time", "s", "40 ms"},
     [SF_SPEED] = {"a speed", "m s-1", "4.5 m/s"},
-    [SF_ACCELERATION] = {"an acceleration", "m s-2", "9.80665 m/s2"},
+    [SF_ACCELERATION] = {"an acceleration", "m s-2", SF_STANDARD_GRAVITY_TEXT},
     [SF_DENSITY] = {"a density", "kg m-3", "35 kg/m3"},
     [SF_PRESSURE] = {"a pressure or modulus", "Pa", "0.4136 MPa"},
     [SF_RATE] = {"a rate", "s-1", "5000 1/s"},
@@ -119,7 +119,7 @@ static sf_status convert(const sf_units *units, const char *text, double number,
         return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" %s; expected %s, for example \"%s\"%s", text, found,
                        want->phrase, want->example,
                        kind == SF_ACCELERATION && same_dimension(unit, units->si[SF_MASS])
-                           ? " (g is the gram; standard gravity is 9.80665 m/s2)"
+                           ? " (g is the gram; standard gravity is " SF_STANDARD_GRAVITY_TEXT ")"
                            : "");
     }
     cv_converter *converter = ut_get_converter((ut_unit *)unit, units->si[kind]);

@@ -6,6 +6,12 @@
 
 #include "core/error.h"
 
+/* m s-2: the g of a_max and of drop heights (CGPM 1901), and as the text of a quantity. */
+#define SF_STANDARD_GRAVITY 9.80665
+#define SF_STANDARD_GRAVITY_TEXT SF_UNITS_QUOTE(SF_STANDARD_GRAVITY) " m/s2"
+#define SF_UNITS_QUOTE(value) SF_UNITS_QUOTE_AS_IS(value)
+#define SF_UNITS_QUOTE_AS_IS(value) #value
+
 /* The kinds of quantity that softfall's inputs know. */
 typedef enum sf_quantity {
     SF_LENGTH,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/column.h"
 
+#include "core/units.h"
 #include "post/injury.h"
 #include <math.h>
 #include <string.h>
@@ -83,14 +84,13 @@ static void add_triangle(const outline *o, const double *a, const double *b, con
 }
 
 sf_status sf_columns_build(const sf_results *r, sf_columns *out, sf_error *err) {
-    *out = (sf_columns){.mass = r->missile_mass,
-                        .speed = -r->missile_speed * r->missile_direction[2],
-                        .thickness = r->thickness};
+    *out =
+        (sf_columns){.mass = r->missile_mass, .speed = sf_results_fall_speed(r), .thickness = r->thickness};
     outline o = find_outline(r);
     for (int64_t t = 0; t < r->surface_triangle_count; t++) {
         const int32_t *v = &r->surface_triangle[3 * t];
         add_triangle(&o, &r->surface_position[3 * (int64_t)v[0]], &r->surface_position[3 * (int64_t)v[1]],
-                     &r->surface_position[3 * (int64_t)v[2]], (double)r->symmetry_factor, out);
+                     &r->surface_position[3 * (int64_t)v[2]], sf_results_whole(r), out);
     }
     for (int k = 0; k < SF_COLUMNS; k++) {
         if (!(out->area[k] > 0))

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures.h"
 
+#include "core/units.h"
 #include <math.h>
 #include <string.h>
 
@@ -83,13 +84,6 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
         f->smallest_jacobian = fmin(f->smallest_jacobian, r->history[SF_HISTORY_SMALLEST_JACOBIAN][i]);
 }
 
-static double mean_section(const sf_results *r) {
-    double volume = 0;
-    for (int64_t i = 0; i < r->node_count; i++)
-        volume += r->volume[i];
-    return (double)r->symmetry_factor * volume / r->thickness;
-}
-
 static void compute_compression(const sf_results *r, sf_figures *f) {
     const double *work = r->history[SF_HISTORY_ENERGY_EXTERNAL];
     int64_t peak = row_of_largest(r, SF_HISTORY_CONTACT_FORCE), last = r->history_rows - 1;
@@ -115,8 +109,8 @@ static void set_undefined(sf_figures *f) {
 
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *f, sf_error *err) {
     *f = (sf_figures){.cfc = cfc, .touched = sf_results_touched(results), .v0 = results->missile_speed};
-    f->driven = results->motion_count > 0;
-    f->area = mean_section(results);
+    f->driven = results->driven;
+    f->area = sf_results_cross_section(results);
     set_undefined(f);
     if (compute_curves(results, f, err) != SF_OK)
         goto done;

@@ -6,8 +6,6 @@
 
 #include "post/hic.h"
 
-#define SF_STANDARD_GRAVITY 9.80665 /* m s-2, the g of a_max (CGPM 1901) */
-
 typedef struct sf_injury {
     double a_max_g;           /* g */
     double a_max_time;        /* s */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/reference.h"
 
-#include "post/injury.h"
+#include "core/units.h"
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/results.h"
 
+#include "core/mat3.h"
 #include "io/provenance.h"
 #include "post/results_check.h"
 #include <math.h>
@@ -53,6 +54,25 @@ const sf_frame_field_info *sf_frame_field_get(sf_frame_field field) {
     return &fields[field];
 }
 
+double sf_results_along(const sf_results *r, const double vector[3]) {
+    return sf_dot3(vector, r->missile_direction);
+}
+
+double sf_results_fall_speed(const sf_results *r) {
+    return -r->missile_speed * r->missile_direction[2];
+}
+
+double sf_results_whole(const sf_results *r) {
+    return (double)r->symmetry_factor;
+}
+
+double sf_results_cross_section(const sf_results *r) {
+    double volume = 0;
+    for (int64_t i = 0; i < r->node_count; i++)
+        volume += r->volume[i];
+    return sf_results_whole(r) * volume / r->thickness;
+}
+
 bool sf_results_touched(const sf_results *results) {
     for (int64_t i = 0; i < results->history_rows; i++)
         if (results->history[SF_HISTORY_CONTACT_NODES][i] > 0)
@@ -90,6 +110,17 @@ static sf_status read_vector(const sf_results *r, const char *path, double vecto
     return SF_OK;
 }
 
+/* Free or driven? Older files hold the points of the motion in its place, or neither. */
+static sf_status read_driven(sf_results *r, sf_error *err) {
+    int64_t driven = 0;
+    if (sf_h5_exists(r->file, "/model/missile_driven"))
+        read_integer(r, "/model/missile_driven", &driven, err);
+    else if (sf_h5_exists(r->file, "/model/motion_count"))
+        read_integer(r, "/model/motion_count", &driven, err);
+    r->driven = driven > 0;
+    return err->status;
+}
+
 static sf_status read_model(sf_results *r, sf_error *err) {
     int64_t pointers = -1;
     r->node_count = r->cell_count = r->cell_nnz = r->surface_node_count = r->surface_triangle_count = -1;
@@ -111,8 +142,7 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err) != SF_OK ||
         read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK ||
-        (sf_h5_exists(r->file, "/model/motion_count") && /* older files do not have it */
-         read_integer(r, "/model/motion_count", &r->motion_count, err) != SF_OK))
+        read_driven(r, err) != SF_OK)
         return err->status;
     return sf_results_check_model(r, err);
 }

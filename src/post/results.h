@@ -93,12 +93,12 @@ typedef struct sf_results {
     double *surface_position;  /* [surface_node_count][3] m, missile at t = 0 */
     int32_t *surface_triangle; /* [surface_triangle_count][3] */
     int64_t symmetry_factor;
-    double thickness;     /* m */
-    double density;       /* kg m-3 */
-    double missile_mass;  /* kg; 0 with a prescribed motion, like the speed */
-    double missile_speed; /* m s-1 */
-    int64_t motion_count; /* points of the missile's prescribed motion; 0 = it was free */
-    double missile_direction[3];
+    double thickness;            /* m */
+    double density;              /* kg m-3 */
+    double missile_mass;         /* kg; 0 with a prescribed motion, like the speed */
+    double missile_speed;        /* m s-1 */
+    bool driven;                 /* the missile had a prescribed motion; else it was free */
+    double missile_direction[3]; /* unit vector, see sf_results_along */
 
     int64_t history_rows;
     double *history[SF_HISTORY_COLUMNS]; /* [history_rows] SI */
@@ -132,6 +132,15 @@ void sf_frame_free(sf_frame *frame);
 /* Dataset name below /history; static storage. */
 const char *sf_history_name(sf_history_column column);
 const sf_frame_field_info *sf_frame_field_get(sf_frame_field field);
+
+/* Component of a vector along the missile's direction of motion. */
+double sf_results_along(const sf_results *results, const double vector[3]);
+/* Speed of the missile downwards, along -z, at t = 0, m s-1. */
+double sf_results_fall_speed(const sf_results *results);
+/* Modelled parts that make the whole pad: see sf_model_whole. */
+double sf_results_whole(const sf_results *results);
+/* Mean cross-section of the whole pad, its volume over its thickness, m2. */
+double sf_results_cross_section(const sf_results *results);
 
 /* True if the missile ever touched the pad. */
 bool sf_results_touched(const sf_results *results);

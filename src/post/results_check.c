@@ -100,13 +100,13 @@ sf_status sf_results_check_model(const sf_results *r, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "/model/symmetry_factor is %lld, it must be 1, 2 or 4",
                        (long long)r->symmetry_factor);
     const double *d = r->missile_direction;
-    if (!(fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - 1) < 1e-6))
+    if (!(fabs(sf_results_along(r, d) - 1) < 1e-6))
         return SF_FAIL(err, SF_ERR_IO, "/model/missile_direction (%g, %g, %g) is not a unit vector", d[0],
                        d[1], d[2]);
     if (check_positive(r->thickness, "/model/thickness", err) != SF_OK ||
         check_positive(r->density, "/model/density", err) != SF_OK)
         return err->status;
-    if (r->motion_count > 0)
+    if (r->driven)
         return SF_OK;
     if (check_positive(r->missile_mass, "/model/missile_mass", err) != SF_OK ||
         check_positive(r->missile_speed, "/model/missile_speed", err) != SF_OK)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/section.h"
 
+#include "core/mat3.h"
 #include "core/model.h"
 #include <math.h>
 #include <stdlib.h>
@@ -14,11 +15,10 @@ typedef struct section_point {
 } section_point;
 
 void sf_section_axis(const sf_results *r, double axis[2]) {
-    const double *d = r->missile_direction;
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, extreme = -INFINITY, size = 0;
     for (int64_t i = 0; i < r->surface_node_count; i++) {
         const double *x = &r->surface_position[3 * i];
-        extreme = fmax(extreme, x[0] * d[0] + x[1] * d[1] + x[2] * d[2]);
+        extreme = fmax(extreme, sf_results_along(r, x));
         for (int k = 0; k < 2; k++) {
             low[k] = fmin(low[k], x[k]);
             high[k] = fmax(high[k], x[k]);
@@ -32,7 +32,7 @@ void sf_section_axis(const sf_results *r, double axis[2]) {
     double sum[2] = {0, 0}, count = 0;
     for (int64_t i = 0; i < r->surface_node_count; i++) {
         const double *x = &r->surface_position[3 * i];
-        if (x[0] * d[0] + x[1] * d[1] + x[2] * d[2] < extreme - 1e-6 * size)
+        if (sf_results_along(r, x) < extreme - 1e-6 * size)
             continue;
         sum[0] += x[0];
         sum[1] += x[1];
@@ -52,16 +52,12 @@ static bool tetrahedron_weights(const double *const p[4], const double x[3], dou
             size = fmax(size, fabs(e[j][k]));
         }
     }
-#define TRIPLE(u, v, w)                                                                                      \
-    ((u)[0] * ((v)[1] * (w)[2] - (v)[2] * (w)[1]) + (u)[1] * ((v)[2] * (w)[0] - (v)[0] * (w)[2]) +           \
-     (u)[2] * ((v)[0] * (w)[1] - (v)[1] * (w)[0]))
-    double volume = TRIPLE(e[0], e[1], e[2]);
+    double volume = sf_triple3(e[0], e[1], e[2]);
     if (fabs(volume) < 1e-9 * size * size * size)
         return false;
-    weight[1] = TRIPLE(b, e[1], e[2]) / volume;
-    weight[2] = TRIPLE(e[0], b, e[2]) / volume;
-    weight[3] = TRIPLE(e[0], e[1], b) / volume;
-#undef TRIPLE
+    weight[1] = sf_triple3(b, e[1], e[2]) / volume;
+    weight[2] = sf_triple3(e[0], b, e[2]) / volume;
+    weight[3] = sf_triple3(e[0], e[1], b) / volume;
     weight[0] = 1 - weight[1] - weight[2] - weight[3];
     return true;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/build.h"
 
+#include "core/motion.h"
 #include "core/stability.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/domains.h"
@@ -245,15 +246,12 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
 
 /* A driven missile does not stop at the anvil. */
 static sf_status check_depth(const sf_model *m, sf_error *err) {
-    double down = -m->missile.direction[2];
-    for (int64_t k = 0; k < m->motion_count; k++) {
-        double depth = down * (m->motion_displacement[k] - m->missile.gap);
-        if (!(depth < m->thickness))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
-                           1e3 * depth, 1e3 * m->thickness);
-    }
-    return SF_OK;
+    double depth = sf_missile_card_depth(&m->missile, sf_motion_measure(m).displacement);
+    if (depth < m->thickness)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
+                   1e3 * depth, 1e3 * m->thickness);
 }
 
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {

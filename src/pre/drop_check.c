@@ -19,10 +19,10 @@ static sf_status check_thickness(const sf_model *m, sf_error *err) {
 }
 
 static sf_status check_mass(const sf_model *m, sf_error *err) {
-    double share = m->missile.mass / (double)m->symmetry_factor, heaviest = 0;
+    double share = m->missile.mass / sf_model_whole(m), heaviest = 0;
     for (int64_t k = 0; k < m->contact_count; k++)
         heaviest = fmax(heaviest, m->mass[m->contact_node[k]]);
-    if (m->motion_count > 0 || share > heaviest)
+    if (sf_missile_is_driven(m) || share > heaviest)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,
                    "missile.mass: %g kg, of which the model has 1/%lld, is not more than the heaviest node "

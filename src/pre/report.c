@@ -2,6 +2,7 @@
 #include "pre/report.h"
 
 #include "core/motion.h"
+#include "core/units.h"
 #include <math.h>
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
@@ -36,28 +37,25 @@ static void print_impact(FILE *out, const sf_model *m) {
     double speed = m->missile.speed, energy = 0.5 * m->missile.mass * speed * speed;
     fprintf(out, "%-26s%.4g kg at %.4g m/s: kinetic energy %.4g J, momentum %.4g kg m/s\n", "missile",
             m->missile.mass, speed, energy, m->missile.mass * speed);
-    fprintf(out, "%-26s%.4g m in free fall\n", "equivalent drop height", speed * speed / (2 * 9.80665));
+    fprintf(out, "%-26s%.4g m in free fall\n", "equivalent drop height",
+            speed * speed / (2 * SF_STANDARD_GRAVITY));
 }
 
 static void print_motion(FILE *out, const sf_model *m) {
-    int64_t last = m->motion_count - 1;
-    double deepest = 0;
-    for (int64_t k = 0; k <= last; k++)
-        deepest = fmax(deepest, m->motion_displacement[k]);
+    const sf_motion_range range = sf_motion_measure(m);
     fprintf(out, "%-26sprescribed motion of %lld points to %.4g ms, to %.4g mm, at most %.4g m/s\n",
-            "missile", (long long)m->motion_count, 1e3 * m->motion_time[last], 1e3 * deepest,
-            sf_motion_top_speed(m));
+            "missile", (long long)range.points, 1e3 * range.end_time, 1e3 * range.displacement, range.speed);
 }
 
 static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r) {
-    double mass = 0, whole = (double)m->symmetry_factor, volume = r->mesh_volume;
+    double mass = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
     for (int64_t i = 0; i < m->node_count; i++)
         mass += m->mass[i];
     fprintf(out, "%-26s%.6f kg modelled; density x volume = %.6f kg (difference %.1e)\n", "pad mass", mass,
             m->foam.density * volume, mass / (m->foam.density * volume) - 1);
     fprintf(out, "%-26s%.1f x %.6g cm3, thickness %.4g mm\n", "pad volume", whole, 1e6 * volume,
             1e3 * m->thickness);
-    if (m->motion_count > 0)
+    if (sf_missile_is_driven(m))
         print_motion(out, m);
     else
         print_impact(out, m);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/ledger.h"
 
-#include "core/mat3.h"
+#include <math.h>
 
 double sf_ledger_internal(const sf_ledger *l) {
     return l->stored + l->hysteresis + l->viscous + l->stabilisation;
@@ -15,15 +15,12 @@ static double total_energy(const sf_ledger *l) {
  * direction; `carried` (kg m s-1): the pad's momentum along it. */
 static void balance_free(const sf_model *m, sf_state *s, double held, double carried, double dt_v) {
     sf_ledger *l = &s->ledger;
-    double mass = m->missile.mass / (double)m->symmetry_factor;
-    double pull = -m->missile.gravity * m->missile.direction[2];
-    double before = s->missile.velocity - dt_v * s->missile.acceleration;
-    l->kinetic_missile = 0.5 * mass * before * s->missile.velocity;
-    l->external = mass * pull * s->missile.displacement;
+    l->kinetic_missile = sf_missile_kinetic(m, &s->missile, dt_v);
+    l->external = sf_missile_gravity_work(m, &s->missile);
     l->error = (total_energy(l) - l->external) / l->reference - 1;
 
-    l->impulse += dt_v * (mass * pull + held);
-    double change = mass * s->missile.velocity + carried - l->momentum_reference;
+    l->impulse += dt_v * (sf_missile_weight(m) + held);
+    double change = sf_missile_momentum(m, &s->missile) + carried - l->momentum_reference;
     l->momentum_error = (change - l->impulse) / l->momentum_reference;
 }
 
@@ -31,7 +28,7 @@ static void balance_free(const sf_model *m, sf_state *s, double held, double car
  * that the errors refer to the largest work and impulse so far, and at first to what state.c has set. */
 static void balance_driven(const sf_model *m, sf_state *s, double held, double carried, double dt_v) {
     sf_ledger *l = &s->ledger;
-    double pressed = -dt_v * sf_dot3(s->missile.force, m->missile.direction);
+    double pressed = dt_v * sf_missile_contact_force(m, &s->missile);
     l->reference = fmax(l->reference, fabs(l->external));
     l->error = (total_energy(l) - l->external) / l->reference;
 
@@ -42,7 +39,6 @@ static void balance_driven(const sf_model *m, sf_state *s, double held, double c
 
 void sf_ledger_close(const sf_model *m, sf_state *s, const double constraint_force[3], double dt_v) {
     sf_ledger *l = &s->ledger;
-    const double *e = m->missile.direction;
     double potential = 0, drift = 0, momentum[3] = {0}, fastest = 0;
     s->smallest_jacobian = INFINITY;
     double shortest = INFINITY;
@@ -69,8 +65,8 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const double constraint_for
     l->stabilisation_drift += drift;
     l->stabilisation = potential - l->stabilisation_drift;
 
-    double held = sf_dot3(constraint_force, e), carried = sf_dot3(momentum, e);
-    if (m->motion_count > 0)
+    double held = sf_missile_along(m, constraint_force), carried = sf_missile_along(m, momentum);
+    if (sf_missile_is_driven(m))
         balance_driven(m, s, held, carried, dt_v);
     else
         balance_free(m, s, held, carried, dt_v);

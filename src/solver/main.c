@@ -144,8 +144,8 @@ __attribute__((format(printf, 1, 2))) static void warn(const char *format, ...) 
 static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run) {
     const sf_ledger *l = &s->ledger;
     const sf_extremes *x = &run->extremes;
-    double whole = (double)m->symmetry_factor;
-    bool driven = m->motion_count > 0;
+    double whole = sf_model_whole(m);
+    bool driven = sf_missile_is_driven(m);
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     printf("ended: %s at %.3f ms after %lld steps, %.1f s, %.2f million node-steps/s, peak memory %.0f MB\n",
@@ -167,7 +167,7 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
     else
         printf("largest acceleration %.2f g at %.3f ms, largest local compression %.4f, speed upwards at the "
                "end %.3f m/s\n",
-               x->peak_value / 9.80665, 1e3 * x->peak_time, x->largest_compression,
+               x->peak_value / SF_STANDARD_GRAVITY, 1e3 * x->peak_time, x->largest_compression,
                fmax(0, -s->missile.velocity_now));
     const sf_missile_card *card = &m->missile;
     double height = card->sphere_radius * (1 - card->sphere_cap_cosine);

@@ -68,28 +68,26 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
 }
 
 static void start_free(const sf_model *m, sf_state *s) {
-    double mass = m->missile.mass / (double)m->symmetry_factor;
-    s->missile.velocity = s->missile.velocity_now = m->missile.speed;
-    s->ledger.reference = 0.5 * mass * m->missile.speed * m->missile.speed;
-    s->ledger.momentum_reference = mass * m->missile.speed;
+    s->ledger.reference = sf_missile_kinetic(m, &s->missile, 0);
+    s->ledger.momentum_reference = sf_missile_momentum(m, &s->missile);
 }
 
 /* A driven missile brings no energy. Until it has done more work, its errors refer to the pad at the motion's
  * top speed, and to a part of the energy of a pad that is compressed evenly as far as the motion goes. */
 static sf_status start_driven(const sf_model *m, sf_state *s, sf_error *err) {
-    double mass = 0, depth = 0, stress, slope, energy, speed = sf_motion_top_speed(m);
+    const sf_motion_range motion = sf_motion_measure(m);
+    double mass = 0, depth = fmax(0, sf_missile_card_depth(&m->missile, motion.displacement)), stress, slope,
+           energy;
     sf_curve curve;
     if (sf_curve_build(&m->foam, 0, &curve, err) != SF_OK)
         return err->status;
     for (int64_t i = 0; i < m->node_count; i++)
         mass += m->mass[i];
-    for (int64_t k = 0; k < m->motion_count; k++)
-        depth = fmax(depth, -m->missile.direction[2] * (m->motion_displacement[k] - m->missile.gap));
     sf_curve_evaluate(&curve, fmin(depth / m->thickness, curve.start), &stress, &slope, &energy);
     sf_curve_free(&curve);
-    s->missile.velocity = s->missile.velocity_now = sf_motion_velocity(m, 0);
-    s->ledger.reference = 0.5 * mass * speed * speed + LEAST_WORK * energy * mass / m->foam.density;
-    s->ledger.momentum_reference = mass * speed;
+    s->ledger.reference =
+        0.5 * mass * motion.speed * motion.speed + LEAST_WORK * energy * mass / m->foam.density;
+    s->ledger.momentum_reference = mass * motion.speed;
     return SF_OK;
 }
 
@@ -112,8 +110,8 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
         memcpy(&s->contact_position[3 * c], &model->position[3 * (int64_t)model->contact_node[c]],
                3 * sizeof(double));
     s->tightness = 1;
-    s->missile.contact_time = s->missile.release_time = NAN;
-    if (model->motion_count == 0)
+    sf_missile_begin(model, &s->missile);
+    if (!sf_missile_is_driven(model))
         start_free(model, s);
     else if (start_driven(model, s, err) != SF_OK)
         sf_state_free(s);

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/model.h"
+#include "solver/missile.h"
 #include "solver/material/foam.h"
 #include "solver/stopwatch.h"
 #include <stddef.h>
@@ -41,19 +42,6 @@ typedef struct sf_ledger {
     double impulse;             /* N s, of gravity and constraints, and of a driven missile, along it */
     double momentum_error;      /* over momentum_reference */
 } sf_ledger;
-
-/* The missile: one translational degree of freedom along model->missile.direction. Forces are the modelled
- * part's. */
-typedef struct sf_missile {
-    double displacement; /* m */
-    double velocity;     /* m s-1, at the half step before `time` until the step ends */
-    double velocity_now; /* m s-1, at `time` */
-    double acceleration; /* m s-2, along the direction: negative while it is braked */
-    double force[3];     /* N, of the pad on the missile */
-    double friction;     /* N, tangential part of it against the direction */
-    double contact_time; /* s, first contact; NAN before */
-    double release_time; /* s, last time with contact */
-} sf_missile;
 
 typedef struct sf_state {
     int64_t step;
@@ -100,7 +88,6 @@ typedef struct sf_state {
     double contact_room;       /* m, what points and missile may approach each other until the list is made
                                   anew */
     double fastest;            /* m s-1, of the coefficients at the half step */
-    double missile_old;        /* m, displacement one step ago */
     int64_t contact_count;     /* points with a force */
     double penetration;        /* m, deepest now */
     int64_t contact_unsettled; /* steps whose sweeps did not reach their tolerance */

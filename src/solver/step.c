@@ -2,7 +2,6 @@
 #include "solver/step.h"
 
 #include "core/lanes.h"
-#include "core/motion.h"
 #include "core/threads.h"
 #include "solver/contact/contact.h"
 #include "solver/field/domain_stress.h"
@@ -103,8 +102,9 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
             "stabilisation %.3g J; limit %.2f %% of the %s); fastest is node %lld at (%.5g, %.5g, %.5g) m, "
             "%.3g m/s: is the missile pressed in beyond its touching surface?",
             s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
-            100 * m->run.energy_limit, m->motion_count > 0 ? "largest work of the motion" : "impact energy",
-            (long long)node, x[0], x[1], x[2], speed);
+            100 * m->run.energy_limit,
+            sf_missile_is_driven(m) ? "largest work of the motion" : "impact energy", (long long)node, x[0],
+            x[1], x[2], speed);
     return SF_FAIL(err, SF_ERR_NUMERIC,
                    "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step "
                    "%.3g s); fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: the run is unstable or "
@@ -137,18 +137,6 @@ static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
     }
 }
 
-/* The missile's velocities now and at the next half step. */
-static void move_missile(const sf_model *m, sf_state *s, double dt_v) {
-    sf_missile *missile = &s->missile;
-    if (m->motion_count > 0) {
-        missile->velocity_now = sf_motion_velocity(m, s->time);
-        missile->velocity = (sf_motion_displacement(m, s->time + s->dt) - missile->displacement) / s->dt;
-        return;
-    }
-    missile->velocity_now = missile->velocity + 0.5 * s->dt_old * missile->acceleration;
-    missile->velocity += dt_v * missile->acceleration;
-}
-
 sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
 #pragma omp parallel default(none) shared(m, op, s)
     {
@@ -178,7 +166,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_lap(s->watch, SF_PHASE_CONSTRAINT);
 
     accelerate(m, s, dt_v); /* v at the next half step */
-    move_missile(m, s, dt_v);
+    sf_missile_kick(m, &s->missile, s->time, s->dt, s->dt_old);
     sf_ledger_close(m, s, held.all, dt_v);
     sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)
@@ -191,12 +179,8 @@ void sf_step_advance(const sf_model *m, sf_state *s) {
 #pragma omp parallel for if (m->node_count > SF_FEW_NODES) default(none) shared(m, s, dt) schedule(static)
     for (int64_t k = 0; k < 3 * m->node_count; k++)
         s->d[k] += dt * s->v[k];
-    s->missile_old = s->missile.displacement;
     s->time += dt;
-    if (m->motion_count > 0)
-        s->missile.displacement = sf_motion_displacement(m, s->time);
-    else
-        s->missile.displacement += dt * s->missile.velocity;
+    sf_missile_drift(m, &s->missile, s->time, dt);
     s->dt_old = dt;
     s->step++;
     sf_lap(s->watch, SF_PHASE_MOTION);

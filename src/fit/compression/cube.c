@@ -76,13 +76,6 @@ static void average(const sf_results *r, double area, double turn_time, sf_cube_
     }
 }
 
-static double cross_section(const sf_results *r) {
-    double volume = 0;
-    for (int64_t i = 0; i < r->node_count; i++)
-        volume += r->volume[i];
-    return (double)r->symmetry_factor * volume / r->thickness;
-}
-
 /* The material point goes through the same strains, and through the turn between them. */
 static sf_status compare(const sf_foam_card *card, double rate, double turn, sf_cube_test *test,
                          sf_error *err) {
@@ -115,7 +108,7 @@ static sf_status read_test(const char *path, const sf_foam_card *card, const sf_
     sf_results r;
     if (sf_results_open(path, &r, err) != SF_OK)
         return err->status;
-    average(&r, cross_section(&r), turn_time, test);
+    average(&r, sf_results_cross_section(&r), turn_time, test);
     sf_results_close(&r);
     return compare(card, lab->rate, lab->largest_strain, test, err);
 }

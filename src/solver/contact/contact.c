@@ -2,7 +2,6 @@
 #include "solver/contact/contact.h"
 
 #include "core/mat3.h"
-#include "core/motion.h"
 #include "core/threads.h"
 #include <string.h>
 
@@ -13,25 +12,18 @@ static const double SWEEP_TOLERANCE = 1e-10; /* largest change of a force, relat
 
 /* What one solve needs beside the state. */
 typedef struct contact_solve {
-    double mobility;  /* kg-1, symmetry-adjusted inverse mass of the missile */
-    double shift;     /* s2, dt times the distance of the half steps */
-    double free_step; /* m, the missile's next travel without contact */
-    double along;     /* N, sum of q . e over all points */
+    double shift; /* s2, dt times the distance of the half steps */
+    sf_missile_response missile;
 } contact_solve;
 
 /* The list of near points is made of those within NEAR spacings of the missile, and made anew when half of
  * that is used up, or when what is left is not more than twice what is used up in a step. */
 static const double NEAR = 2;
 
-/* What drives the missile is as heavy as it needs to be. */
-static double mobility_of(const sf_model *m) {
-    return m->motion_count > 0 ? 0 : (double)m->symmetry_factor / m->missile.mass;
-}
-
 /* Takes the last step's travel from the room of the list. Once too little is left, all points are looked at;
  * returns whether they are. */
 static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
-    double speed = op->gram.spread * s->fastest + fabs(s->missile.velocity);
+    double speed = op->gram.spread * s->fastest + sf_missile_fastest(&s->missile);
     s->contact_room -= s->dt_old * speed;
     if (s->step > 0 && s->contact_room > fmax(0.5 * NEAR * op->gram.spacing, 2 * s->dt * speed))
         return false;
@@ -42,15 +34,12 @@ static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
 }
 
 /* Of all points, the near ones. */
-static void list_near(const sf_operators *op, const double direction[3], sf_state *s) {
+static void list_near(const sf_model *m, const sf_operators *op, sf_state *s) {
     int64_t count = 0;
     s->contact_room = NEAR * op->gram.spacing;
     for (int64_t k = 0; k < s->contact_near_count; k++) {
         int64_t c = s->contact_near[k];
-        double now[3];
-        for (int r = 0; r < 3; r++)
-            now[r] = s->contact_position[3 * c + r] - s->missile.displacement * direction[r];
-        if (sf_missile_surface_near(&op->surface, now, s->contact_room))
+        if (sf_missile_near(m, &s->missile, &op->surface, &s->contact_position[3 * c], s->contact_room))
             s->contact_near[count++] = (int32_t)c;
     }
     s->contact_near_count = count;
@@ -80,68 +69,64 @@ static void predict_points(const sf_model *m, sf_state *s, double dt_v) {
     }
 }
 
-/* Work of a driven missile since the last step: the forces' mean times its travel. If it starts on the pad it
- * catches the surface points up at once; of the work of that impulse (the force at t = 0 for half a step)
- * they keep one half. */
-static void book_drive(const sf_model *m, sf_state *s, const double mean[3], const double old[3],
-                       double travel) {
-    s->ledger.external += sf_dot3(mean, m->missile.direction) * travel;
+/* Work of a driven missile since the last step, at the point x: the forces' mean times its motion. If it
+ * starts on the pad it catches the surface points up at once; of the work of that impulse (the force at t = 0
+ * for half a step) they keep one half. */
+static void book_drive(const sf_model *m, sf_state *s, const double x[3], const double mean[3],
+                       const double old[3]) {
+    s->ledger.external += sf_missile_work(m, &s->missile, x, mean);
     if (s->step == 1)
-        s->ledger.contact += 0.25 * sf_dot3(old, m->missile.direction) * travel;
+        s->ledger.contact += 0.25 * sf_missile_work(m, &s->missile, x, old);
 }
 
 /* Work lost since the last step: the forces' mean times the relative motion, split at the normal. */
 static void book_work(const sf_model *m, sf_state *s) {
-    const double *e = m->missile.direction;
-    double travel = s->missile.displacement - s->missile_old;
+    bool driven = sf_missile_is_driven(m);
     for (int64_t k = 0; k < s->contact_near_count; k++) {
         int64_t c = s->contact_near[k];
         const double *q = &s->contact_force[3 * c], *old = &s->contact_old[3 * c],
-                     *n = &s->contact_normal[3 * c];
+                     *n = &s->contact_normal[3 * c], *x = &s->contact_position[3 * c];
         if (sf_dot3(q, q) == 0 && sf_dot3(old, old) == 0)
             continue;
         double mean[3], slip[3];
+        sf_missile_motion_at(m, &s->missile, x, slip);
         for (int r = 0; r < 3; r++) {
             mean[r] = 0.5 * (q[r] + old[r]);
-            slip[r] = e[r] * travel - s->contact_motion[3 * c + r];
+            slip[r] -= s->contact_motion[3 * c + r];
         }
         double lost = sf_dot3(mean, slip);
         double normal = m->missile.friction > 0 ? sf_dot3(mean, n) * sf_dot3(slip, n) : lost;
         s->ledger.contact += normal;
         s->ledger.friction += lost - normal;
-        if (m->motion_count > 0)
-            book_drive(m, s, mean, old, travel);
+        if (driven)
+            book_drive(m, s, x, mean, old);
     }
 }
 
 /* Is the point, free in the last step, deep inside already? Then it did not come through the touching surface
  * but round its rim, and pushing it out would throw it. */
-static bool entered_from_behind(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t c,
-                                const double now[3]) {
+static bool entered_from_behind(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t c) {
     double gap, normal[3];
     return sf_dot3(&s->contact_force[3 * c], &s->contact_force[3 * c]) == 0 &&
-           (!sf_missile_surface_gap(&op->surface, now, &gap, normal) ||
+           (!sf_missile_gap(m, &s->missile, &op->surface, &s->contact_position[3 * c], &gap, normal) ||
             gap < -ENTRY_DEPTH * m->spacing[m->contact_node[c]]);
 }
 
 /* Gaps at the predicted positions; the list of points that would be inside. Deepest present penetration. */
-static int64_t find_active(const sf_model *m, const sf_operators *op, sf_state *s, double free_step) {
-    const double *e = m->missile.direction;
+static int64_t find_active(const sf_model *m, const sf_operators *op, sf_state *s, const contact_solve *w) {
     int64_t active = 0;
     s->penetration = 0;
     for (int64_t k = 0; k < s->contact_near_count; k++) {
         int64_t c = s->contact_near[k];
-        double now[3], next[3], gap, normal[3];
-        for (int r = 0; r < 3; r++) {
-            now[r] = s->contact_position[3 * c + r] - s->missile.displacement * e[r];
-            next[r] = now[r] + s->contact_step[3 * c + r] - free_step * e[r];
-        }
-        if (s->contact_gap[c] < 0 && sf_missile_surface_gap(&op->surface, now, &gap, normal))
+        const double *x = &s->contact_position[3 * c];
+        double gap, normal[3];
+        if (s->contact_gap[c] < 0 && sf_missile_gap(m, &s->missile, &op->surface, x, &gap, normal))
             s->penetration = fmax(s->penetration, -gap);
         s->contact_gap[c] = INFINITY;
-        if (!sf_missile_surface_gap(&op->surface, next, &gap, normal))
+        if (!sf_missile_gap_ahead(m, &s->missile, &w->missile, &op->surface, x, &s->contact_step[3 * c], &gap,
+                                  normal))
             continue;
-        if (gap < 0 && entered_from_behind(m, op, s, c, now))
+        if (gap < 0 && entered_from_behind(m, op, s, c))
             continue;
         s->contact_gap[c] = gap;
         memcpy(&s->contact_normal[3 * c], normal, sizeof normal);
@@ -157,36 +142,37 @@ static void start_forces(const sf_model *m, sf_state *s, int64_t active, contact
     size_t bytes = 3 * (size_t)m->contact_count * sizeof *s->contact_force;
     memcpy(s->contact_old, s->contact_force, bytes);
     memset(s->contact_force, 0, bytes);
-    w->along = 0;
     for (int64_t a = 0; a < active; a++) {
         int64_t c = s->contact_active[a];
         const double *n = &s->contact_normal[3 * c], *old = &s->contact_old[3 * c];
         double p = fmax(0, sf_dot3(old, n));
         for (int r = 0; r < 3; r++)
             s->contact_force[3 * c + r] = m->missile.friction > 0 && p > 0 ? old[r] : p * n[r];
-        w->along += sf_dot3(&s->contact_force[3 * c], m->missile.direction);
+        sf_missile_load(&w->missile, &s->contact_position[3 * c], &s->contact_force[3 * c]);
     }
 }
 
 /* One Gauss-Seidel update of the force of point c; returns the size of its change. */
 static double relax_point(const sf_model *m, const sf_contact_gram *gram, sf_state *s, contact_solve *w,
                           int64_t c) {
-    const double *e = m->missile.direction, *n = &s->contact_normal[3 * c];
-    double *q = &s->contact_force[3 * c], moved[3] = {0}, old[3], tangential[3];
+    const double *n = &s->contact_normal[3 * c], *x = &s->contact_position[3 * c];
+    double *q = &s->contact_force[3 * c], moved[3] = {0}, recoil[3], old[3], tangential[3];
     for (int64_t k = gram->ptr[c]; k < gram->ptr[c + 1]; k++)
         for (int r = 0; r < 3; r++)
             moved[r] += gram->value[k] * s->contact_force[3 * (int64_t)gram->index[k] + r];
+    sf_missile_recoil(&w->missile, x, recoil);
     for (int r = 0; r < 3; r++) /* relative displacement that the forces cause */
-        moved[r] = w->shift * (moved[r] + w->mobility * w->along * e[r]);
+        moved[r] = w->shift * (moved[r] + recoil[r]);
     memcpy(old, q, sizeof old);
-    double lean = sf_dot3(n, e), mobility = w->shift * (gram->diagonal[c] + w->mobility * lean * lean);
+    double mobility = w->shift * (gram->diagonal[c] + sf_missile_mobility(&w->missile, x, n));
     double p_old = sf_dot3(old, n), p = fmax(0, p_old - (s->contact_gap[c] + sf_dot3(moved, n)) / mobility);
     for (int r = 0; r < 3; r++)
         tangential[r] = 0;
     if (m->missile.friction > 0 && p > 0) {
-        double slip[3], size = 0;
+        double slip[3], away[3], size = 0;
+        sf_missile_free_motion(&w->missile, x, away);
         for (int r = 0; r < 3; r++)
-            slip[r] = s->contact_step[3 * c + r] - w->free_step * e[r] + moved[r];
+            slip[r] = s->contact_step[3 * c + r] - away[r] + moved[r];
         double across = sf_dot3(slip, n), stuck = w->shift * gram->diagonal[c];
         for (int r = 0; r < 3; r++) {
             tangential[r] = old[r] - p_old * n[r] - (slip[r] - across * n[r]) / stuck;
@@ -200,8 +186,8 @@ static double relax_point(const sf_model *m, const sf_contact_gram *gram, sf_sta
     for (int r = 0; r < 3; r++) {
         q[r] = p * n[r] + tangential[r];
         change = fmax(change, fabs(q[r] - old[r]));
-        w->along += (q[r] - old[r]) * e[r];
     }
+    sf_missile_reload(&w->missile, x, old, q);
     return change;
 }
 
@@ -221,46 +207,36 @@ static void relax(const sf_model *m, const sf_operators *op, sf_state *s, int64_
 
 /* phi^T q to the coefficients' forces; resultants to the missile. */
 static void apply_forces(const sf_model *m, sf_state *s, int64_t active) {
-    sf_missile *missile = &s->missile;
-    memset(missile->force, 0, sizeof missile->force);
-    missile->friction = 0;
+    sf_missile_clear(&s->missile);
     s->contact_count = 0;
     for (int64_t a = 0; a < active; a++) {
         int64_t c = s->contact_active[a], node = m->contact_node[c];
         const double *q = &s->contact_force[3 * c], *n = &s->contact_normal[3 * c];
-        double p = sf_dot3(q, n);
-        if (!(p > 0))
+        if (!(sf_dot3(q, n) > 0))
             continue;
         s->contact_count++;
-        for (int r = 0; r < 3; r++) {
-            missile->force[r] -= q[r];
-            missile->friction += (q[r] - p * n[r]) * m->missile.direction[r];
-        }
+        const double back[3] = {-q[0], -q[1], -q[2]};
+        sf_missile_apply(m, &s->missile, &s->contact_position[3 * c], n, back);
         for (int64_t k = m->phi_ptr[node]; k < m->phi_ptr[node + 1]; k++)
             for (int r = 0; r < 3; r++)
                 s->force[3 * (int64_t)m->phi_node[k] + r] += m->phi_value[k] * q[r];
     }
-    if (s->contact_count > 0) {
-        if (isnan(missile->contact_time))
-            missile->contact_time = s->time;
-        missile->release_time = s->time;
-    }
+    if (s->contact_count > 0)
+        sf_missile_touch(&s->missile, s->time);
 }
 
 void sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s) {
-    const double *e = m->missile.direction;
-    double dt_v = 0.5 * (s->dt_old + s->dt), pull = -m->missile.gravity * e[2];
-    contact_solve w = {.mobility = mobility_of(m), .shift = s->dt * dt_v};
-    w.free_step = m->motion_count > 0 ? sf_motion_displacement(m, s->time + s->dt) - s->missile.displacement
-                                      : s->dt * (s->missile.velocity + dt_v * pull);
+    double dt_v = 0.5 * (s->dt_old + s->dt);
+    contact_solve w = {.shift = s->dt * dt_v,
+                       .missile = sf_missile_predict(m, &s->missile, s->time, s->dt, s->dt_old)};
     bool all = use_room(m, op, s);
     predict_points(m, s, dt_v);
     if (all)
-        list_near(op, e, s);
-    int64_t active = find_active(m, op, s, w.free_step);
+        list_near(m, op, s);
+    int64_t active = find_active(m, op, s, &w);
     start_forces(m, s, active, &w);
     relax(m, op, s, active, &w);
     book_work(m, s);
     apply_forces(m, s, active);
-    s->missile.acceleration = m->motion_count > 0 ? 0 : pull + w.mobility * sf_dot3(s->missile.force, e);
+    sf_missile_accelerate(m, &s->missile);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/history.h"
 
-#include "core/mat3.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,15 +54,15 @@ static sf_status grow(sf_history *h, sf_error *err) {
 
 sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf_error *err) {
     const sf_ledger *l = &s->ledger;
-    double whole = (double)m->symmetry_factor, travel = s->missile.displacement - m->missile.gap;
+    double whole = sf_model_whole(m);
     const double row[SF_HISTORY_COLUMNS] = {
         s->time,
         s->dt,
-        m->motion_count > 0 ? 0 : -s->missile.acceleration, /* not -0 */
+        sf_missile_deceleration(m, &s->missile),
         s->missile.velocity_now,
         s->missile.displacement,
-        fmax(0, -m->missile.direction[2] * travel),
-        -whole * sf_dot3(s->missile.force, m->missile.direction),
+        fmax(0, sf_missile_depth(m, &s->missile)),
+        whole * sf_missile_contact_force(m, &s->missile),
         whole * s->missile.friction,
         whole * s->base_reaction[2],
         whole * l->kinetic_missile,

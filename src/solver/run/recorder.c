@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/recorder.h"
 
-#include "core/mat3.h"
 #include "io/members.h"
 #include "solver/ledger.h"
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -20,15 +20,14 @@ void sf_recorder_free(sf_recorder *r) {
 }
 
 double sf_recorder_measure(const sf_model *m, const sf_state *s) {
-    return m->motion_count > 0 ? -(double)m->symmetry_factor * sf_dot3(s->missile.force, m->missile.direction)
-                               : -s->missile.acceleration;
+    return sf_missile_is_driven(m) ? sf_model_whole(m) * sf_missile_contact_force(m, &s->missile)
+                                   : sf_missile_deceleration(m, &s->missile);
 }
 
 static void watch(sf_extremes *x, const sf_model *m, const sf_state *s) {
-    double whole = (double)m->symmetry_factor, internal = whole * sf_ledger_internal(&s->ledger);
-    double depth = -m->missile.direction[2] * (s->missile.displacement - m->missile.gap);
+    double whole = sf_model_whole(m), internal = whole * sf_ledger_internal(&s->ledger);
     x->largest_compression = fmax(x->largest_compression, s->largest_compression);
-    x->largest_indentation = fmax(x->largest_indentation, depth);
+    x->largest_indentation = fmax(x->largest_indentation, sf_missile_depth(m, &s->missile));
     x->largest_penetration = fmax(x->largest_penetration, s->penetration);
     x->largest_residual = fmax(x->largest_residual, s->constraint_residual);
     x->largest_momentum = fmax(x->largest_momentum, fabs(s->ledger.momentum_error));

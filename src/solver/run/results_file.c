@@ -2,6 +2,7 @@
 #include "solver/run/results_file.h"
 
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
+    int64_t driven = sf_missile_is_driven(m);
     const struct {
         sf_h5_info info;
         sf_h5_type type;
@@ -45,11 +46,11 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/density", "kg m-3", "density of the foam"}, SF_H5_F64, 0, {0}, &m->foam.density},
         {{"/model/missile_mass", "kg", "mass of the whole missile"}, SF_H5_F64, 0, {0}, &m->missile.mass},
         {{"/model/missile_speed", "m s-1", "speed at t = 0"}, SF_H5_F64, 0, {0}, &m->missile.speed},
-        {{"/model/motion_count", "1", "points of the missile's prescribed motion, 0: free missile"},
+        {{"/model/missile_driven", "1", "1: the missile had a prescribed motion, 0: it was free"},
          SF_H5_I64,
          0,
          {0},
-         &m->motion_count},
+         &driven},
         {{"/model/missile_direction", "1", "direction of motion"},
          SF_H5_F64,
          1,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/run.h"
 
+#include "core/units.h"
 #include "solver/step.h"
 #include <math.h>
 #include <stdlib.h>
@@ -33,13 +34,14 @@ static void print_progress(drop *d, bool last) {
         return;
     d->last_line = now;
     double done = (s->time - d->first_time) / (m->run.end_time - d->first_time), spent = now - d->start;
-    bool driven = m->motion_count > 0;
+    bool driven = sf_missile_is_driven(m);
     fprintf(run->log,
             "%st %7.3f / %.3g ms  step %6lld  dt %6.2f us  %s %6.1f %s  indentation %5.1f mm  compression "
             "%.3f  energy %+.3f %%",
             run->terminal ? "\r" : "", 1e3 * s->time, 1e3 * m->run.end_time, (long long)s->step, 1e6 * s->dt,
-            driven ? "force" : "a", sf_recorder_measure(m, s) / (driven ? 1 : 9.80665), driven ? "N" : "g",
-            1e3 * (s->missile.displacement - m->missile.gap), s->largest_compression, 100 * s->ledger.error);
+            driven ? "force" : "a", sf_recorder_measure(m, s) / (driven ? 1 : SF_STANDARD_GRAVITY),
+            driven ? "N" : "g", 1e3 * sf_missile_depth(m, &s->missile), s->largest_compression,
+            100 * s->ledger.error);
     if (done > 0 && !last)
         fprintf(run->log, "  left <= %.0f s  ", spent * (1 - done) / done);
     if (!run->terminal || last)
@@ -72,8 +74,8 @@ static bool checkpoint_is_due(const drop *d) {
 
 /* Has the missile left the pad for good? A driven one may come back. */
 static bool has_rebounded(const sf_model *m, const sf_state *s) {
-    return m->motion_count == 0 && m->run.stop_after_rebound && s->missile.velocity < 0 &&
-           s->contact_count == 0 && s->time - s->missile.release_time > REBOUND_WAIT;
+    return m->run.stop_after_rebound && sf_missile_is_leaving(m, &s->missile) && s->contact_count == 0 &&
+           s->time - s->missile.release_time > REBOUND_WAIT;
 }
 
 /* A new step: forces, a row of history, the fields at the peak and a frame if they are due. */

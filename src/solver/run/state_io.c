@@ -17,7 +17,7 @@ static const sf_member members[] = {
     NUMBER(dt, "s"),
     NUMBER(dt_old, "s"),
     NUMBER(tightness, "1"),
-    NUMBER(missile_old, "m"),
+    {"missile_old", "m", SF_H5_F64, 1, offsetof(sf_state, missile.displacement_old)},
     COUNT(contact_count),
     NUMBER(penetration, "m"),
     COUNT(contact_unsettled),

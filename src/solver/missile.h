@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rigid missile: the one owner of its pose, velocity and mass, of what drives it, and of the forces on
+ * it. Contact, ledger, history, frames and run ask here, with the point in question, and know nothing of its
+ * degrees of freedom.
+ *
+ * At present there is one: a translation along a fixed unit vector, the direction of the missile card. A free
+ * missile is pulled by gravity and braked by the pad. A driven one (sf_missile_is_driven, core/motion.h)
+ * follows its prescribed motion: zero mobility, that is infinite mass.
+ *
+ * Forces, masses, energies and momenta are those of the modelled part, 1/2 or 1/4 of the missile under
+ * symmetry; sf_model_whole leads to the whole. Points and vectors are in the geometry's frame. A scalar
+ * "along" is the component in the direction of the missile card. */
+#ifndef SF_SOLVER_MISSILE_H
+#define SF_SOLVER_MISSILE_H
+
+#include "core/model.h"
+#include "solver/contact/missile_surface.h"
+
+typedef struct sf_missile {
+    double displacement;     /* m, along, since t = 0 */
+    double displacement_old; /* m, one step ago */
+    double velocity;         /* m s-1, along, at the half step before `time` until the step ends */
+    double velocity_now;     /* m s-1, along, at `time` */
+    double acceleration;     /* m s-2, along: negative while it is braked; 0 of a driven one */
+    double force[3];         /* N, of the pad on the missile */
+    double friction;         /* N, its tangential part against the direction */
+    double contact_time;     /* s, first contact; NAN before */
+    double release_time;     /* s, last time with contact; NAN before */
+} sf_missile;
+
+/* At t = 0. */
+void sf_missile_begin(const sf_model *model, sf_missile *missile);
+
+/* ---- pose and velocity ---- */
+
+/* Translation (m) since t = 0. */
+void sf_missile_translation(const sf_model *model, const sf_missile *missile, double out[3]);
+/* Velocity (m s-1), at the present time, of the missile's material point at x. */
+void sf_missile_velocity_at(const sf_model *model, const sf_missile *missile, const double x[3],
+                            double out[3]);
+/* Displacement (m), in the last step, of the missile's material point at x. */
+void sf_missile_motion_at(const sf_model *model, const sf_missile *missile, const double x[3], double out[3]);
+/* Bound (m s-1) on the speed of all its points at the half step. */
+double sf_missile_fastest(const sf_missile *missile);
+/* sf_missile_surface_near and sf_missile_surface_gap at the present pose; x and normal in the geometry's
+ * frame. */
+bool sf_missile_near(const sf_model *model, const sf_missile *missile, const sf_missile_surface *surface,
+                     const double x[3], double margin);
+bool sf_missile_gap(const sf_model *model, const sf_missile *missile, const sf_missile_surface *surface,
+                    const double x[3], double *gap, double normal[3]);
+
+/* ---- its part in one contact solve ---- */
+
+/* How the missile moves in the next step under the contact forces that are found so far. */
+typedef struct sf_missile_response {
+    const double *direction; /* [3], of the model */
+    double mobility;         /* kg-1; 0 of a driven missile */
+    double travel;           /* m, along, in the next step without contact */
+    double load;             /* N, along, of the missile on the pad */
+} sf_missile_response;
+
+/* The response without contact forces, in the step from `time` to time + dt (s); dt_old (s): of the step
+ * before. */
+sf_missile_response sf_missile_predict(const sf_model *model, const sf_missile *missile, double time,
+                                       double dt, double dt_old);
+/* Displacement (m), in the next step without contact forces, of the missile's material point at x. */
+void sf_missile_free_motion(const sf_missile_response *response, const double x[3], double out[3]);
+/* sf_missile_surface_gap, at the pose that ends the next step without contact forces, of a point that moves
+ * by `step` (m) from x in it. */
+bool sf_missile_gap_ahead(const sf_model *model, const sf_missile *missile,
+                          const sf_missile_response *response, const sf_missile_surface *surface,
+                          const double x[3], const double step[3], double *gap, double normal[3]);
+/* Takes a force (N) of the missile on the pad at x into the response; replaces `old` there by `force`. */
+void sf_missile_load(sf_missile_response *response, const double x[3], const double force[3]);
+void sf_missile_reload(sf_missile_response *response, const double x[3], const double old[3],
+                       const double force[3]);
+/* Acceleration (m s-2) that the forces taken so far give the missile's material point at x, against which
+ * they act: positive along a force on the pad. */
+void sf_missile_recoil(const sf_missile_response *response, const double x[3], double out[3]);
+/* Acceleration along the unit vector n, of the point at x, for each newton along n there (kg-1). */
+double sf_missile_mobility(const sf_missile_response *response, const double x[3], const double n[3]);
+
+/* ---- forces and the step ---- */
+
+/* Takes all forces off. */
+void sf_missile_clear(sf_missile *missile);
+/* Adds a force (N) of the pad on the missile at x; n: the missile's unit normal there, to which friction is
+ * tangential. */
+void sf_missile_apply(const sf_model *model, sf_missile *missile, const double x[3], const double n[3],
+                      const double force[3]);
+/* Notes that there is contact at `time`. */
+void sf_missile_touch(sf_missile *missile, double time);
+/* Acceleration by gravity and the forces applied. */
+void sf_missile_accelerate(const sf_model *model, sf_missile *missile);
+/* The velocities at `time` and at the half step after it; dt and dt_old as above. */
+void sf_missile_kick(const sf_model *model, sf_missile *missile, double time, double dt, double dt_old);
+/* The pose at `time`, dt after the present one, with the velocity that sf_missile_kick has set. */
+void sf_missile_drift(const sf_model *model, sf_missile *missile, double time, double dt);
+
+/* ---- figures ---- */
+
+double sf_missile_mass(const sf_model *model);   /* kg; 0 of a driven one, which has none to be told */
+double sf_missile_weight(const sf_model *model); /* N, along */
+double sf_missile_along(const sf_model *model, const double vector[3]);
+/* Momentum along (kg m s-1), at the half step. */
+double sf_missile_momentum(const sf_model *model, const sf_missile *missile);
+/* Kinetic energy (J) at the present time, after sf_missile_kick; dt_v (s): the distance of the half steps. */
+double sf_missile_kinetic(const sf_model *model, const sf_missile *missile, double dt_v);
+/* Work (J) of gravity since t = 0. */
+double sf_missile_gravity_work(const sf_model *model, const sf_missile *missile);
+/* Work (J), in the last step, of a force (N) at the missile's material point at x. */
+double sf_missile_work(const sf_model *model, const sf_missile *missile, const double x[3],
+                       const double force[3]);
+/* Deceleration (m s-2): the acceleration against the direction. */
+double sf_missile_deceleration(const sf_model *model, const sf_missile *missile);
+/* Force of the pad (N) against the direction. */
+double sf_missile_contact_force(const sf_model *model, const sf_missile *missile);
+/* Depth (m) of the first touching point below the undeformed top; negative before contact. */
+double sf_missile_depth(const sf_model *model, const sf_missile *missile);
+/* Is it free, and on its way away from the pad? */
+bool sf_missile_is_leaving(const sf_model *model, const sf_missile *missile);
+
+#endif
