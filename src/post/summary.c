@@ -71,7 +71,7 @@ static void put_run(sf_json *json, const sf_summary *s) {
     sf_json_bool(json, "prescribed_motion", s->figures->driven);
     sf_json_bool(json, "rebounded", s->figures->rebounded);
     sf_json_number(json, "contact_time_ms", r->contact_time * 1e3);
-    sf_json_number(json, "end_time_ms", r->history[SF_HISTORY_TIME][r->history_rows - 1] * 1e3);
+    sf_json_number(json, "end_time_ms", r->history.time[r->history.rows - 1] * 1e3);
     sf_json_number(json, "thickness_mm", r->thickness * 1e3);
     sf_json_number(json, "missile_mass_kg", s->figures->driven ? NAN : r->missile_mass);
     sf_json_number(json, "density_kg_m3", r->density);
@@ -80,7 +80,7 @@ static void put_run(sf_json *json, const sf_summary *s) {
     sf_json_integer(json, "cells", r->cell_count);
     sf_json_integer(json, "interactions", r->interactions);
     sf_json_integer(json, "frames", r->frame_count);
-    sf_json_integer(json, "steps", r->has_summary ? r->steps : r->history_rows - 1);
+    sf_json_integer(json, "steps", r->has_summary ? r->steps : r->history.rows - 1);
     sf_json_number(json, "wall_s", r->wall_time);
     sf_json_integer(json, "threads", r->threads);
     sf_json_open(json, "notes", '[');
