@@ -15,7 +15,7 @@
     X(VELOCITY, velocity, 3, "m s-1", "velocity_m_s", "time derivative of u_h, half a step later", "") BETWEEN         \
     X(CAUCHY_STRESS, cauchy_stress, 9, "Pa", "cauchy_stress_Pa",                                                       \
       "Cauchy stress xx xy xz yx yy yz zx zy zz of the smoothing domain", "") BETWEEN                                  \
-    X(VON_MISES, von_mises, 1, "Pa", "von_mises_Pa", "von Mises stress", "of the Cauchy stress") BETWEEN               \
+    X(VON_MISES, von_mises, 1, "Pa", "von_mises_Pa", "von Mises stress", "") BETWEEN               \
     X(PRINCIPAL_STRETCHES, principal_stretches, 3, "1", "principal_stretches_1",                                       \
       "principal stretches, ascending", "") BETWEEN                                                                    \
     X(LARGEST_COMPRESSION, largest_compression, 1, "1", "largest_compression_1",                                       \

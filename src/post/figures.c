@@ -4,6 +4,22 @@
 #include <math.h>
 #include <string.h>
 
+const sf_figure *sf_figure_list(size_t *count) {
+#define IN_FIGURES(member) false, offsetof(sf_figures, member)
+#define IN_RESULTS(member) true, offsetof(sf_results, member)
+#define PLACE_NUMBER(member) SF_FIGURE_DOUBLE, IN_FIGURES(member)
+#define PLACE_INNER(member) SF_FIGURE_DOUBLE, IN_FIGURES(member)
+#define PLACE_COUNT(member) SF_FIGURE_INTEGER, IN_FIGURES(member)
+#define PLACE_FLAG(member) SF_FIGURE_BOOL, IN_FIGURES(member)
+#define PLACE_FACT(member) SF_FIGURE_DOUBLE, IN_RESULTS(member)
+#define PLACE_FACT_COUNT(member) SF_FIGURE_INTEGER, IN_RESULTS(member)
+#define PLACE_FACT_TEXT(member) SF_FIGURE_TEXT, IN_RESULTS(member)
+#define FIGURE(kind, member, key, factor, meaning) {key, PLACE_##kind(member), factor, meaning},
+    static const sf_figure list[] = {SF_FIGURES(FIGURE)};
+    *count = sizeof list / sizeof list[0];
+    return list;
+}
+
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
     sf_series uniform = {0};
@@ -54,6 +70,7 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
     f->max_mean_strain = f->max_indentation / r->thickness;
     f->max_local_strain = h->largest_compression[strained];
     f->max_local_strain_time = h->time[strained];
+    f->local_strain_excess = f->max_local_strain - f->max_mean_strain;
     f->max_penetration = sf_history_largest(h, h->penetration);
     f->smallest_jacobian = h->smallest_jacobian[0];
     for (int64_t i = 1; i < h->rows; i++)
@@ -79,24 +96,32 @@ static void compute_compression(const sf_results *r, sf_figures *f) {
         f->returned_energy_fraction = (f->work - work[last]) / f->work;
 }
 
+/* Every figure that is not computed is undefined. */
 static void set_undefined(sf_figures *f) {
-    const sf_hic no_hic = {NAN, NAN, NAN};
-    f->injury = (sf_injury){NAN, NAN, no_hic, no_hic, no_hic, NAN, NAN, NAN};
-    f->injury_raw = f->injury;
-    f->v_rebound = f->rebound_time = f->absorbed_energy = f->absorbed_energy_fraction = NAN;
-    f->max_indentation = f->max_indentation_time = f->max_mean_strain = NAN;
-    f->max_local_strain = f->max_local_strain_time = f->smallest_jacobian = f->max_penetration = NAN;
-    f->internal_energy_peak = f->internal_energy_peak_time = NAN;
-    f->stabilisation_energy_fraction = f->contact_energy_fraction = NAN;
-    f->peak_force = f->peak_force_time = f->peak_stress = f->work = f->returned_energy_fraction = NAN;
+    size_t count;
+    const sf_figure *figure = sf_figure_list(&count);
+    for (size_t k = 0; k < count; k++)
+        if (!figure[k].fact && figure[k].type == SF_FIGURE_DOUBLE)
+            *(double *)((char *)f + figure[k].offset) = NAN;
+}
+
+/* What is known of every run. */
+static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
+    f->cfc = cfc;
+    f->touched = sf_results_touched(r);
+    f->driven = r->motion_count > 0;
+    f->v0 = f->driven ? NAN : r->missile_speed;
+    f->missile_mass = f->driven ? NAN : r->missile_mass;
+    f->area = mean_section(r);
+    f->end_time = r->history.time[r->history.rows - 1];
+    f->steps = r->has_summary ? r->steps : r->history.rows - 1;
 }
 
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *f, sf_error *err) {
-    *f = (sf_figures){.cfc = cfc, .touched = sf_results_touched(results), .v0 = results->missile_speed};
     const sf_history *h = &results->history;
-    f->driven = results->motion_count > 0;
-    f->area = mean_section(results);
+    *f = (sf_figures){0};
     set_undefined(f);
+    take_facts(results, cfc, f);
     if (compute_curves(results, f, err) != SF_OK)
         goto done;
     f->energy_error = sf_history_largest(h, h->energy_error);
