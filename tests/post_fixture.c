@@ -107,60 +107,44 @@ static sf_status put_model(sf_h5 *file, const cloud *c, sf_error *err) {
     return put(file, "/model/missile_direction", SF_H5_F64, 3, 1, direction, err);
 }
 
-/* Value of a column at `time`; what is not set here is zero. */
-static double history_value(sf_history_column column, double time, bool untouched) {
-    double peak = untouched ? 0 : FIXTURE_PEAK_G * SF_STANDARD_GRAVITY;
+/* Writes row i of all columns but the time, which is there; values that are not set here are zero. */
+static void fill_row(sf_history *h, int64_t i, bool untouched) {
+    double time = h->time[i], peak = untouched ? 0 : FIXTURE_PEAK_G * SF_STANDARD_GRAVITY;
     double x = M_PI * fmin(time / FIXTURE_DURATION, 1), scale = FIXTURE_DURATION / M_PI;
-    bool contact = !untouched && time > 0 && time < FIXTURE_DURATION;
-    switch (column) {
-    case SF_HISTORY_TIME:
-        return time;
-    case SF_HISTORY_ACCELERATION:
-        return contact ? peak * sin(x) : 0;
-    case SF_HISTORY_VELOCITY:
-        return FIXTURE_SPEED - peak * scale * (1 - cos(x));
-    case SF_HISTORY_INDENTATION:
-        return untouched ? -0.01 : 0.03 * sin(x);
-    case SF_HISTORY_ENERGY_STORED:
-        return contact ? 80 * sin(x) : 0;
-    case SF_HISTORY_ENERGY_VISCOUS:
-        return contact ? 16 * sin(x) : 0;
-    case SF_HISTORY_ENERGY_STABILISATION:
-        return contact ? 4 * sin(x) : 0;
-    case SF_HISTORY_ENERGY_CONTACT:
-        return contact ? 0.5 * sin(x) : 0;
-    case SF_HISTORY_ENERGY_ERROR:
-        return -0.002 * sin(x);
-    case SF_HISTORY_LARGEST_COMPRESSION:
-        return untouched ? 0 : 0.7 * sin(x);
-    case SF_HISTORY_SMALLEST_JACOBIAN:
-        return 1 - 0.5 * sin(x);
-    case SF_HISTORY_CONTACT_NODES:
-        return contact ? 9 : 0;
-    default:
-        return 0;
-    }
+    double contact = !untouched && time > 0 && time < FIXTURE_DURATION ? 1 : 0;
+    h->acceleration[i] = contact * peak * sin(x);
+    h->velocity[i] = FIXTURE_SPEED - peak * scale * (1 - cos(x));
+    h->indentation[i] = untouched ? -0.01 : 0.03 * sin(x);
+    h->energy_stored[i] = contact * 80 * sin(x);
+    h->energy_viscous[i] = contact * 16 * sin(x);
+    h->energy_stabilisation[i] = contact * 4 * sin(x);
+    h->energy_contact[i] = contact * 0.5 * sin(x);
+    h->energy_error[i] = -0.002 * sin(x);
+    h->largest_compression[i] = untouched ? 0 : 0.7 * sin(x);
+    h->smallest_jacobian[i] = 1 - 0.5 * sin(x);
+    h->contact_nodes[i] = contact * 9;
 }
 
 static sf_status put_history(sf_h5 *file, const fixture_options *o, sf_error *err) {
     double end = o->end_time > 0 ? o->end_time : FIXTURE_DURATION + 2e-3;
     int64_t rows = (int64_t)(end / 1e-5);
-    double *column = sf_alloc(err, (unsigned long)rows, sizeof *column, "a column");
-    if (!column)
-        return err->status;
-    for (int c = 0; c < SF_HISTORY_COLUMNS; c++) {
-        char path[64];
-        for (int64_t i = 0; i < rows; i++) { /* steps that grow and shrink by a fifth */
-            double time =
-                end * (double)i / (double)(rows - 1) + (i > 0 && i < rows - 1 ? 1e-6 * sin((double)i) : 0);
-            column[i] = history_value((sf_history_column)c, time, o->untouched);
-        }
-        if (c == SF_HISTORY_ACCELERATION && o->nan_row > 0)
-            column[o->nan_row] = NAN;
-        snprintf(path, sizeof path, "/history/%s", sf_history_name((sf_history_column)c));
-        put(file, path, SF_H5_F64, rows - (c == SF_HISTORY_VELOCITY ? o->lost_rows : 0), 1, column, err);
+    sf_history h = {0};
+    for (int c = 0; c < SF_HISTORY_COUNT; c++)
+        h.column[c] = sf_alloc(err, (unsigned long)rows, sizeof *h.column[c], "a column");
+    for (int64_t i = 0; i < rows && err->status == SF_OK; i++) { /* steps that grow and shrink by a fifth */
+        h.time[i] =
+            end * (double)i / (double)(rows - 1) + (i > 0 && i < rows - 1 ? 1e-6 * sin((double)i) : 0);
+        fill_row(&h, i, o->untouched);
     }
-    free(column);
+    if (err->status == SF_OK && o->nan_row > 0)
+        h.acceleration[o->nan_row] = NAN;
+    for (int c = 0; c < SF_HISTORY_COUNT && err->status == SF_OK; c++) {
+        char path[64];
+        int64_t lost = h.column[c] == h.velocity ? o->lost_rows : 0;
+        snprintf(path, sizeof path, "/history/%s", sf_history_column_get(c)->name);
+        put(file, path, SF_H5_F64, rows - lost, 1, h.column[c], err);
+    }
+    sf_history_free(&h);
     return err->status;
 }
 

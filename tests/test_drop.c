@@ -4,6 +4,7 @@
 #include "model_fixture.h"
 
 #include "core/curve.h"
+#include "core/hash.h"
 #include "solver/ledger.h"
 #include "solver/step.h"
 #include <math.h>
@@ -36,13 +37,6 @@ typedef struct drop {
     uint64_t hash; /* of the histories of a, the ledger and the base's force, and of d, v and F at the end */
 } drop;
 
-static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) {
-    const unsigned char *byte = data;
-    for (size_t k = 0; k < size; k++) /* FNV-1a */
-        hash = (hash ^ byte[k]) * 0x100000001b3ULL;
-    return hash;
-}
-
 static void watch(const fixture *f, drop *out) {
     const sf_state *s = &f->state;
     double internal = (double)f->model.symmetry_factor * sf_ledger_internal(&s->ledger);
@@ -57,9 +51,9 @@ static void watch(const fixture *f, drop *out) {
         out->stabilisation_share = (double)f->model.symmetry_factor * s->ledger.stabilisation / internal;
         out->contact_share = (double)f->model.symmetry_factor * s->ledger.contact / internal;
     }
-    out->hash = hash_bytes(out->hash, &s->missile.acceleration, sizeof s->missile.acceleration);
-    out->hash = hash_bytes(out->hash, &s->ledger, sizeof s->ledger);
-    out->hash = hash_bytes(out->hash, s->base_reaction, sizeof s->base_reaction);
+    out->hash = sf_hash_bytes(out->hash, &s->missile.acceleration, sizeof s->missile.acceleration);
+    out->hash = sf_hash_bytes(out->hash, &s->ledger, sizeof s->ledger);
+    out->hash = sf_hash_bytes(out->hash, s->base_reaction, sizeof s->base_reaction);
 }
 
 /* Steps until 1 ms after the missile has left, or until `end`. */
@@ -67,7 +61,7 @@ static void run(fixture *f, double end, drop *out) {
     const sf_model *m = &f->model;
     sf_state *s = &f->state;
     size_t n = (size_t)m->node_count;
-    *out = (drop){.thickness = m->thickness, .speed = m->missile.speed, .hash = 0xcbf29ce484222325ULL};
+    *out = (drop){.thickness = m->thickness, .speed = m->missile.speed, .hash = SF_HASH_START};
     fixture_start(f);
     for (;;) {
         fixture_step(f);
@@ -84,9 +78,9 @@ static void run(fixture *f, double end, drop *out) {
     out->ledger = s->ledger;
     out->nodes = m->node_count;
     out->steps = s->step;
-    out->hash = hash_bytes(out->hash, s->d, 3 * n * sizeof *s->d);
-    out->hash = hash_bytes(out->hash, s->v, 3 * n * sizeof *s->v);
-    out->hash = hash_bytes(out->hash, s->f, 9 * n * sizeof *s->f);
+    out->hash = sf_hash_bytes(out->hash, s->d, 3 * n * sizeof *s->d);
+    out->hash = sf_hash_bytes(out->hash, s->v, 3 * n * sizeof *s->v);
+    out->hash = sf_hash_bytes(out->hash, s->f, 9 * n * sizeof *s->f);
 }
 
 static void build(loss losses, const char *const *overrides, fixture *f) {

@@ -592,7 +592,7 @@ static void failed_run_leaves_its_state(void **state) {
     assert_int_equal(held, step - 1);
     assert_true(held_time < time);
     assert_true(fabs(last_frame(p, "fast_results.h5", &r) / time - 1) < 1e-5);
-    assert_int_equal(r.history_rows, step); /* all that held */
+    assert_int_equal(r.history.rows, step); /* all that held */
     assert_true(strncmp(r.status, sentence + 16, 100) == 0);
     sf_results_close(&r);
 

@@ -3,6 +3,7 @@
  * value and error bar; and the bounds that the drops must keep. */
 #include "drop.h"
 #include "study.h"
+#include "core/good_run.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -58,21 +59,23 @@ static fit extrapolate(const double *y) {
 
 static void check_bounds(sf_study *study, const char *name, const sf_drop *drop) {
     const sf_drop *d = &drop[REFERENCE];
+    const sf_good_run *good = sf_good_run_limits();
     double v0 = atof(strstr(name, "-v") + 2);
     sf_study_check(study, 100 * fabs(drop[0].a_max_g / d->a_max_g - 1), -INFINITY, 3,
                    "%s: a_max, 10 against 5 mm (%%)", name);
     sf_study_check(study, 100 * fabs(drop[0].hic / d->hic - 1), -INFINITY, 4, "%s: HIC, 10 against 5 mm (%%)",
                    name);
-    sf_study_check(study, 100 * fabs(d->a_max_raw_g / d->a_max_g - 1), -INFINITY, 3,
+    sf_study_check(study, 100 * fabs(d->a_max_raw_g / d->a_max_g - 1), -INFINITY, 100 * good->filter,
                    "%s: raw against CFC 1000 (%%)", name);
-    sf_study_check(study, d->energy_error, -INFINITY, 0.01, "%s: energy error", name);
-    sf_study_check(study, d->stabilisation_energy_fraction, -INFINITY, 0.05, "%s: stabilisation energy share",
+    sf_study_check(study, d->energy_error, -INFINITY, good->energy_error, "%s: energy error", name);
+    sf_study_check(study, d->stabilisation_energy_fraction, -INFINITY, good->stabilisation,
+                   "%s: stabilisation energy share", name);
+    sf_study_check(study, d->contact_energy_fraction, -INFINITY, good->contact, "%s: contact energy share",
                    name);
-    sf_study_check(study, d->contact_energy_fraction, -INFINITY, 0.01, "%s: contact energy share", name);
     sf_study_check(study, d->momentum_error, -INFINITY, 1e-6, "%s: momentum against impulse", name);
     sf_study_check(study, d->constraint_residual_m_s / v0, -INFINITY, 1e-10,
                    "%s: constraint residual over v0", name);
-    sf_study_check(study, d->local_strain_excess, -INFINITY, 0.12,
+    sf_study_check(study, d->local_strain_excess, -INFINITY, good->local_strain_excess,
                    "%s: local compression beyond indentation/thickness", name);
 }
 

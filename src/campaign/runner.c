@@ -3,6 +3,7 @@
 
 #include "post/figures.h"
 #include "case/case.h"
+#include "core/hash.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -44,15 +45,6 @@ static sf_status find_program(const char *name, char *path, sf_error *err) {
 
 /* ---- what makes two drops the same ---- */
 
-static const uint64_t FNV_OFFSET = 14695981039346656037u, FNV_PRIME = 1099511628211u;
-
-static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) {
-    const unsigned char *byte = data;
-    for (size_t k = 0; k < size; k++)
-        hash = (hash ^ byte[k]) * FNV_PRIME;
-    return hash;
-}
-
 static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     char block[4096];
     size_t size;
@@ -60,7 +52,7 @@ static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     if (!file)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be read: %s", path, strerror(errno));
     while ((size = fread(block, 1, sizeof block, file)) > 0)
-        *hash = hash_bytes(*hash, block, size);
+        *hash = sf_hash_bytes(*hash, block, size);
     fclose(file);
     return SF_OK;
 }
@@ -74,7 +66,7 @@ static uint64_t hash_values(uint64_t hash, const char *values) {
         for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
             skipped += strncmp(values, files[k], strlen(files[k])) == 0;
         if (!skipped)
-            hash = hash_bytes(hash, values, length);
+            hash = sf_hash_bytes(hash, values, length);
         values += length + (values[length] == '\n');
     }
     return hash;
@@ -84,12 +76,12 @@ static sf_status hash_case(const sf_case *c, uint64_t *hash, sf_error *err) {
     const sf_foam_card *foam = &c->foam;
     size_t points = (size_t)foam->curve_points * sizeof *foam->curve_strain,
            curves = (size_t)foam->curve_count * sizeof *foam->curve_rate, motion = sf_case_motion_bytes(c);
-    *hash = hash_values(FNV_OFFSET, c->parameters);
-    *hash = hash_bytes(*hash, foam->curve_strain, points);
-    *hash = hash_bytes(*hash, foam->curve_stress, points);
-    *hash = hash_bytes(*hash, foam->curve_rate, curves);
-    *hash = hash_bytes(*hash, c->motion_time, motion);
-    *hash = hash_bytes(*hash, c->motion_displacement, motion);
+    *hash = hash_values(SF_HASH_START, c->parameters);
+    *hash = sf_hash_bytes(*hash, foam->curve_strain, points);
+    *hash = sf_hash_bytes(*hash, foam->curve_stress, points);
+    *hash = sf_hash_bytes(*hash, foam->curve_rate, curves);
+    *hash = sf_hash_bytes(*hash, c->motion_time, motion);
+    *hash = sf_hash_bytes(*hash, c->motion_displacement, motion);
     if (hash_file(hash, c->pad.path, err) != SF_OK ||
         (c->missile.path && hash_file(hash, c->missile.path, err) != SF_OK))
         return err->status;

@@ -6,9 +6,11 @@
 
 #define AT(member) .offset = offsetof(sf_case, member)
 #define POSITIVE .low = 0.0, .low_open = true
-#define ALL_FIELDS                                                                                           \
-    "displacement|velocity|cauchy_stress|von_mises|principal_stretches|largest_compression|energy_density|"  \
-    "hysteresis_factor"
+/* Frame fields as words and as the default, "[\"displacement\", ...]". */
+#define WORD(constant, name, ...) #name
+#define QUOTED(constant, name, ...) "\"" #name "\""
+#define FIELD_WORDS SF_FRAME_FIELD_LIST(WORD, "|")
+#define ALL_FIELDS "[" SF_FRAME_FIELD_LIST(QUOTED, ", ") "]"
 
 /* A tensile strength that no foam reaches: finite, so that it can be stored and compared. */
 #define NO_CUTOFF 1e30
@@ -120,9 +122,8 @@ static const sf_key keys[] = {
      "time between frames; there are also frames at the start and at the end; at most 100000 of them", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},
     {"output", "times", SF_KEY_TIMES, "[]", AT(frame_time),
      "times of further frames", .quantity = SF_TIME, .count_offset = offsetof(sf_case, frame_time_count)},
-    {"output", "fields", SF_KEY_FIELDS,
-     "[\"displacement\", \"velocity\", \"cauchy_stress\", \"von_mises\", \"principal_stretches\", \"largest_compression\", \"energy_density\", \"hysteresis_factor\"]",
-     AT(run.output_fields), "fields of a frame (default: all)", .words = ALL_FIELDS},
+    {"output", "fields", SF_KEY_FIELDS, ALL_FIELDS, AT(run.output_fields),
+     "fields of a frame (default: all)", .words = FIELD_WORDS},
 };
 /* clang-format on */
 

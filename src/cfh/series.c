@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cfh/series.h"
 
+#include "core/good_run.h"
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
-
-static const double GOOD_ENERGY_ERROR = 0.01;
 
 __attribute__((format(printf, 2, 3))) static void add_note(sf_cfh_point *point, const char *format, ...) {
     size_t used = strlen(point->note);
@@ -28,7 +27,7 @@ static void take_result(const sf_runner_result *r, double table_end, sf_cfh_poin
     p->energy_error = r->energy_error;
     if (isnan(r->v_rebound))
         add_note(p, "contact had not ended at the end of the run: a_max and HIC may be too low");
-    if (r->energy_error > GOOD_ENERGY_ERROR)
+    if (r->energy_error > sf_good_run_limits()->energy_error)
         add_note(p, "energy error %.1f %%: do not trust these figures", 100 * r->energy_error);
     if (r->max_local_strain > table_end + SF_CFH_STRAIN_MARGIN)
         add_note(p, "largest local strain %.3f, the compression table ends at %.3f: extrapolated curve",

@@ -10,6 +10,7 @@
 #define SF_CORE_MODEL_H
 
 #include "core/error.h"
+#include "core/frame_field.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -27,19 +28,6 @@ enum {
     SF_SHAPE_SPHERE = 0,
     SF_SHAPE_SURFACE = 1
 }; /* contact with an exact sphere cap, or with the triangles */
-
-/* Bits of output_fields. */
-enum {
-    SF_FIELD_DISPLACEMENT = 1 << 0,
-    SF_FIELD_VELOCITY = 1 << 1,
-    SF_FIELD_CAUCHY_STRESS = 1 << 2,
-    SF_FIELD_VON_MISES = 1 << 3,
-    SF_FIELD_PRINCIPAL_STRETCHES = 1 << 4,
-    SF_FIELD_LARGEST_COMPRESSION = 1 << 5,
-    SF_FIELD_ENERGY_DENSITY = 1 << 6,
-    SF_FIELD_HYSTERESIS_FACTOR = 1 << 7,
-    SF_FIELD_ALL = (1 << 8) - 1,
-};
 
 /* The foam card (docs/theory.md, section "Foam"). Compression curves: `curve_count` of them, in ascending
  * strain rate; points of curve k are [curve_ptr[k], curve_ptr[k+1]). Strain and stress are engineering,

@@ -11,7 +11,7 @@ sf_status sf_members_write(sf_h5 *file, const char *group, const sf_member *memb
         char path[128];
         int64_t items = member[k].count;
         snprintf(path, sizeof path, "%s/%s", group, member[k].name);
-        sf_h5_info info = {path, member[k].units, member[k].name};
+        sf_h5_info info = {path, member[k].units, member[k].description};
         sf_h5_write(file, &info, member[k].type, 1, &items, (const char *)base + member[k].offset, err);
     }
     return err->status;

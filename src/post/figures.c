@@ -5,33 +5,30 @@
 #include <math.h>
 #include <string.h>
 
-static double largest_magnitude(const sf_results *r, sf_history_column column) {
-    double largest = 0;
-    for (int64_t i = 0; i < r->history_rows; i++)
-        largest = fmax(largest, fabs(r->history[column][i]));
-    return largest;
-}
-
-static int64_t row_of_largest(const sf_results *r, sf_history_column column) {
-    int64_t row = 0;
-    for (int64_t i = 1; i < r->history_rows; i++)
-        if (r->history[column][i] > r->history[column][row])
-            row = i;
-    return row;
-}
-
-static double internal_energy(const sf_results *r, int64_t i) {
-    return r->history[SF_HISTORY_ENERGY_STORED][i] + r->history[SF_HISTORY_ENERGY_HYSTERESIS][i] +
-           r->history[SF_HISTORY_ENERGY_VISCOUS][i] + r->history[SF_HISTORY_ENERGY_STABILISATION][i];
+const sf_figure *sf_figure_list(size_t *count) {
+#define IN_FIGURES(member) false, offsetof(sf_figures, member)
+#define IN_RESULTS(member) true, offsetof(sf_results, member)
+#define PLACE_NUMBER(member) SF_FIGURE_DOUBLE, IN_FIGURES(member)
+#define PLACE_INNER(member) SF_FIGURE_DOUBLE, IN_FIGURES(member)
+#define PLACE_COUNT(member) SF_FIGURE_INTEGER, IN_FIGURES(member)
+#define PLACE_FLAG(member) SF_FIGURE_BOOL, IN_FIGURES(member)
+#define PLACE_FACT(member) SF_FIGURE_DOUBLE, IN_RESULTS(member)
+#define PLACE_FACT_COUNT(member) SF_FIGURE_INTEGER, IN_RESULTS(member)
+#define PLACE_FACT_TEXT(member) SF_FIGURE_TEXT, IN_RESULTS(member)
+#define FIGURE(kind, member, key, factor, meaning) {key, PLACE_##kind(member), factor, meaning},
+    static const sf_figure list[] = {SF_FIGURES(FIGURE)};
+    *count = sizeof list / sizeof list[0];
+    return list;
 }
 
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
+    const sf_history *h = &r->history;
     sf_series uniform = {0};
-    if (sf_series_create(r->history_rows, &f->raw, err) != SF_OK)
+    if (sf_series_create(h->rows, &f->raw, err) != SF_OK)
         return err->status;
-    for (int64_t i = 0; i < r->history_rows; i++) {
-        f->raw.time[i] = r->history[SF_HISTORY_TIME][i];
-        f->raw.value[i] = r->history[SF_HISTORY_ACCELERATION][i] / SF_STANDARD_GRAVITY;
+    for (int64_t i = 0; i < h->rows; i++) {
+        f->raw.time[i] = h->time[i];
+        f->raw.value[i] = h->acceleration[i] / SF_STANDARD_GRAVITY;
     }
     f->rate = sf_signal_rate(&f->raw);
     if (sf_signal_resample(&f->raw, f->rate, &uniform, err) == SF_OK)
@@ -41,82 +38,89 @@ static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *er
 }
 
 static void compute_energies(const sf_results *r, sf_figures *f) {
-    int64_t peak = 0;
-    for (int64_t i = 1; i < r->history_rows; i++)
-        if (internal_energy(r, i) > internal_energy(r, peak))
-            peak = i;
-    f->internal_energy_peak = internal_energy(r, peak);
-    f->internal_energy_peak_time = r->history[SF_HISTORY_TIME][peak];
-    if (f->internal_energy_peak > 0) {
-        f->stabilisation_energy_fraction =
-            r->history[SF_HISTORY_ENERGY_STABILISATION][peak] / f->internal_energy_peak;
-        f->contact_energy_fraction = r->history[SF_HISTORY_ENERGY_CONTACT][peak] / f->internal_energy_peak;
-    }
+    sf_internal_energy e = sf_history_internal_energy(&r->history);
+    f->internal_energy_peak = e.peak;
+    f->internal_energy_peak_time = e.time;
+    f->stabilisation_energy_fraction = e.stabilisation;
+    f->contact_energy_fraction = e.contact;
 }
 
 /* Contact has ended if a row without contact follows the last row with it; the speed there is the rebound's.
  */
 static void compute_rebound(const sf_results *r, sf_figures *f) {
-    int64_t last = r->history_rows - 1;
-    while (last > 0 && !(r->history[SF_HISTORY_CONTACT_NODES][last] > 0))
+    const sf_history *h = &r->history;
+    int64_t last = h->rows - 1;
+    while (last > 0 && !(h->contact_nodes[last] > 0))
         last--;
-    if (last == r->history_rows - 1 || !(r->history[SF_HISTORY_VELOCITY][last + 1] < 0))
+    if (last == h->rows - 1 || !(h->velocity[last + 1] < 0))
         return;
     f->rebounded = true;
-    f->v_rebound = -r->history[SF_HISTORY_VELOCITY][last + 1];
-    f->rebound_time = r->history[SF_HISTORY_TIME][last + 1];
+    f->v_rebound = -h->velocity[last + 1];
+    f->rebound_time = h->time[last + 1];
     double initial = r->missile_mass * f->v0 * f->v0 / 2;
     f->absorbed_energy = initial - r->missile_mass * f->v_rebound * f->v_rebound / 2;
     f->absorbed_energy_fraction = f->absorbed_energy / initial;
 }
 
 static void compute_extremes(const sf_results *r, sf_figures *f) {
-    int64_t deepest = row_of_largest(r, SF_HISTORY_INDENTATION);
-    int64_t strained = row_of_largest(r, SF_HISTORY_LARGEST_COMPRESSION);
-    f->max_indentation = r->history[SF_HISTORY_INDENTATION][deepest];
-    f->max_indentation_time = r->history[SF_HISTORY_TIME][deepest];
+    const sf_history *h = &r->history;
+    int64_t deepest = sf_history_row_of_largest(h, h->indentation);
+    int64_t strained = sf_history_row_of_largest(h, h->largest_compression);
+    f->max_indentation = h->indentation[deepest];
+    f->max_indentation_time = h->time[deepest];
     f->max_mean_strain = f->max_indentation / r->thickness;
-    f->max_local_strain = r->history[SF_HISTORY_LARGEST_COMPRESSION][strained];
-    f->max_local_strain_time = r->history[SF_HISTORY_TIME][strained];
-    f->max_penetration = largest_magnitude(r, SF_HISTORY_PENETRATION);
-    f->smallest_jacobian = r->history[SF_HISTORY_SMALLEST_JACOBIAN][0];
-    for (int64_t i = 1; i < r->history_rows; i++)
-        f->smallest_jacobian = fmin(f->smallest_jacobian, r->history[SF_HISTORY_SMALLEST_JACOBIAN][i]);
+    f->max_local_strain = h->largest_compression[strained];
+    f->max_local_strain_time = h->time[strained];
+    f->local_strain_excess = f->max_local_strain - f->max_mean_strain;
+    f->max_penetration = sf_history_largest(h, h->penetration);
+    f->smallest_jacobian = h->smallest_jacobian[0];
+    for (int64_t i = 1; i < h->rows; i++)
+        f->smallest_jacobian = fmin(f->smallest_jacobian, h->smallest_jacobian[i]);
 }
 
 static void compute_compression(const sf_results *r, sf_figures *f) {
-    const double *work = r->history[SF_HISTORY_ENERGY_EXTERNAL];
-    int64_t peak = row_of_largest(r, SF_HISTORY_CONTACT_FORCE), last = r->history_rows - 1;
-    f->peak_force = r->history[SF_HISTORY_CONTACT_FORCE][peak];
-    f->peak_force_time = r->history[SF_HISTORY_TIME][peak];
+    const sf_history *h = &r->history;
+    const double *work = h->energy_external;
+    int64_t peak = sf_history_row_of_largest(h, h->contact_force), last = h->rows - 1;
+    f->peak_force = h->contact_force[peak];
+    f->peak_force_time = h->time[peak];
     f->peak_stress = f->peak_force / f->area;
-    f->work = work[row_of_largest(r, SF_HISTORY_ENERGY_EXTERNAL)];
-    if (r->history[SF_HISTORY_CONTACT_NODES][last] == 0)
+    f->work = work[sf_history_row_of_largest(h, h->energy_external)];
+    if (h->contact_nodes[last] == 0)
         f->returned_energy_fraction = (f->work - work[last]) / f->work;
 }
 
+/* Every figure that is not computed is undefined. */
 static void set_undefined(sf_figures *f) {
-    const sf_hic no_hic = {NAN, NAN, NAN};
-    f->injury = (sf_injury){NAN, NAN, no_hic, no_hic, no_hic, NAN, NAN, NAN};
-    f->injury_raw = f->injury;
-    f->v_rebound = f->rebound_time = f->absorbed_energy = f->absorbed_energy_fraction = NAN;
-    f->max_indentation = f->max_indentation_time = f->max_mean_strain = NAN;
-    f->max_local_strain = f->max_local_strain_time = f->smallest_jacobian = f->max_penetration = NAN;
-    f->internal_energy_peak = f->internal_energy_peak_time = NAN;
-    f->stabilisation_energy_fraction = f->contact_energy_fraction = NAN;
-    f->peak_force = f->peak_force_time = f->peak_stress = f->work = f->returned_energy_fraction = NAN;
+    size_t count;
+    const sf_figure *figure = sf_figure_list(&count);
+    for (size_t k = 0; k < count; k++)
+        if (!figure[k].fact && figure[k].type == SF_FIGURE_DOUBLE)
+            *(double *)((char *)f + figure[k].offset) = NAN;
+}
+
+/* What is known of every run. */
+static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
+    f->cfc = cfc;
+    f->touched = sf_results_touched(r);
+    f->driven = r->driven;
+    f->v0 = f->driven ? NAN : r->missile_speed;
+    f->missile_mass = f->driven ? NAN : r->missile_mass;
+    f->area = sf_results_cross_section(r);
+    f->end_time = r->history.time[r->history.rows - 1];
+    f->steps = r->has_summary ? r->steps : r->history.rows - 1;
 }
 
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *f, sf_error *err) {
-    *f = (sf_figures){.cfc = cfc, .touched = sf_results_touched(results), .v0 = results->missile_speed};
-    f->driven = results->driven;
-    f->area = sf_results_cross_section(results);
+    const sf_history *h = &results->history;
+    *f = (sf_figures){0};
     set_undefined(f);
+    take_facts(results, cfc, f);
     if (compute_curves(results, f, err) != SF_OK)
         goto done;
-    f->energy_error = largest_magnitude(results, SF_HISTORY_ENERGY_ERROR);
-    f->momentum_error = largest_magnitude(results, SF_HISTORY_MOMENTUM_ERROR);
-    f->constraint_residual = largest_magnitude(results, SF_HISTORY_CONSTRAINT_RESIDUAL);
+    f->energy_error = sf_history_largest(h, h->energy_error);
+    f->momentum_error = sf_history_largest(h, h->momentum_error);
+    f->constraint_residual = sf_history_largest(h, h->constraint_residual);
     if (!f->touched)
         goto done;
     compute_energies(results, f);

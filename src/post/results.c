@@ -9,51 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *sf_history_name(sf_history_column column) {
-    static const char *const names[SF_HISTORY_COLUMNS] = {
-        "time",
-        "time_step",
-        "acceleration",
-        "velocity",
-        "displacement",
-        "indentation",
-        "contact_force",
-        "friction_force",
-        "base_reaction",
-        "energy_kinetic_missile",
-        "energy_kinetic_pad",
-        "energy_stored",
-        "energy_hysteresis",
-        "energy_viscous",
-        "energy_stabilisation",
-        "energy_contact",
-        "energy_friction",
-        "energy_external",
-        "energy_error",
-        "momentum_error",
-        "largest_compression",
-        "smallest_jacobian",
-        "contact_nodes",
-        "penetration",
-        "constraint_residual",
-    };
-    return names[column];
-}
-
-const sf_frame_field_info *sf_frame_field_get(sf_frame_field field) {
-    static const sf_frame_field_info fields[SF_FRAME_FIELDS] = {
-        {"displacement", 3, "m", "displacement u_h at the nodes"},
-        {"velocity", 3, "m s-1", "velocity at the nodes"},
-        {"cauchy_stress", 9, "Pa", "Cauchy stress, row-major xx xy xz yx yy yz zx zy zz"},
-        {"von_mises", 1, "Pa", "von Mises stress"},
-        {"principal_stretches", 3, "1", "principal stretches, ascending"},
-        {"largest_compression", 1, "1", "1 - smallest principal stretch"},
-        {"energy_density", 1, "J m-3", "W of the loading curve per reference volume"},
-        {"hysteresis_factor", 1, "1", "factor on the stress of the loading curve"},
-    };
-    return &fields[field];
-}
-
 double sf_results_along(const sf_results *r, const double vector[3]) {
     return sf_dot3(vector, r->missile_direction);
 }
@@ -74,8 +29,8 @@ double sf_results_cross_section(const sf_results *r) {
 }
 
 bool sf_results_touched(const sf_results *results) {
-    for (int64_t i = 0; i < results->history_rows; i++)
-        if (results->history[SF_HISTORY_CONTACT_NODES][i] > 0)
+    for (int64_t i = 0; i < results->history.rows; i++)
+        if (results->history.contact_nodes[i] > 0)
             return true;
     return false;
 }
@@ -175,12 +130,12 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
 }
 
 static sf_status read_history(sf_results *r, sf_error *err) {
-    int64_t rows[SF_HISTORY_COLUMNS];
-    for (int c = 0; c < SF_HISTORY_COLUMNS; c++) {
+    int64_t rows[SF_HISTORY_COUNT];
+    for (int c = 0; c < SF_HISTORY_COUNT; c++) {
         char path[64];
-        snprintf(path, sizeof path, "/history/%s", sf_history_name((sf_history_column)c));
+        snprintf(path, sizeof path, "/history/%s", sf_history_column_get(c)->name);
         rows[c] = -1;
-        if (read_array(r, path, SF_H5_F64, &rows[c], 1, &r->history[c], err) != SF_OK)
+        if (read_array(r, path, SF_H5_F64, &rows[c], 1, &r->history.column[c], err) != SF_OK)
             return err->status;
     }
     return sf_results_check_history(r, rows, err);
@@ -268,8 +223,7 @@ void sf_results_close(sf_results *results) {
     free(results->cell_node);
     free(results->surface_position);
     free(results->surface_triangle);
-    for (int c = 0; c < SF_HISTORY_COLUMNS; c++)
-        free(results->history[c]);
+    sf_history_free(&results->history);
     free(results->frames);
     *results = (sf_results){0};
 }

@@ -10,59 +10,11 @@
 #define SF_POST_RESULTS_H
 
 #include "core/error.h"
+#include "core/frame_field.h"
+#include "core/history.h"
 #include "io/h5.h"
 #include <stdbool.h>
 #include <stdint.h>
-
-/* Columns of /history, in the order of docs/formats.md. */
-typedef enum sf_history_column {
-    SF_HISTORY_TIME,
-    SF_HISTORY_TIME_STEP,
-    SF_HISTORY_ACCELERATION,
-    SF_HISTORY_VELOCITY,
-    SF_HISTORY_DISPLACEMENT,
-    SF_HISTORY_INDENTATION,
-    SF_HISTORY_CONTACT_FORCE,
-    SF_HISTORY_FRICTION_FORCE,
-    SF_HISTORY_BASE_REACTION,
-    SF_HISTORY_ENERGY_KINETIC_MISSILE,
-    SF_HISTORY_ENERGY_KINETIC_PAD,
-    SF_HISTORY_ENERGY_STORED,
-    SF_HISTORY_ENERGY_HYSTERESIS,
-    SF_HISTORY_ENERGY_VISCOUS,
-    SF_HISTORY_ENERGY_STABILISATION,
-    SF_HISTORY_ENERGY_CONTACT,
-    SF_HISTORY_ENERGY_FRICTION,
-    SF_HISTORY_ENERGY_EXTERNAL,
-    SF_HISTORY_ENERGY_ERROR,
-    SF_HISTORY_MOMENTUM_ERROR,
-    SF_HISTORY_LARGEST_COMPRESSION,
-    SF_HISTORY_SMALLEST_JACOBIAN,
-    SF_HISTORY_CONTACT_NODES,
-    SF_HISTORY_PENETRATION,
-    SF_HISTORY_CONSTRAINT_RESIDUAL,
-    SF_HISTORY_COLUMNS,
-} sf_history_column;
-
-/* Fields of a frame, one value or vector per node. */
-typedef enum sf_frame_field {
-    SF_FRAME_DISPLACEMENT,
-    SF_FRAME_VELOCITY,
-    SF_FRAME_CAUCHY_STRESS,
-    SF_FRAME_VON_MISES,
-    SF_FRAME_PRINCIPAL_STRETCHES,
-    SF_FRAME_LARGEST_COMPRESSION,
-    SF_FRAME_ENERGY_DENSITY,
-    SF_FRAME_HYSTERESIS_FACTOR,
-    SF_FRAME_FIELDS,
-} sf_frame_field;
-
-typedef struct sf_frame_field_info {
-    const char *name;
-    int components; /* 1, 3 or 9 */
-    const char *units;
-    const char *description;
-} sf_frame_field_info;
 
 typedef struct sf_frame_head {
     char group[24];                 /* "/frames/000012" or "/peak" */
@@ -100,8 +52,7 @@ typedef struct sf_results {
     bool driven;                 /* the missile had a prescribed motion; else it was free */
     double missile_direction[3]; /* unit vector, see sf_results_along */
 
-    int64_t history_rows;
-    double *history[SF_HISTORY_COLUMNS]; /* [history_rows] SI */
+    sf_history history; /* its usable rows */
 
     int64_t frame_count;
     sf_frame_head *frames; /* [frame_count], ascending in time */
@@ -128,10 +79,6 @@ void sf_results_close(sf_results *results);
 /* Every field that the group holds, checked for shape and finiteness; release with sf_frame_free. */
 sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame, sf_error *err);
 void sf_frame_free(sf_frame *frame);
-
-/* Dataset name below /history; static storage. */
-const char *sf_history_name(sf_history_column column);
-const sf_frame_field_info *sf_frame_field_get(sf_frame_field field);
 
 /* Component of a vector along the missile's direction of motion. */
 double sf_results_along(const sf_results *results, const double vector[3]);

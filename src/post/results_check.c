@@ -115,19 +115,19 @@ sf_status sf_results_check_model(const sf_results *r, sf_error *err) {
 }
 
 static sf_status check_lengths(sf_results *r, const int64_t *rows, sf_error *err) {
-    r->history_rows = rows[0];
-    for (int c = 1; c < SF_HISTORY_COLUMNS; c++) {
+    r->history.rows = rows[0];
+    for (int c = 1; c < SF_HISTORY_COUNT; c++) {
         if (rows[c] != rows[0] && sf_results_ended_well(r))
             return SF_FAIL(err, SF_ERR_IO,
                            "/history/%s has %lld rows, /history/time has %lld: the file is damaged",
-                           sf_history_name((sf_history_column)c), (long long)rows[c], (long long)rows[0]);
-        if (rows[c] < r->history_rows)
-            r->history_rows = rows[c];
+                           sf_history_column_get(c)->name, (long long)rows[c], (long long)rows[0]);
+        if (rows[c] < r->history.rows)
+            r->history.rows = rows[c];
     }
-    for (int c = 0; c < SF_HISTORY_COLUMNS; c++) {
-        if (rows[c] != r->history_rows) {
+    for (int c = 0; c < SF_HISTORY_COUNT; c++) {
+        if (rows[c] != r->history.rows) {
             sf_results_note(r, "the columns of /history differ in length: the first %lld rows are used",
-                            (long long)r->history_rows);
+                            (long long)r->history.rows);
             break;
         }
     }
@@ -135,11 +135,11 @@ static sf_status check_lengths(sf_results *r, const int64_t *rows, sf_error *err
 }
 
 static sf_status check_row(const sf_results *r, int64_t i, sf_error *err) {
-    for (int c = 0; c < SF_HISTORY_COLUMNS; c++)
-        if (!isfinite(r->history[c][i]))
+    for (int c = 0; c < SF_HISTORY_COUNT; c++)
+        if (!isfinite(r->history.column[c][i]))
             return SF_FAIL(err, SF_ERR_IO, "/history/%s: row %lld is not finite",
-                           sf_history_name((sf_history_column)c), (long long)i);
-    const double *time = r->history[SF_HISTORY_TIME];
+                           sf_history_column_get(c)->name, (long long)i);
+    const double *time = r->history.time;
     if (!(time[i] >= 0 && time[i] <= LONGEST_TIME))
         return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld, it must be in 0 to %g s", time[i],
                        (long long)i, LONGEST_TIME);
@@ -152,17 +152,17 @@ static sf_status check_row(const sf_results *r, int64_t i, sf_error *err) {
 sf_status sf_results_check_history(sf_results *r, const int64_t *rows, sf_error *err) {
     if (check_lengths(r, rows, err) != SF_OK)
         return err->status;
-    for (int64_t i = 0; i < r->history_rows; i++) {
+    for (int64_t i = 0; i < r->history.rows; i++) {
         sf_error problem = SF_ERROR_INIT;
         if (check_row(r, i, &problem) == SF_OK)
             continue;
         if (sf_results_ended_well(r))
             return SF_FAIL(err, problem.status, "%s", problem.text);
         sf_results_note(r, "%.180s: the rows before it are used", problem.text);
-        r->history_rows = i;
+        r->history.rows = i;
     }
-    if (r->history_rows < 3)
+    if (r->history.rows < 3)
         return SF_FAIL(err, SF_ERR_IO, "/history has %lld usable rows, at least 3 are needed",
-                       (long long)r->history_rows);
+                       (long long)r->history.rows);
     return SF_OK;
 }

@@ -17,7 +17,7 @@ sf_status sf_results_check_finite(const double *values, int64_t count, const cha
 /* Cells, indices, positions, and the missile. */
 sf_status sf_results_check_model(const sf_results *results, sf_error *err);
 
-/* Sets history_rows from the lengths of the columns, `rows` [SF_HISTORY_COLUMNS]: equal lengths, finite
+/* Sets history.rows from the lengths of the columns, `rows` [SF_HISTORY_COUNT]: equal lengths, finite
  * values, times ascending; of a run that did not end well the longest part of which that holds. */
 sf_status sf_results_check_history(sf_results *results, const int64_t *rows, sf_error *err);
 

@@ -3,10 +3,16 @@
 
 #include "build_info.h"
 #include "io/json.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 static const char caution[] = "indicative, not a certification";
+
+static const void *place_of(const sf_summary *s, const sf_figure *figure) {
+    const char *base = figure->fact ? (const char *)s->results : (const char *)s->figures;
+    return base + figure->offset;
+}
 
 static void put_hic(sf_json *json, const char *prefix, const sf_hic *hic) {
     char key[32];
@@ -17,75 +23,30 @@ static void put_hic(sf_json *json, const char *prefix, const sf_hic *hic) {
     sf_json_number(json, key, hic->t2 * 1e3);
 }
 
-static void put_injury(sf_json *json, const sf_figures *f) {
-    sf_json_number(json, "a_max_g", f->injury.a_max_g);
-    sf_json_number(json, "a_max_time_ms", f->injury.a_max_time * 1e3);
-    put_hic(json, "hic", &f->injury.hic);
-    put_hic(json, "hic15", &f->injury.hic15);
-    put_hic(json, "hic36", &f->injury.hic36);
-    sf_json_number(json, "gadd", f->injury.gadd);
-    sf_json_number(json, "clip_3ms_g", f->injury.clip_contiguous_g);
-    sf_json_number(json, "clip_3ms_cumulative_g", f->injury.clip_cumulative_g);
-    sf_json_number(json, "a_max_raw_g", f->injury_raw.a_max_g);
-    sf_json_number(json, "hic_raw", f->injury_raw.hic.value);
-    sf_json_number(json, "cfc", f->cfc);
-    sf_json_number(json, "sampling_rate_Hz", f->rate);
-}
-
-static void put_mechanics(sf_json *json, const sf_figures *f) {
-    sf_json_number(json, "v0_m_s", f->driven ? NAN : f->v0);
-    sf_json_number(json, "v_rebound_m_s", f->v_rebound);
-    sf_json_number(json, "rebound_time_ms", f->rebound_time * 1e3);
-    sf_json_number(json, "absorbed_energy_J", f->absorbed_energy);
-    sf_json_number(json, "absorbed_energy_fraction", f->absorbed_energy_fraction);
-    sf_json_number(json, "max_indentation_mm", f->max_indentation * 1e3);
-    sf_json_number(json, "max_indentation_time_ms", f->max_indentation_time * 1e3);
-    sf_json_number(json, "max_mean_strain", f->max_mean_strain);
-    sf_json_number(json, "max_local_strain", f->max_local_strain);
-    sf_json_number(json, "max_local_strain_time_ms", f->max_local_strain_time * 1e3);
-    sf_json_number(json, "local_strain_excess", f->max_local_strain - f->max_mean_strain);
-    sf_json_number(json, "smallest_jacobian", f->smallest_jacobian);
-    sf_json_number(json, "max_penetration_mm", f->max_penetration * 1e3);
-    sf_json_number(json, "energy_error", f->energy_error);
-    sf_json_number(json, "momentum_error", f->momentum_error);
-    sf_json_number(json, "constraint_residual_m_s", f->constraint_residual);
-    sf_json_number(json, "internal_energy_peak_J", f->internal_energy_peak);
-    sf_json_number(json, "internal_energy_peak_time_ms", f->internal_energy_peak_time * 1e3);
-    sf_json_number(json, "stabilisation_energy_fraction", f->stabilisation_energy_fraction);
-    sf_json_number(json, "contact_energy_fraction", f->contact_energy_fraction);
-}
-
-static void put_compression(sf_json *json, const sf_figures *f) {
-    sf_json_number(json, "section_mm2", f->area * 1e6);
-    sf_json_number(json, "peak_force_N", f->peak_force);
-    sf_json_number(json, "peak_force_time_ms", f->peak_force_time * 1e3);
-    sf_json_number(json, "peak_stress_kPa", f->peak_stress * 1e-3);
-    sf_json_number(json, "work_J", f->work);
-    sf_json_number(json, "returned_energy_fraction", f->returned_energy_fraction);
-}
-
-static void put_run(sf_json *json, const sf_summary *s) {
-    const sf_results *r = s->results;
-    sf_json_text(json, "status", r->has_summary ? r->status : NULL);
-    sf_json_bool(json, "touched", s->figures->touched);
-    sf_json_bool(json, "prescribed_motion", s->figures->driven);
-    sf_json_bool(json, "rebounded", s->figures->rebounded);
-    sf_json_number(json, "contact_time_ms", r->contact_time * 1e3);
-    sf_json_number(json, "end_time_ms", r->history[SF_HISTORY_TIME][r->history_rows - 1] * 1e3);
-    sf_json_number(json, "thickness_mm", r->thickness * 1e3);
-    sf_json_number(json, "missile_mass_kg", s->figures->driven ? NAN : r->missile_mass);
-    sf_json_number(json, "density_kg_m3", r->density);
-    sf_json_integer(json, "symmetry_factor", r->symmetry_factor);
-    sf_json_integer(json, "nodes", r->node_count);
-    sf_json_integer(json, "cells", r->cell_count);
-    sf_json_integer(json, "interactions", r->interactions);
-    sf_json_integer(json, "frames", r->frame_count);
-    sf_json_integer(json, "steps", r->has_summary ? r->steps : r->history_rows - 1);
-    sf_json_number(json, "wall_s", r->wall_time);
-    sf_json_integer(json, "threads", r->threads);
+static void put_figures(sf_json *json, const sf_summary *s) {
+    size_t count;
+    const sf_figure *figure = sf_figure_list(&count);
+    for (size_t k = 0; k < count; k++) {
+        const char *key = figure[k].key;
+        const void *place = place_of(s, &figure[k]);
+        switch (figure[k].type) {
+        case SF_FIGURE_DOUBLE:
+            sf_json_number(json, key, *(const double *)place * figure[k].factor);
+            break;
+        case SF_FIGURE_INTEGER:
+            sf_json_integer(json, key, *(const int64_t *)place);
+            break;
+        case SF_FIGURE_BOOL:
+            sf_json_bool(json, key, *(const bool *)place);
+            break;
+        case SF_FIGURE_TEXT: /* empty: unknown */
+            sf_json_text(json, key, *(const char *)place ? place : NULL);
+            break;
+        }
+    }
     sf_json_open(json, "notes", '[');
-    for (int k = 0; k < r->note_count; k++)
-        sf_json_text(json, NULL, r->notes[k]);
+    for (int k = 0; k < s->results->note_count; k++)
+        sf_json_text(json, NULL, s->results->notes[k]);
     sf_json_close(json, ']');
 }
 
@@ -127,28 +88,73 @@ sf_status sf_summary_write(const sf_output *output, const sf_summary *s, sf_erro
     sf_json_text(&json, "program", "softfall-post " SF_VERSION);
     sf_json_text(&json, "results", s->results_path);
     sf_json_text(&json, "caution", caution);
-    put_injury(&json, s->figures);
-    put_mechanics(&json, s->figures);
-    put_compression(&json, s->figures);
-    put_run(&json, s);
+    put_figures(&json, s);
     if (s->comparison)
         put_comparison(&json, s->reference_path, s->comparison);
     sf_json_close(&json, '}');
     return sf_output_close(file, "summary.json", err);
 }
 
-static void print_row(FILE *out, const char *name, double value, int digits, const char *unit) {
-    if (isfinite(value))
-        fprintf(out, "  %-24s %12.*f %s\n", name, digits, value, unit);
-    else
-        fprintf(out, "  %-24s %12s\n", name, "-");
+/* A line of the printed table: the figure `key` times `factor`. */
+typedef struct report_line {
+    const char *key, *label;
+    double factor;
+    int digits;
+    const char *unit;
+    const char *begin, *end; /* keys of the window to be shown instead of a unit, or NULL */
+} report_line;
+
+static const report_line drop_lines[] = {
+    {"a_max_g", "a_max", 1, 2, "g", NULL, NULL},
+    {"a_max_raw_g", "a_max, raw", 1, 2, "g", NULL, NULL},
+    {"hic", "HIC", 1, 1, "", "hic_t1_ms", "hic_t2_ms"},
+    {"hic15", "HIC15", 1, 1, "", "hic15_t1_ms", "hic15_t2_ms"},
+    {"hic36", "HIC36", 1, 1, "", "hic36_t1_ms", "hic36_t2_ms"},
+    {"gadd", "Gadd index", 1, 1, "", NULL, NULL},
+    {"clip_3ms_g", "3 ms clip", 1, 2, "g", NULL, NULL},
+    {"v_rebound_m_s", "rebound speed", 1, 3, "m/s", NULL, NULL},
+    {"absorbed_energy_fraction", "absorbed energy", 100, 1, "%", NULL, NULL},
+    {NULL, NULL, 0, 0, NULL, NULL, NULL},
+};
+static const report_line compression_lines[] = {
+    {"peak_force_N", "largest force", 1, 2, "N", NULL, NULL},
+    {"peak_stress_kPa", "  over mean section", 1, 2, "kPa", NULL, NULL},
+    {"work_J", "work", 1, 4, "J", NULL, NULL},
+    {"returned_energy_fraction", "  given back", 100, 1, "%", NULL, NULL},
+    {NULL, NULL, 0, 0, NULL, NULL, NULL},
+};
+static const report_line common_lines[] = {
+    {"max_indentation_mm", "largest indentation", 1, 2, "mm", NULL, NULL},
+    {"max_mean_strain", "  over thickness", 1, 3, "", NULL, NULL},
+    {"max_local_strain", "largest local strain", 1, 3, "", NULL, NULL},
+    {"energy_error", "energy error", 100, 4, "%", NULL, NULL},
+    {"stabilisation_energy_fraction", "stabilisation energy", 100, 3, "% of the internal energy", NULL, NULL},
+    {"contact_energy_fraction", "contact energy", 100, 3, "% of the internal energy", NULL, NULL},
+    {NULL, NULL, 0, 0, NULL, NULL, NULL},
+};
+
+/* The figure of that key, in the unit of the key. */
+static double find_figure(const sf_summary *s, const char *key) {
+    size_t count;
+    const sf_figure *figure = sf_figure_list(&count);
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(figure[k].key, key) == 0 && figure[k].type == SF_FIGURE_DOUBLE)
+            return *(const double *)place_of(s, &figure[k]) * figure[k].factor;
+    assert(false && "a line of the report names no figure of the list");
+    return NAN;
 }
 
-static void print_hic(FILE *out, const char *name, const sf_hic *hic) {
-    if (hic->value > 0)
-        fprintf(out, "  %-24s %12.1f    %.3f to %.3f ms\n", name, hic->value, hic->t1 * 1e3, hic->t2 * 1e3);
-    else
-        print_row(out, name, hic->value, 1, "");
+static void print_lines(FILE *out, const sf_summary *s, const report_line *line) {
+    for (; line->key; line++) {
+        double value = find_figure(s, line->key) * line->factor;
+        if (!isfinite(value))
+            fprintf(out, "  %-24s %12s\n", line->label, "-");
+        else if (line->begin && value > 0)
+            fprintf(out, "  %-24s %12.*f    %.3f to %.3f ms\n", line->label, line->digits, value,
+                    find_figure(s, line->begin), find_figure(s, line->end));
+        else
+            fprintf(out, "  %-24s %12.*f %s\n", line->label, line->digits, value, line->unit);
+    }
 }
 
 static void print_cell(FILE *out, double value, int width, int digits) {
@@ -181,40 +187,21 @@ static void print_drop(FILE *out, const sf_summary *s) {
     const sf_figures *f = s->figures;
     fprintf(out, "Drop of %.4g kg at %.4g m/s on %.4g mm (CFC %.0f)\n", s->results->missile_mass, f->v0,
             s->results->thickness * 1e3, f->cfc);
-    print_row(out, "a_max", f->injury.a_max_g, 2, "g");
-    print_row(out, "a_max, raw", f->injury_raw.a_max_g, 2, "g");
-    print_hic(out, "HIC", &f->injury.hic);
-    print_hic(out, "HIC15", &f->injury.hic15);
-    print_hic(out, "HIC36", &f->injury.hic36);
-    print_row(out, "Gadd index", f->injury.gadd, 1, "");
-    print_row(out, "3 ms clip", f->injury.clip_contiguous_g, 2, "g");
-    print_row(out, "rebound speed", f->v_rebound, 3, "m/s");
-    print_row(out, "absorbed energy", f->absorbed_energy_fraction * 100, 1, "%");
+    print_lines(out, s, drop_lines);
 }
 
 static void print_compression(FILE *out, const sf_summary *s) {
-    const sf_figures *f = s->figures;
     fprintf(out, "Prescribed motion of the missile on %.4g mm: no drop, so no injury figures\n",
             s->results->thickness * 1e3);
-    print_row(out, "largest force", f->peak_force, 2, "N");
-    print_row(out, "  over mean section", f->peak_stress * 1e-3, 2, "kPa");
-    print_row(out, "work", f->work, 4, "J");
-    print_row(out, "  given back", f->returned_energy_fraction * 100, 1, "%");
+    print_lines(out, s, compression_lines);
 }
 
 void sf_summary_print(FILE *out, const sf_summary *s) {
-    const sf_figures *f = s->figures;
-    if (f->driven)
+    if (s->figures->driven)
         print_compression(out, s);
     else
         print_drop(out, s);
-    print_row(out, "largest indentation", f->max_indentation * 1e3, 2, "mm");
-    print_row(out, "  over thickness", f->max_mean_strain, 3, "");
-    print_row(out, "largest local strain", f->max_local_strain, 3, "");
-    print_row(out, "energy error", f->energy_error * 100, 4, "%");
-    print_row(out, "stabilisation energy", f->stabilisation_energy_fraction * 100, 3,
-              "% of the internal energy");
-    print_row(out, "contact energy", f->contact_energy_fraction * 100, 3, "% of the internal energy");
+    print_lines(out, s, common_lines);
     if (s->comparison)
         print_comparison(out, s->reference_path, s->comparison);
     fprintf(out, "These figures are %s.\n", caution);

@@ -6,15 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Names of the arrays in ParaView. */
-static const char *array_name(sf_frame_field field) {
-    static const char *const names[SF_FRAME_FIELDS] = {
-        "displacement_m",        "velocity_m_s",          "cauchy_stress_Pa",    "von_mises_Pa",
-        "principal_stretches_1", "largest_compression_1", "energy_density_J_m3", "hysteresis_factor_1",
-    };
-    return names[field];
-}
-
 /* XDMF mixed topology: for each cell its code, then its vertices. */
 static sf_status write_topology(sf_h5 *file, const sf_results *r, sf_error *err) {
     int64_t length = r->cell_nnz + r->cell_count, k = 0;
@@ -68,7 +59,7 @@ static sf_status write_frame_data(sf_h5 *file, const sf_results *r, const sf_fra
         int64_t dims[2] = {r->node_count, info->components};
         if (!frame->field[f])
             continue;
-        snprintf(path, sizeof path, "/frames/%06lld/%s", (long long)index, array_name((sf_frame_field)f));
+        snprintf(path, sizeof path, "/frames/%06lld/%s", (long long)index, info->array);
         sf_h5_info array = {path, info->units, info->description};
         if (sf_h5_write(file, &array, SF_H5_F64, info->components > 1 ? 2 : 1, dims, frame->field[f], err) !=
             SF_OK)
@@ -101,15 +92,14 @@ static void put_pad(FILE *x, const sf_results *r, const sf_frame *frame, double 
     put_float_item(x, index, "pad_position", r->node_count, 3);
     fputs("</Geometry>\n", x);
     for (int f = 0; f < SF_FRAME_FIELDS; f++) {
-        int components = sf_frame_field_get((sf_frame_field)f)->components;
-        const char *name = array_name((sf_frame_field)f);
+        const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
         if (!frame->field[f])
             continue;
-        fprintf(x, "          <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", name,
-                components == 1   ? "Scalar"
-                : components == 3 ? "Vector"
-                                  : "Tensor");
-        put_float_item(x, index, name, r->node_count, components);
+        fprintf(x, "          <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", info->array,
+                info->components == 1   ? "Scalar"
+                : info->components == 3 ? "Vector"
+                                        : "Tensor");
+        put_float_item(x, index, info->array, r->node_count, info->components);
         fputs("</Attribute>\n", x);
     }
     fputs("        </Grid>\n", x);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-solve: model.h5 -> results.h5. */
 #include "build_info.h"
+#include "core/good_run.h"
 #include "core/units.h"
 #include "io/model_io.h"
 #include "solver/run/run.h"
@@ -174,10 +175,14 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
     if (card->shape == SF_SHAPE_SPHERE && x->largest_indentation > height)
         warn("the missile went %.4g mm deep, beyond its spherical cap of %.4g mm",
              1e3 * x->largest_indentation, 1e3 * height);
-    if (l->largest_error > 0.01 || fabs(x->stabilisation_share) > 0.05 || fabs(x->contact_share) > 0.01)
-        warn("energy error %.2f %% (good: 1), stabilisation %.2f %% (5), contact %.2f %% (1): do not trust "
-             "these figures",
-             100 * l->largest_error, 100 * x->stabilisation_share, 100 * x->contact_share);
+    const sf_good_run *good = sf_good_run_limits();
+    if (l->largest_error > good->energy_error || fabs(x->stabilisation_share) > good->stabilisation ||
+        fabs(x->contact_share) > good->contact)
+        warn(
+            "energy error %.2f %% (good: %g), stabilisation %.2f %% (%g), contact %.2f %% (%g): do not trust "
+            "these figures",
+            100 * l->largest_error, 100 * good->energy_error, 100 * x->stabilisation_share,
+            100 * good->stabilisation, 100 * x->contact_share, 100 * good->contact);
     if (s->contact_unsettled > 0)
         warn("the contact forces of %lld steps did not settle to the last digits",
              (long long)s->contact_unsettled);

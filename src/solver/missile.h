@@ -14,18 +14,25 @@
 #define SF_SOLVER_MISSILE_H
 
 #include "core/model.h"
+#include "core/numbers.h"
 #include "solver/contact/missile_surface.h"
 
+/* What a checkpoint keeps of it (core/numbers.h). */
+/* clang-format off */
+#define SF_MISSILE_NUMBERS(X)                                                                                          \
+    X(double, displacement, , "m", "along, since t = 0")                                                               \
+    X(double, displacement_old, , "m", "along, one step ago")                                                          \
+    X(double, velocity, , "m s-1", "along, at the half step before `time` until the step ends")                        \
+    X(double, velocity_now, , "m s-1", "along, at `time`")                                                             \
+    X(double, acceleration, , "m s-2", "along: negative while it is braked; 0 of a driven missile")                    \
+    X(double, force, [3], "N", "of the pad on the missile")                                                            \
+    X(double, friction, , "N", "its tangential part against the direction")                                            \
+    X(double, contact_time, , "s", "first contact; NaN before")                                                        \
+    X(double, release_time, , "s", "last time with contact; NaN before")
+/* clang-format on */
+
 typedef struct sf_missile {
-    double displacement;     /* m, along, since t = 0 */
-    double displacement_old; /* m, one step ago */
-    double velocity;         /* m s-1, along, at the half step before `time` until the step ends */
-    double velocity_now;     /* m s-1, along, at `time` */
-    double acceleration;     /* m s-2, along: negative while it is braked; 0 of a driven one */
-    double force[3];         /* N, of the pad on the missile */
-    double friction;         /* N, its tangential part against the direction */
-    double contact_time;     /* s, first contact; NAN before */
-    double release_time;     /* s, last time with contact; NAN before */
+    SF_MISSILE_NUMBERS(SF_DECLARE)
 } sf_missile;
 
 /* At t = 0. */

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/model.h"
+#include "core/numbers.h"
 #include "solver/missile.h"
 #include "solver/material/foam.h"
 #include "solver/stopwatch.h"
@@ -29,26 +30,61 @@ typedef struct sf_partial {
     int64_t jacobian_node;
 } sf_partial;
 
-/* Energies at the current time, J, and the momentum balance, of the modelled part. */
+/* The numbers of the state that a checkpoint keeps: X(type, name, array size, units, meaning). Each list
+ * declares the members of a struct and drives their way to and from a checkpoint (run/state_io.c): a line
+ * added here is all. */
+/* clang-format off */
+
+/* Energies at the current time and the momentum balance, of the modelled part. */
+#define SF_LEDGER_NUMBERS(X)                                                                                           \
+    X(double, kinetic_missile, , "J", "kinetic energy of the missile")                                                 \
+    X(double, kinetic_pad, , "J", "kinetic energy of the pad")                                                         \
+    X(double, stored, , "J", "recoverable energy of the foam")                                                         \
+    X(double, hysteresis, , "J", "lost by the unloading rule")                                                         \
+    X(double, viscous, , "J", "viscous work")                                                                          \
+    X(double, stabilisation, , "J", "work of the stabilisation")                                                       \
+    X(double, contact, , "J", "lost in normal contact")                                                                \
+    X(double, friction, , "J", "lost in friction")                                                                     \
+    X(double, external, , "J", "work of gravity on the missile, or of what drives it")                                 \
+    X(double, reference, , "J", "to which errors refer: total at t = 0; see ledger.h")                                 \
+    X(double, stabilisation_drift, , "J", "work that changed stiffness put into the pairs, to date")                   \
+    X(double, error, , "1", "of the balance, over `reference`")                                                        \
+    X(double, largest_error, , "1", "largest |error| so far")                                                          \
+    X(double, momentum_reference, , "kg m s-1", "along the missile's direction, to which the momentum error refers")   \
+    X(double, impulse, , "N s", "of gravity and constraints, and of a driven missile, along it")                       \
+    X(double, momentum_error, , "1", "over momentum_reference")
+
+/* All others. */
+#define SF_STATE_NUMBERS(X)                                                                                            \
+    X(int64_t, step, , "1", "number of the step")                                                                      \
+    X(double, time, , "s", "now")                                                                                      \
+    X(double, dt, , "s", "from time to the next")                                                                      \
+    X(double, dt_old, , "s", "from the previous time")                                                                 \
+    X(double, tightness, , "1", "highest frequency squared over its bound, from the power iteration")                  \
+    X(int64_t, contact_count, , "1", "points with a force")                                                            \
+    X(double, penetration, , "m", "deepest now")                                                                       \
+    X(int64_t, contact_unsettled, , "1", "steps whose sweeps did not reach their tolerance")                           \
+    X(double, base_reaction, [3], "N", "of the base on the pad")                                                       \
+    X(double, constraint_residual, , "m s-1", "largest |G v|, when last measured")                                     \
+    X(double, largest_compression, , "1", "1 - smallest principal stretch of all domains")                             \
+    X(double, smallest_jacobian, , "1", "smallest det F of all domains")                                               \
+    X(int64_t, jacobian_node, , "1", "where it is")                                                                    \
+    X(double, bound_step, , "s", "guaranteed by the partition bound now")                                              \
+    X(double, bound_load, , "s-2", "the bound on omega^2 it came from")                                                \
+    X(int64_t, measured_at, , "1", "step of the last power iteration")                                                 \
+    X(double, measured_load, , "s-2", "bound_load then")                                                               \
+    X(double, ceiling, , "s", "smallest bound_step since")                                                             \
+    X(int64_t, power_iterations, , "1", "products spent so far")
+/* clang-format on */
+
 typedef struct sf_ledger {
-    double kinetic_missile, kinetic_pad;
-    double stored, hysteresis, viscous, stabilisation, contact, friction;
-    double external;            /* work of gravity on the missile, or of what drives it */
-    double reference;           /* J, what errors refer to: total at t = 0; see ledger.h */
-    double stabilisation_drift; /* J, work that changed stiffness put into the pairs, to date */
-    double error;               /* of the balance, over `reference` */
-    double largest_error;       /* largest |error| so far */
-    double momentum_reference;  /* kg m s-1, along the missile's direction: likewise */
-    double impulse;             /* N s, of gravity and constraints, and of a driven missile, along it */
-    double momentum_error;      /* over momentum_reference */
+    SF_LEDGER_NUMBERS(SF_DECLARE)
 } sf_ledger;
 
 typedef struct sf_state {
-    int64_t step;
-    double time;      /* s */
-    double dt;        /* s, from time to the next */
-    double dt_old;    /* s, from the previous time */
-    double tightness; /* -, highest frequency squared over its bound, from the power iteration */
+    SF_STATE_NUMBERS(SF_DECLARE)
+    sf_missile missile;
+    sf_ledger ledger;
 
     /* Nodes: coefficients of the approximation, not nodal values. */
     double *d;        /* [n][3] m */
@@ -85,26 +121,8 @@ typedef struct sf_state {
     int32_t *contact_near;    /* [contacts] list of the points that can touch before contact_room is used up:
                                  the others' arrays are not kept up to date */
     int64_t contact_near_count;
-    double contact_room;       /* m, what points and missile may approach each other until the list is made
-                                  anew */
-    double fastest;            /* m s-1, of the coefficients at the half step */
-    int64_t contact_count;     /* points with a force */
-    double penetration;        /* m, deepest now */
-    int64_t contact_unsettled; /* steps whose sweeps did not reach their tolerance */
-
-    sf_missile missile;
-    sf_ledger ledger;
-    double base_reaction[3];    /* N, of the base on the pad */
-    double constraint_residual; /* m s-1, largest |G v|, when last measured */
-    double largest_compression; /* - */
-    double smallest_jacobian;   /* - */
-    int64_t jacobian_node;
-    double bound_step;        /* s, guaranteed by the partition bound now */
-    double bound_load;        /* s-2, the bound on omega^2 it came from */
-    int64_t measured_at;      /* step of the last power iteration */
-    double measured_load;     /* s-2, bound_load then */
-    double ceiling;           /* s, smallest bound_step since */
-    int64_t power_iterations; /* products spent so far */
+    double contact_room; /* m, what points and missile may approach each other until the list is made anew */
+    double fastest;      /* m s-1, of the coefficients at the half step */
 
     int64_t chunk_count;
     sf_partial *partial; /* [chunks] */

@@ -80,9 +80,9 @@ static void make_overrides(const sf_indentation *in, const sf_indentation_case *
 /* Mean of the contact force over the depths within WINDOW of `depth`: integral over the polygon of the
  * history's rows. */
 static double mean_force(const sf_results *r, double depth) {
-    const double *x = r->history[SF_HISTORY_DISPLACEMENT], *f = r->history[SF_HISTORY_CONTACT_FORCE];
+    const double *x = r->history.displacement, *f = r->history.contact_force;
     double low = depth - WINDOW, high = depth + WINDOW, sum = 0;
-    for (int64_t k = 0; k + 1 < r->history_rows; k++) {
+    for (int64_t k = 0; k + 1 < r->history.rows; k++) {
         double a = fmax(x[k], low), b = fmin(x[k + 1], high);
         if (!(a < b))
             continue;
@@ -128,7 +128,7 @@ sf_status sf_indentation_softfall(const sf_indentation *in, const sf_indentation
     out->cpu = sf_children_cpu() - start;
     if (sf_results_open(keep, &r, err) != SF_OK)
         return err->status;
-    out->depth_reached = r.history[SF_HISTORY_DISPLACEMENT][r.history_rows - 1];
+    out->depth_reached = r.history.displacement[r.history.rows - 1];
     while (out->count < SF_INDENTATION_POINTS && (out->count + 1) * c->interval <= c->depth + 1e-9) {
         out->force[out->count] = mean_force(&r, (out->count + 1) * c->interval);
         out->count++;

@@ -58,15 +58,15 @@ static sf_status check_specimen(const sf_compression_config *c, sf_error *err) {
 
 /* Means of strain and stress over blocks of equal time; blocks do not cross the turn. */
 static void average(const sf_results *r, double area, double turn_time, sf_cube_test *test) {
-    const double *time = r->history[SF_HISTORY_TIME];
+    const double *time = r->history.time;
     int64_t row = 1;
     test->count = 0;
     for (int b = 0; b < 2 * SF_CUBE_BLOCKS; b++) {
         double end = turn_time * (b + 1) / SF_CUBE_BLOCKS, strain = 0, stress = 0, weight = 0;
-        for (; row < r->history_rows && time[row] <= end * (1 + 1e-9); row++) {
+        for (; row < r->history.rows && time[row] <= end * (1 + 1e-9); row++) {
             double span = time[row] - time[row - 1];
-            strain += span * r->history[SF_HISTORY_INDENTATION][row] / r->thickness;
-            stress += span * r->history[SF_HISTORY_CONTACT_FORCE][row] / area;
+            strain += span * r->history.indentation[row] / r->thickness;
+            stress += span * r->history.contact_force[row] / area;
             weight += span;
         }
         if (!(weight > 0))

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/cloud.h"
 
+#include "core/hash.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -97,17 +99,11 @@ void sf_cloud_spacing(const sf_mesh *mesh, const sf_dual *dual, double *spacing)
     }
 }
 
-static uint64_t fnv1a(uint64_t hash, const void *data, size_t size) {
-    const unsigned char *byte = data;
-    for (size_t k = 0; k < size; k++)
-        hash = (hash ^ byte[k]) * 0x100000001b3ULL;
-    return hash;
-}
-
 void sf_cloud_hash(const sf_mesh *mesh, char text[17]) {
-    uint64_t hash = 0xcbf29ce484222325ULL;
-    hash = fnv1a(hash, mesh->position, 3 * (size_t)mesh->node_count * sizeof *mesh->position);
-    hash = fnv1a(hash, mesh->cell_type, (size_t)mesh->cell_count);
-    hash = fnv1a(hash, mesh->cell_node, (size_t)mesh->cell_ptr[mesh->cell_count] * sizeof *mesh->cell_node);
+    uint64_t hash = SF_HASH_START;
+    hash = sf_hash_bytes(hash, mesh->position, 3 * (size_t)mesh->node_count * sizeof *mesh->position);
+    hash = sf_hash_bytes(hash, mesh->cell_type, (size_t)mesh->cell_count);
+    hash = sf_hash_bytes(hash, mesh->cell_node,
+                         (size_t)mesh->cell_ptr[mesh->cell_count] * sizeof *mesh->cell_node);
     snprintf(text, 17, "%016llx", (unsigned long long)hash);
 }

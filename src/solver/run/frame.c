@@ -8,22 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DISPLACEMENT, VELOCITY, CAUCHY, MISES, STRETCHES, COMPRESSION, ENERGY, FACTOR, FIELDS };
-
-static const struct {
-    const char *name, *units, *description;
-    int columns;
-} fields[FIELDS] = {
-    {"displacement", "m", "u_h at the nodes", 3},
-    {"velocity", "m s-1", "time derivative of u_h, half a step later", 3},
-    {"cauchy_stress", "Pa", "Cauchy stress xx xy xz yx yy yz zx zy zz of the smoothing domain", 9},
-    {"von_mises", "Pa", "von Mises stress", 1},
-    {"principal_stretches", "1", "principal stretches, ascending", 3},
-    {"largest_compression", "1", "1 - smallest principal stretch", 1},
-    {"energy_density", "J m-3", "W of the loading curve per reference volume", 1},
-    {"hysteresis_factor", "1", "factor on the curve's stress", 1},
-};
-
 static double determinant(const double *f) {
     return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
            f[2] * (f[3] * f[7] - f[4] * f[6]);
@@ -67,14 +51,14 @@ static void take_value(const sf_shape_rows *rows, const double *coefficient, int
 }
 
 /* Cauchy or von Mises stress of nodes of one group. */
-static void take_stresses(const sf_model *m, const sf_operators *op, const sf_state *s, int kind,
+static void take_stresses(const sf_model *m, const sf_operators *op, const sf_state *s, sf_frame_field kind,
                           int64_t first, int64_t end, double *out) {
     sf_pair_sums pairs;
     double sigma[9], mises;
     sf_stabilisation_group(m, &op->pairs, s->d, s->f, s->stiffness, first / SF_GROUP, &pairs);
     for (int64_t i = first; i < end; i++) {
         take_stress(m, s, &pairs, i, sigma, &mises);
-        if (kind == CAUCHY)
+        if (kind == SF_FRAME_CAUCHY_STRESS)
             memcpy(&out[9 * (i - first)], sigma, sizeof sigma);
         else
             out[i - first] = mises;
@@ -82,7 +66,7 @@ static void take_stresses(const sf_model *m, const sf_operators *op, const sf_st
 }
 
 /* A field of the law of nodes from the first of a block. */
-static void take_law_field(const sf_model *m, const sf_operators *op, const sf_state *s, int kind,
+static void take_law_field(const sf_model *m, const sf_operators *op, const sf_state *s, sf_frame_field kind,
                            int64_t first, int64_t end, double *out) {
     sf_foam_batch b;
     double stretch[3];
@@ -91,32 +75,45 @@ static void take_law_field(const sf_model *m, const sf_operators *op, const sf_s
         if (lane == 0)
             sf_domain_law(m, op, s, i / SF_LANES, &b);
         sort_stretches(&b, lane, stretch);
-        if (kind == STRETCHES)
+        if (kind == SF_FRAME_PRINCIPAL_STRETCHES)
             memcpy(&out[3 * (i - first)], stretch, sizeof stretch);
         else
-            out[i - first] = kind == COMPRESSION ? 1 - stretch[0]
-                             : kind == ENERGY    ? b.energy[lane]
-                                                 : b.factor[lane];
+            out[i - first] = kind == SF_FRAME_LARGEST_COMPRESSION ? 1 - stretch[0]
+                             : kind == SF_FRAME_ENERGY_DENSITY    ? b.energy[lane]
+                                                                  : b.factor[lane];
     }
 }
 
 /* One field of `count` nodes from node `start`, the first of a group; `shapes`: their shape functions, if the
  * field needs them. */
 static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s,
-                       const sf_shape_rows *shapes, int kind, int64_t start, int64_t count, double *out) {
-    int columns = fields[kind].columns;
+                       const sf_shape_rows *shapes, sf_frame_field kind, int64_t start, int64_t count,
+                       double *out) {
+    int columns = sf_frame_field_get(kind)->components;
 #pragma omp parallel for default(none) schedule(static)                                                      \
     shared(m, op, s, shapes, kind, start, count, columns, out)
     for (int64_t first = start; first < start + count; first += SF_GROUP) {
         int64_t end = first + SF_GROUP < start + count ? first + SF_GROUP : start + count;
         double *rows = &out[(first - start) * columns];
-        if (kind == CAUCHY || kind == MISES)
-            take_stresses(m, op, s, kind, first, end, rows);
-        else if (kind == DISPLACEMENT || kind == VELOCITY)
+        switch (kind) {
+        case SF_FRAME_DISPLACEMENT:
+        case SF_FRAME_VELOCITY:
             for (int64_t i = first; i < end; i++)
-                take_value(shapes, kind == DISPLACEMENT ? s->d : s->v, i, &rows[3 * (i - first)]);
-        else
+                take_value(shapes, kind == SF_FRAME_DISPLACEMENT ? s->d : s->v, i, &rows[3 * (i - first)]);
+            break;
+        case SF_FRAME_CAUCHY_STRESS:
+        case SF_FRAME_VON_MISES:
+            take_stresses(m, op, s, kind, first, end, rows);
+            break;
+        case SF_FRAME_PRINCIPAL_STRETCHES:
+        case SF_FRAME_LARGEST_COMPRESSION:
+        case SF_FRAME_ENERGY_DENSITY:
+        case SF_FRAME_HYSTERESIS_FACTOR:
             take_law_field(m, op, s, kind, first, end, rows);
+            break;
+        case SF_FRAME_FIELDS:
+            break;
+        }
     }
 }
 
@@ -149,18 +146,19 @@ static sf_status write_head(const sf_model *m, const sf_state *s, const char *pa
 
 /* One field of all nodes, through a buffer for a slab. */
 static sf_status write_field(const sf_model *m, const sf_operators *op, const sf_state *s,
-                             const sf_shapes *shapes, int kind, const char *path, double *buffer, sf_h5 *file,
-                             sf_error *err) {
+                             const sf_shapes *shapes, sf_frame_field kind, const char *path, double *buffer,
+                             sf_h5 *file, sf_error *err) {
     char name[128];
-    const int64_t dims[2] = {m->node_count, fields[kind].columns};
-    sf_h5_info info = {name, fields[kind].units, fields[kind].description};
+    const sf_frame_field_info *field = sf_frame_field_get(kind);
+    const int64_t dims[2] = {m->node_count, field->components};
+    sf_h5_info info = {name, field->units, field->description};
     sf_h5_rows out;
-    snprintf(name, sizeof name, "%s/%s", path, fields[kind].name);
+    snprintf(name, sizeof name, "%s/%s", path, field->name);
     sf_h5_rows_begin(file, &info, SF_H5_F64, dims[1] > 1 ? 2 : 1, dims, &out, err);
     for (int64_t start = 0; start < m->node_count && err->status == SF_OK; start += SF_SLAB) {
         int64_t count = start + SF_SLAB < m->node_count ? SF_SLAB : m->node_count - start;
         sf_shape_rows rows = {0};
-        if ((kind != DISPLACEMENT && kind != VELOCITY) ||
+        if ((kind != SF_FRAME_DISPLACEMENT && kind != SF_FRAME_VELOCITY) ||
             sf_shapes_read(shapes, m, start, count, &rows, err) == SF_OK) {
             take_field(m, op, s, &rows, kind, start, count, buffer);
             sf_h5_rows_add(&out, count, buffer, err);
@@ -176,9 +174,9 @@ sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_sta
     double *buffer = sf_alloc(err, SF_SLAB, 9 * sizeof *buffer, "fields of a frame");
     if (buffer)
         write_head(m, s, path, file, err);
-    for (int k = 0; k < FIELDS && err->status == SF_OK; k++)
+    for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
         if (wanted >> k & 1)
-            write_field(m, op, s, shapes, k, path, buffer, file, err);
+            write_field(m, op, s, shapes, (sf_frame_field)k, path, buffer, file, err);
     free(buffer);
     return err->status;
 }

@@ -2,8 +2,6 @@
 #include "solver/run/recorder.h"
 
 #include "io/members.h"
-#include "solver/ledger.h"
-#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -24,38 +22,41 @@ double sf_recorder_measure(const sf_model *m, const sf_state *s) {
                                    : sf_missile_deceleration(m, &s->missile);
 }
 
-static void watch(sf_extremes *x, const sf_model *m, const sf_state *s) {
-    double whole = sf_model_whole(m), internal = whole * sf_ledger_internal(&s->ledger);
-    x->largest_compression = fmax(x->largest_compression, s->largest_compression);
-    x->largest_indentation = fmax(x->largest_indentation, sf_missile_depth(m, &s->missile));
-    x->largest_penetration = fmax(x->largest_penetration, s->penetration);
-    x->largest_residual = fmax(x->largest_residual, s->constraint_residual);
-    x->largest_momentum = fmax(x->largest_momentum, fabs(s->ledger.momentum_error));
-    if (internal > x->peak_internal) {
-        x->peak_internal = internal;
-        x->stabilisation_share = whole * s->ledger.stabilisation / internal;
-        x->contact_share = whole * s->ledger.contact / internal;
-    }
+sf_extremes sf_recorder_extremes(const sf_recorder *r) {
+    const sf_history *h = &r->history;
+    sf_internal_energy internal = {0};
+    if (h->rows > 0)
+        internal = sf_history_internal_energy(h);
+    bool any = internal.peak > 0;
+    return (sf_extremes){.peak_value = r->peak_value,
+                         .peak_time = r->peak_time,
+                         .largest_compression = sf_history_largest(h, h->largest_compression),
+                         .largest_indentation = sf_history_largest(h, h->indentation),
+                         .largest_penetration = sf_history_largest(h, h->penetration),
+                         .largest_residual = sf_history_largest(h, h->constraint_residual),
+                         .largest_momentum = sf_history_largest(h, h->momentum_error),
+                         .peak_internal = internal.peak,
+                         .stabilisation_share = any ? internal.stabilisation : 0,
+                         .contact_share = any ? internal.contact : 0};
 }
 
 sf_status sf_recorder_add(sf_recorder *r, const sf_model *m, const sf_state *s, sf_error *err) {
     double value = sf_recorder_measure(m, s);
-    watch(&r->extremes, m, s);
-    if (value > r->extremes.peak_value) {
-        r->extremes.peak_value = value;
-        r->extremes.peak_time = s->time;
+    if (value > r->peak_value) {
+        r->peak_value = value;
+        r->peak_time = s->time;
     }
     return sf_history_add(&r->history, m, s, err);
 }
 
 static bool has_grown(const sf_recorder *r) {
-    return r->extremes.peak_value > PEAK_GROWTH * r->peak_kept;
+    return r->peak_value > PEAK_GROWTH * r->peak_kept;
 }
 
 bool sf_recorder_peak_due(sf_recorder *r, const sf_state *s) {
-    bool due = has_grown(r) && s->time > r->extremes.peak_time;
+    bool due = has_grown(r) && s->time > r->peak_time;
     if (due)
-        r->peak_kept = r->extremes.peak_value;
+        r->peak_kept = r->peak_value;
     return due || s->step == 0;
 }
 
@@ -77,29 +78,9 @@ bool sf_recorder_frame_due(sf_recorder *r, const sf_model *m, const sf_state *s)
 }
 
 static const sf_member members[] = {
-#define NUMBER(member, units)                                                                                \
-    { #member, units, SF_H5_F64, 1, offsetof(sf_recorder, member) }
-#define COUNT(member)                                                                                        \
-    { #member, "1", SF_H5_I64, 1, offsetof(sf_recorder, member) }
-    NUMBER(extremes.peak_value, "1"),
-    NUMBER(extremes.peak_time, "s"),
-    NUMBER(extremes.largest_compression, "1"),
-    NUMBER(extremes.largest_indentation, "m"),
-    NUMBER(extremes.largest_penetration, "m"),
-    NUMBER(extremes.largest_residual, "m s-1"),
-    NUMBER(extremes.largest_momentum, "1"),
-    NUMBER(extremes.peak_internal, "J"),
-    NUMBER(extremes.stabilisation_share, "1"),
-    NUMBER(extremes.contact_share, "1"),
-    NUMBER(peak_kept, "1"),
-    COUNT(frames),
-    COUNT(frame_step),
-    NUMBER(next_frame, "s"),
-    COUNT(next_extra),
-    NUMBER(wall_time, "s"),
-    COUNT(restarts),
+#define NUMBER(type, name, size, units, meaning) SF_MEMBER(sf_recorder, name, type, units, meaning),
+    SF_RECORDER_NUMBERS(NUMBER)
 #undef NUMBER
-#undef COUNT
 };
 enum { MEMBERS = sizeof members / sizeof members[0] };
 

@@ -1,36 +1,46 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a run carries from step to step beside the state: the history, the extremes, and when
+/* What a run carries from step to step beside the state: the history, the peak, and when
  * the fields are due for a file: as a frame, or as those at the peak (output.h writes them). */
 #ifndef SF_SOLVER_RUN_RECORDER_H
 #define SF_SOLVER_RUN_RECORDER_H
 
 #include "solver/run/history.h"
 
+/* What a checkpoint keeps of a recorder beside the history, as the lists of state.h. */
+/* clang-format off */
+#define SF_RECORDER_NUMBERS(X)                                                                                         \
+    X(double, peak_value, , "1", "largest acceleration, m s-2; of a driven missile largest contact force, N")          \
+    X(double, peak_time, , "s", "of it")                                                                               \
+    X(double, peak_kept, , "1", "the peak_value that the fields written last follow")                                  \
+    X(int64_t, frames, , "1", "due so far")                                                                            \
+    X(int64_t, frame_step, , "1", "step of the last of them, -1: none")                                                \
+    X(double, next_frame, , "s", "time of the next one by the interval")                                               \
+    X(int64_t, next_extra, , "1", "index in model->frame_time")                                                        \
+    X(double, wall_time, , "s", "until the last checkpoint")                                                           \
+    X(int64_t, restarts, , "1", "times that the run was resumed")
+/* clang-format on */
+
+typedef struct sf_recorder {
+    sf_history history;
+    SF_RECORDER_NUMBERS(SF_DECLARE)
+} sf_recorder;
+
 /* Extremes over the run. */
 typedef struct sf_extremes {
-    double peak_value; /* m s-2, largest acceleration; of a driven missile N, largest contact force */
-    double peak_time;  /* s */
+    double peak_value;          /* as of the recorder */
+    double peak_time;           /* s */
     double largest_compression; /* - */
     double largest_indentation; /* m, along z */
     double largest_penetration; /* m */
     double largest_residual;    /* m s-1, |G v| */
     double largest_momentum;    /* - */
-    double peak_internal;       /* J, whole pad, largest internal energy, and at that time: */
-    double stabilisation_share; /* - */
-    double contact_share;       /* - */
+    double peak_internal;       /* J, whole pad, largest internal energy; at that time its shares: */
+    double stabilisation_share; /* -, 0 without energy */
+    double contact_share;       /* -, likewise */
 } sf_extremes;
 
-typedef struct sf_recorder {
-    sf_history history;
-    sf_extremes extremes;
-    double peak_kept;   /* the peak_value that the fields written last follow */
-    int64_t frames;     /* due so far */
-    int64_t frame_step; /* step of the last of them, -1: none */
-    double next_frame;  /* s */
-    int64_t next_extra; /* index in model->frame_time */
-    double wall_time;   /* s, until the last checkpoint */
-    int64_t restarts;
-} sf_recorder;
+/* From the history so far. */
+sf_extremes sf_recorder_extremes(const sf_recorder *recorder);
 
 /* An empty one; release with sf_recorder_free. */
 void sf_recorder_begin(sf_recorder *recorder);
@@ -40,7 +50,7 @@ void sf_recorder_free(sf_recorder *recorder);
  * prescribed. */
 double sf_recorder_measure(const sf_model *model, const sf_state *state);
 
-/* Adds the state after sf_step_evaluate: a row of history, the extremes. */
+/* Adds the state after sf_step_evaluate: a row of history, the peak. */
 sf_status sf_recorder_add(sf_recorder *recorder, const sf_model *model, const sf_state *state, sf_error *err);
 
 /* Are the fields of the state just added due as those at the peak? One step past every maximum that exceeds

@@ -8,56 +8,13 @@
 #include <string.h>
 
 static const sf_member members[] = {
-#define NUMBER(member, units)                                                                                \
-    { #member, units, SF_H5_F64, 1, offsetof(sf_state, member) }
-#define COUNT(member)                                                                                        \
-    { #member, "1", SF_H5_I64, 1, offsetof(sf_state, member) }
-    COUNT(step),
-    NUMBER(time, "s"),
-    NUMBER(dt, "s"),
-    NUMBER(dt_old, "s"),
-    NUMBER(tightness, "1"),
-    {"missile_old", "m", SF_H5_F64, 1, offsetof(sf_state, missile.displacement_old)},
-    COUNT(contact_count),
-    NUMBER(penetration, "m"),
-    COUNT(contact_unsettled),
-    NUMBER(missile.displacement, "m"),
-    NUMBER(missile.velocity, "m s-1"),
-    NUMBER(missile.velocity_now, "m s-1"),
-    NUMBER(missile.acceleration, "m s-2"),
-    {"missile.force", "N", SF_H5_F64, 3, offsetof(sf_state, missile.force)},
-    NUMBER(missile.friction, "N"),
-    NUMBER(missile.contact_time, "s"),
-    NUMBER(missile.release_time, "s"),
-    NUMBER(ledger.kinetic_missile, "J"),
-    NUMBER(ledger.kinetic_pad, "J"),
-    NUMBER(ledger.stored, "J"),
-    NUMBER(ledger.hysteresis, "J"),
-    NUMBER(ledger.viscous, "J"),
-    NUMBER(ledger.stabilisation, "J"),
-    NUMBER(ledger.contact, "J"),
-    NUMBER(ledger.friction, "J"),
-    NUMBER(ledger.external, "J"),
-    NUMBER(ledger.reference, "J"),
-    NUMBER(ledger.stabilisation_drift, "J"),
-    NUMBER(ledger.error, "1"),
-    NUMBER(ledger.largest_error, "1"),
-    NUMBER(ledger.momentum_reference, "kg m s-1"),
-    NUMBER(ledger.impulse, "N s"),
-    NUMBER(ledger.momentum_error, "1"),
-    {"base_reaction", "N", SF_H5_F64, 3, offsetof(sf_state, base_reaction)},
-    NUMBER(constraint_residual, "m s-1"),
-    NUMBER(largest_compression, "1"),
-    NUMBER(smallest_jacobian, "1"),
-    COUNT(jacobian_node),
-    NUMBER(bound_step, "s"),
-    NUMBER(bound_load, "s-2"),
-    COUNT(measured_at),
-    NUMBER(measured_load, "s-2"),
-    NUMBER(ceiling, "s"),
-    COUNT(power_iterations),
+#define NUMBER(type, name, size, units, meaning) SF_MEMBER(sf_state, name, type, units, meaning),
+#define OF_MISSILE(type, name, size, units, meaning) SF_MEMBER(sf_state, missile.name, type, units, meaning),
+#define OF_LEDGER(type, name, size, units, meaning) SF_MEMBER(sf_state, ledger.name, type, units, meaning),
+    SF_STATE_NUMBERS(NUMBER) SF_MISSILE_NUMBERS(OF_MISSILE) SF_LEDGER_NUMBERS(OF_LEDGER)
 #undef NUMBER
-#undef COUNT
+#undef OF_MISSILE
+#undef OF_LEDGER
 };
 enum { MEMBERS = sizeof members / sizeof members[0] };
 
