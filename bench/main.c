@@ -2,6 +2,7 @@
 /* softfall-bench: steps of the 50 mm, 4.5 m/s drop at several spacings, without files, and how far they are
  * from what the machine can do. Writes JSON; docs/performance.md explains it. */
 #include "build_info.h"
+#include "core/program.h"
 #include "io/model_io.h"
 #include "machine.h"
 #include "io/json.h"
@@ -142,12 +143,12 @@ static sf_status build(const options *o, double spacing, bool full, sf_model *mo
     snprintf(coarse, sizeof coarse, "geometry.parameters.outer_spacing=%g", 2 * spacing);
     snprintf(end, sizeof end, "solver.end_time=%g ms", o->end_time);
     const char *const overrides[] = {fine, coarse, end};
-    if (sf_case_read(path, 3, overrides, &c, err) == SF_OK && sf_gmsh_begin(&session, err) == SF_OK &&
+    if (sf_case_read(path, 3, overrides, NULL, &c, err) == SF_OK && sf_gmsh_begin(&session, err) == SF_OK &&
         sf_gmsh_load(session, &c.pad, err) == SF_OK &&
         sf_gmsh_read_mesh(session, c.pad_group, c.length_unit, &mesh, err) == SF_OK &&
         (!c.missile.path || sf_gmsh_load(session, &c.missile, err) == SF_OK) &&
         sf_gmsh_read_surface(session, c.surface_group, c.length_unit, &surface, err) == SF_OK)
-        sf_model_build(&c, &mesh, &surface, model, &report, err);
+        sf_model_build(&c, &mesh, &surface, model, &report, NULL, err);
     sf_gmsh_end(&session);
     sf_surface_free(&surface);
     sf_mesh_free(&mesh);

@@ -34,7 +34,7 @@ static const char *in_folder(const char *name) {
 
 static sf_status read_case(const char *path, sf_error *err) {
     sf_case c;
-    if (sf_case_read(path, 0, NULL, &c, err) != SF_OK)
+    if (sf_case_read(path, 0, NULL, NULL, &c, err) != SF_OK)
         return err->status;
     for (int64_t k = 0; k < c.foam.curve_count; k++) { /* as the solver does with every model */
         sf_curve curve;
@@ -59,7 +59,7 @@ static sf_status read_motion(const char *path, sf_error *err) {
     sf_case c;
     snprintf(case_path, sizeof case_path, "%s", in_folder("driven.cfg"));
     snprintf(override, sizeof override, "missile.motion=%s", path);
-    if (sf_case_read(case_path, 1, overrides, &c, err) == SF_OK)
+    if (sf_case_read(case_path, 1, overrides, NULL, &c, err) == SF_OK)
         sf_case_free(&c);
     return err->status;
 }

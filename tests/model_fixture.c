@@ -55,7 +55,8 @@ void fixture_case(sf_case *c, const char *const *overrides) {
     int count = 0;
     while (overrides && overrides[count])
         count++;
-    require(sf_case_read(fixture_source("examples/eva50-v4.5/case.cfg"), count, overrides, c, &err), &err);
+    require(sf_case_read(fixture_source("examples/eva50-v4.5/case.cfg"), count, overrides, NULL, c, &err),
+            &err);
 }
 
 void fixture_make_elastic(sf_case *c) {
@@ -210,7 +211,7 @@ void fixture_dome(double radius, int rings, double x, double y, sf_surface *s) {
 void fixture_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, fixture *out) {
     sf_error err = SF_ERROR_INIT;
     memset(out, 0, sizeof *out);
-    sf_status status = sf_model_build(c, mesh, surface, &out->model, &out->report, &err);
+    sf_status status = sf_model_build(c, mesh, surface, &out->model, &out->report, NULL, &err);
     sf_surface_free(surface);
     sf_mesh_free(mesh);
     sf_case_free(c);

@@ -54,7 +54,7 @@ static int remove_folder(void **state) {
 /* Reads `text` as case.cfg with up to one override. */
 static sf_status read_text(const char *text, const char *override, sf_case *c, sf_error *err) {
     write_file("case.cfg", text);
-    return sf_case_read(in_folder("case.cfg"), override ? 1 : 0, &override, c, err);
+    return sf_case_read(in_folder("case.cfg"), override ? 1 : 0, &override, NULL, c, err);
 }
 
 static void read_good(const char *text, const char *override, sf_case *c) {
@@ -194,7 +194,7 @@ static void set_overrides_every_kind_of_value(void **state) {
         "solver.stop_after_rebound=false", "kernel.support_ratio=1.5",
         "pad.fixed=[\"left\", \"right\"]", "material.densification.start=0.6"};
     sf_error err = SF_ERROR_INIT;
-    if (sf_case_read(in_folder("case.cfg"), 10, sets, &c, &err) != SF_OK)
+    if (sf_case_read(in_folder("case.cfg"), 10, sets, NULL, &c, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_true(c.missile_card.speed == 5.2 && c.missile_card.mass == 5.0);
     assert_int_equal(c.pad.parameter_count, 2);
@@ -471,10 +471,10 @@ static void files_that_are_not_there_are_refused(void **state) {
     assert_refused(GOOD "@include \"case.cfg\"\n", NULL, "nested more than", NULL);
     sf_error err = SF_ERROR_INIT;
     sf_case c;
-    assert_int_equal(sf_case_read(in_folder("absent.cfg"), 0, NULL, &c, &err), SF_ERR_INPUT);
+    assert_int_equal(sf_case_read(in_folder("absent.cfg"), 0, NULL, NULL, &c, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "absent.cfg cannot be read"));
     sf_error of_folder = SF_ERROR_INIT;
-    assert_int_equal(sf_case_read(place.folder, 0, NULL, &c, &of_folder), SF_ERR_INPUT);
+    assert_int_equal(sf_case_read(place.folder, 0, NULL, NULL, &c, &of_folder), SF_ERR_INPUT);
     assert_non_null(strstr(of_folder.text, "is not a plain file"));
 }
 
@@ -628,7 +628,7 @@ static void examples_are_the_drops_they_are_called(void **state) {
         sf_error err = SF_ERROR_INIT;
         sf_case c;
         snprintf(path, sizeof path, "%s/examples/%s/case.cfg", root, drops[k].name);
-        if (sf_case_read(path, 0, NULL, &c, &err) != SF_OK)
+        if (sf_case_read(path, 0, NULL, NULL, &c, &err) != SF_OK)
             fail_msg("%s", err.text);
         int seen = 0;
         for (int i = 0; i < c.pad.parameter_count; i++) {

@@ -477,7 +477,7 @@ static void written_material_is_the_card_of_the_fit(void **state) {
                                           "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\n"
                                           "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
                                           "solver: { end_time = \"40 ms\"; };\n");
-    if (sf_case_read(path, 1, overrides, &c, &err) != SF_OK)
+    if (sf_case_read(path, 1, overrides, NULL, &c, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_int_equal(c.foam.curve_count, card.curve_count);
     assert_int_equal(c.foam.curve_points, card.curve_points);

@@ -5,6 +5,7 @@
 #include "formula.h"
 #include "model_fixture.h"
 #include "order.h"
+#include "core/program.h"
 #include "solver/ledger.h"
 #include "solver/step.h"
 #include "study.h"

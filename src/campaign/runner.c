@@ -198,7 +198,7 @@ static sf_status locate(const sf_runner *runner, const sf_runner_drop *drop, int
                         const char *const *list, place *at, sf_error *err) {
     sf_case c;
     uint64_t hash = 0;
-    if (sf_case_read(drop->case_path, count, list, &c, err) != SF_OK)
+    if (sf_case_read(drop->case_path, count, list, NULL, &c, err) != SF_OK)
         return err->status;
     hash_case(&c, &hash, err);
     sf_case_free(&c);

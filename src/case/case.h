@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/model.h"
+#include "core/sink.h"
 #include <stdio.h>
 
 enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
@@ -67,9 +68,9 @@ typedef struct sf_case {
  * libconfig syntax or bare text, which is taken as a string). Refuses unknown groups and keys (naming file,
  * line and what exists), missing keys, wrong types, units of another dimension and values out of bounds.
  * Paths are relative to the file that holds the key (the case, or what it includes); @include is relative to
- * the case file's folder. Warnings and notes go to stderr. On failure `*out` is zeroed. */
-sf_status sf_case_read(const char *path, int count, const char *const *overrides, sf_case *out,
-                       sf_error *err);
+ * the case file's folder. Warnings and notes go to `sink`. On failure `*out` is zeroed. */
+sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
+                       sf_case *out, sf_error *err);
 void sf_case_free(sf_case *c);
 
 /* Bytes of motion_time, and of motion_displacement; 0: the missile is free. */

@@ -69,6 +69,7 @@ typedef struct sf_case_reader {
     config_t config;
     sf_case_source source;  /* of the settings without a hook */
     bool given[SF_KEY_MAX]; /* per row of the table */
+    const sf_sink *sink;    /* borrowed */
     FILE *listing;          /* the parameters text under construction */
 } sf_case_reader;
 

@@ -62,9 +62,8 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
         SF_FAIL(err, status, "%s (named at %s)", inner.text, sf_case_where(reader, setting, where));
     } else {
         if (curve.extended)
-            fprintf(stderr,
-                    "softfall-pre: note: %s begins at strain %g; the point (0, 0) was put before it\n", path,
-                    curve.strain[1]);
+            sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
+                         path, curve.strain[1]);
         status = add_curve(&reader->out->foam, rate, &curve, err);
     }
     sf_case_curve_free(&curve);

@@ -274,10 +274,10 @@ static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
                        run->end_time, run->end_time / run->frame_interval, MOST_FRAMES);
     for (int k = 0; k < c->frame_time_count; k++)
         if (c->frame_time[k] > run->end_time)
-            fprintf(stderr,
-                    "softfall-pre: warning: %s: output.times: %g s lies beyond solver.end_time (%g s): there "
-                    "will be no such frame\n",
-                    sf_case_where_is(reader, "output.times", where), c->frame_time[k], run->end_time);
+            sf_sink_tell(reader->sink, SF_WARNING,
+                         "%s: output.times: %g s lies beyond solver.end_time (%g s): there "
+                         "will be no such frame",
+                         sf_case_where_is(reader, "output.times", where), c->frame_time[k], run->end_time);
     return SF_OK;
 }
 
@@ -328,10 +328,10 @@ static sf_status check_complete(const sf_case_reader *reader, sf_error *err) {
     if (check_times(reader, err) != SF_OK || check_reach(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
-        fprintf(stderr,
-                "softfall-pre: warning: %s: kernel.support_ratio = %g: from 2 on the constraint matrix is "
-                "nearly singular\n",
-                sf_case_where_is(reader, "kernel.support_ratio", where), c->support_ratio);
+        sf_sink_tell(reader->sink, SF_WARNING,
+                     "%s: kernel.support_ratio = %g: from 2 on the constraint matrix is "
+                     "nearly singular",
+                     sf_case_where_is(reader, "kernel.support_ratio", where), c->support_ratio);
     return SF_OK;
 }
 
@@ -348,10 +348,10 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
     return check_names(reader, config_root_setting(config), "", err);
 }
 
-sf_status sf_case_read(const char *path, int count, const char *const *overrides, sf_case *out,
-                       sf_error *err) {
+sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
+                       sf_case *out, sf_error *err) {
     memset(out, 0, sizeof *out);
-    sf_case_reader reader = {.path = path, .out = out};
+    sf_case_reader reader = {.path = path, .out = out, .sink = sink};
     size_t listing_size = 0;
     config_init(&reader.config);
     config_set_destructor(&reader.config, free); /* of the hooks */

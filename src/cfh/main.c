@@ -3,6 +3,7 @@
 #include "cfh/options.h"
 #include "cfh/plot.h"
 #include "cfh/series.h"
+#include "core/program.h"
 #include "io/provenance.h"
 #include "case/case.h"
 
@@ -32,6 +33,7 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
     char *material = NULL;
     const char *list[SF_RUNNER_OVERRIDES + 1];
     int count = 0;
+    const sf_sink sink = sf_program_sink("softfall-cfh");
     if (o->material) {
         if (asprintf(&material, "material=@%s", o->material) < 0)
             return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", o->material);
@@ -39,7 +41,7 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
     }
     for (int k = 0; k < o->override_count; k++)
         list[count++] = o->overrides[k];
-    if (sf_case_read(o->case_path, count, list, &c, err) == SF_OK) {
+    if (sf_case_read(o->case_path, count, list, &sink, &c, err) == SF_OK) {
         *out = (setting){c.missile_card.speed, c.missile_card.mass, find_table_end(&c.foam)};
         if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_FAIL(err, SF_ERR_INPUT,

@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/error.h"
 
-#include <errno.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+
+void sf_error_clean(char *sentence) {
+    for (char *c = sentence; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 127)
+            *c = ' ';
+}
 
 sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format,
                        ...) {
@@ -21,30 +25,8 @@ sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int l
     va_start(args, format);
     vsnprintf(err->text, sizeof err->text, format, args);
     va_end(args);
-    /* Texts of files stand in the sentence: their line ends and escapes must not reach the terminal. */
-    for (char *c = err->text; *c; c++)
-        if ((unsigned char)*c < ' ' || *c == 127)
-            *c = ' ';
+    sf_error_clean(err->text);
     return status;
-}
-
-void sf_error_ignore_closed_pipe(void) {
-    signal(SIGPIPE, SIG_IGN);
-}
-
-int sf_error_report(const sf_error *err, const char *program) {
-    sf_error last = *err;
-    errno = 0;
-    if (fflush(stdout) != 0 || ferror(stdout))
-        SF_FAIL(&last, SF_ERR_IO, "the standard output cannot be written%s%s", errno ? ": " : "",
-                errno ? strerror(errno) : "");
-    if (last.status == SF_OK)
-        return 0;
-    if (getenv("SOFTFALL_DEBUG"))
-        fprintf(stderr, "%s: [%s:%d] %s\n", program, last.where, last.line, last.text);
-    else
-        fprintf(stderr, "%s: %s\n", program, last.text);
-    return (int)last.status;
 }
 
 /* Large blocks ask for large pages: a step reads them from end to end, and address translation of small pages

@@ -36,15 +36,9 @@ typedef struct sf_error {
 sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
-/* A reader of the standard output that goes away (`softfall-pre ... | head -1`) shall not end the program in
- * the middle of its files: the signal is ignored, and sf_error_report finds that the output failed. To be
- * called first in main. */
-void sf_error_ignore_closed_pipe(void);
-
-/* Prints "program: sentence" (and the source line when SOFTFALL_DEBUG is set in the environment) to stderr.
- * Without a failure it is one if the standard output could not be written. Returns the process exit code that
- * belongs to the status. */
-int sf_error_report(const sf_error *err, const char *program);
+/* Replaces control characters by blanks: texts of files stand in sentences, and their line ends and escapes
+ * must not reach the terminal. */
+void sf_error_clean(char *sentence);
 
 /* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
  * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit WORD ...: material parameters from measurements. The first word chooses what is measured. */
 #include "build_info.h"
+#include "core/program.h"
 #include "core/error.h"
 #include "fit/compression/command.h"
 #include "fit/drop/command.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-post RESULTS -o DIR: injury figures, curves, pictures and ParaView files from a results.h5. */
 #include "build_info.h"
+#include "core/program.h"
 #include "io/provenance.h"
 #include "post/compare.h"
 #include "post/csv.h"

@@ -297,12 +297,12 @@ static sf_status first_step(const sf_model *m, double *step, sf_error *err) {
 }
 
 sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *m, sf_build_report *report,
-                         sf_error *err) {
+                         const sf_sink *sink, sf_error *err) {
     memset(m, 0, sizeof *m);
     memset(report, 0, sizeof *report);
     if (build_cloud(c, mesh, m, report, err) == SF_OK && build_sets(c, mesh, m, report, err) == SF_OK &&
         build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK &&
-        sf_drop_check(c, mesh, m, err) == SF_OK && sf_model_check(m, err) == SF_OK)
+        sf_drop_check(c, mesh, m, sink, err) == SF_OK && sf_model_check(m, err) == SF_OK)
         first_step(m, &report->first_step, err);
     if (err->status != SF_OK)
         sf_model_free(m);

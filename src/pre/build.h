@@ -27,8 +27,8 @@ typedef struct sf_build_report {
 
 /* Builds the model. The mesh is reordered and its cells move into the model; the case's curves, motion and
  * the surface's arrays move as well (the sources stay valid for their free functions). On failure `*model` is
- * empty. */
+ * empty. Warnings go to `sink`. */
 sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *model,
-                         sf_build_report *report, sf_error *err);
+                         sf_build_report *report, const sf_sink *sink, sf_error *err);
 
 #endif

@@ -179,19 +179,20 @@ static bool holds(const sf_case *c, const char *name) {
     return false;
 }
 
-static void tell_free_planes(const sf_case *c, const sf_mesh *mesh) {
+static void tell_free_planes(const sf_case *c, const sf_mesh *mesh, const sf_sink *sink) {
     for (int k = 0; k < mesh->set_count; k++)
         if (strncmp(mesh->set[k].name, "symmetry", 8) == 0 && !holds(c, mesh->set[k].name))
-            fprintf(stderr,
-                    "softfall-pre: warning: pad.symmetry leaves out the group \"%s\" of the geometry: that "
-                    "side is free, and what is modelled counts as the whole pad\n",
-                    mesh->set[k].name);
+            sf_sink_tell(sink, SF_WARNING,
+                         "pad.symmetry leaves out the group \"%s\" of the geometry: that "
+                         "side is free, and what is modelled counts as the whole pad",
+                         mesh->set[k].name);
 }
 
-sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
+sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_sink *sink,
+                        sf_error *err) {
     if (check_thickness(m, err) != SF_OK || check_mass(m, err) != SF_OK ||
         check_symmetry(c, mesh, m, err) != SF_OK)
         return err->status;
-    tell_free_planes(c, mesh);
+    tell_free_planes(c, mesh, sink);
     return SF_OK;
 }

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-pre: CASE -> model.h5. */
 #include "build_info.h"
+#include "core/program.h"
 #include "io/model_io.h"
-#include "pre/build.h"
 #include "case/case.h"
-#include "pre/mesh/gmsh_session.h"
+#include "pre/make.h"
 #include "pre/report.h"
 
 #include <argp.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { MAX_OVERRIDES = 64, KEY_SET = 1, KEY_KEYS = 2 };
@@ -54,38 +53,17 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     }
 }
 
-/* Pad mesh and missile surface, from one geometry or two; `libraries` gets the versions that made them. */
-static sf_status read_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface, char *libraries,
-                               size_t size, sf_error *err) {
-    sf_gmsh *session = NULL;
-    if (sf_gmsh_begin(&session, err) == SF_OK && sf_gmsh_load(session, &c->pad, err) == SF_OK &&
-        sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err) == SF_OK &&
-        (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK))
-        sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
-    if (session)
-        snprintf(libraries, size, "gmsh %s, HDF5 %s", sf_gmsh_version(session), sf_h5_version());
-    sf_gmsh_end(&session);
-    return err->status;
-}
-
 static sf_status build(const options *o, const char *command, sf_error *err) {
     sf_case c = {0};
-    sf_mesh mesh = {0};
-    sf_surface surface = {0};
     sf_model model = {0};
     sf_build_report report;
-    char libraries[96];
+    char libraries[SF_LIBRARIES_SIZE];
+    const sf_sink sink = sf_program_sink("softfall-pre");
     if (!o->force && access(o->output, F_OK) == 0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it", o->output);
-    if (sf_case_read(o->case_path, o->overrides, o->override, &c, err) != SF_OK ||
-        read_geometry(&c, &mesh, &surface, libraries, sizeof libraries, err) != SF_OK ||
-        sf_model_build(&c, &mesh, &surface, &model, &report, err) != SF_OK)
+    if (sf_case_read(o->case_path, o->overrides, o->override, &sink, &c, err) != SF_OK ||
+        sf_model_make(&c, &model, &report, libraries, &sink, err) != SF_OK)
         goto done;
-    if (report.contact_held) {
-        SF_FAIL(err, SF_ERR_INPUT, "pad.contact: every node of the group \"%s\" is held by pad.fixed",
-                c.contact_group);
-        goto done;
-    }
     sf_report_print(stdout, &model, &report);
     sf_provenance provenance = {.program = "softfall-pre",
                                 .command_line = command,
@@ -97,8 +75,6 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
         printf("%-26s%s\n", "written", o->output);
 done:
     sf_model_free(&model);
-    sf_surface_free(&surface);
-    sf_mesh_free(&mesh);
     sf_case_free(&c);
     return err->status;
 }

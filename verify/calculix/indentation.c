@@ -150,7 +150,7 @@ static sf_status read_geometry(const sf_indentation *in, const sf_indentation_ca
     while (list[count])
         count++;
     snprintf(file, sizeof file, "%s/case.cfg", in->folder);
-    if (sf_case_read(file, count, list, &k, err) == SF_OK && sf_gmsh_begin(&session, err) == SF_OK &&
+    if (sf_case_read(file, count, list, NULL, &k, err) == SF_OK && sf_gmsh_begin(&session, err) == SF_OK &&
         sf_gmsh_load(session, &k.pad, err) == SF_OK &&
         sf_gmsh_read_mesh(session, k.pad_group, k.length_unit, mesh, err) == SF_OK &&
         sf_gmsh_load(session, &k.missile, err) == SF_OK)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/program.h"
 #include "fit/compression/command.h"
 
 #include "campaign/runner.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/program.h"
 #include "fit/drop/command.h"
 
 #include "fit/drop/report.h"

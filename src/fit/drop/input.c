@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/program.h"
 #include "fit/drop/input.h"
 
 #include "campaign/config.h"
@@ -120,6 +121,7 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     const char *form = "gas", *name = "material", *title = "Identified foam";
     char override[4096];
     const char *const overrides[] = {override};
+    const sf_sink sink = sf_program_sink("softfall-fit");
     sf_case c;
     if (sf_config_text(config, root, "curve_form", false, &form, err) != SF_OK ||
         sf_config_text(config, root, "name", false, &name, err) != SF_OK ||
@@ -138,7 +140,7 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     snprintf(in->title, sizeof in->title, "%s", title);
     snprintf(override, sizeof override, "material=@%s", in->material_path);
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
-        if (sf_case_read(in->drop[k].case_path, 1, overrides, &c, err) != SF_OK)
+        if (sf_case_read(in->drop[k].case_path, 1, overrides, &sink, &c, err) != SF_OK)
             return err->status;
         if (k == 0) {
             in->form.base = c.foam;

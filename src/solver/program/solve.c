@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/program/solve.h"
+
+#include "build_info.h"
+#include "core/program.h"
+#include "io/model_io.h"
+#include "solver/program/report.h"
+#include "solver/run/run.h"
+#include <limits.h>
+#include <malloc.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A file of an earlier run is replaced only with --force. */
+static sf_status check_output(const sf_solve_options *o, const sf_output *output, sf_error *err) {
+    if (o->force)
+        return SF_OK;
+    if (access(output->results, F_OK) == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it%s", output->results,
+                       access(output->checkpoint, F_OK) == 0 ? ", --restart goes on with it" : "");
+    if (access(output->checkpoint, F_OK) == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --restart %s goes on from it, --force starts anew",
+                       output->checkpoint, output->results);
+    return SF_OK;
+}
+
+/* The model of a new run, or that of the run so far, and its hash. */
+static sf_status read_model(const sf_solve_options *o, const sf_checkpoint *from, sf_model *model,
+                            sf_h5 **file, char hash[17], sf_error *err) {
+    const char *path = o->model ? o->model : from->model_path;
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_model_read(path, model, file, &inner) != SF_OK)
+        return SF_FAIL(err, inner.status, "%.800s%s", inner.text,
+                       o->restart && !o->model ? " (--restart RESULTS MODEL says where the model is now)"
+                                               : "");
+    snprintf(hash, 17, "%016llx", (unsigned long long)sf_model_hash(model));
+    if (o->restart && strcmp(hash, from->model_hash) != 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s is not the model of %s: its hash is %s, that of the run %s",
+                       path, from->path, hash, from->model_hash);
+    return SF_OK;
+}
+
+static sf_status set_end_time(const sf_solve_options *o, const sf_checkpoint *from, sf_model *model,
+                              sf_error *err) {
+    model->run.end_time = o->end_time > 0 ? o->end_time : o->restart ? from->end_time : model->run.end_time;
+    if (o->restart && from->time_before >= model->run.end_time)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s is past %.6g s already, beyond the end time %.6g s", from->path,
+                       from->time_before, model->run.end_time);
+    return sf_model_check(model, err);
+}
+
+/* Other programs may round differently. */
+static void compare_builds(const sf_checkpoint *from) {
+    const sf_sink sink = sf_program_sink("softfall-solve");
+    if (strcmp(from->git_revision, SF_GIT_REVISION) != 0 ||
+        strcmp(from->compiler_flags, SF_COMPILER_FLAGS) != 0)
+        sf_sink_tell(&sink, SF_WARNING,
+                     "%s is from another build (%s): the last digits may differ from those of one run",
+                     from->path, from->git_revision);
+}
+
+static void remove_all(const sf_output *output) {
+    unlink(output->results);
+    unlink(output->checkpoint);
+    sf_output_clear(output);
+}
+
+/* What a failure leaves behind. */
+static void handle_failure(const sf_solve_options *o, const sf_output *output, const sf_state *state) {
+    if (o->remove_failed) {
+        remove_all(output);
+        return;
+    }
+    fprintf(stderr, "softfall-solve: %s has the frame of the failure", output->results);
+    if (!o->no_checkpoint && access(output->checkpoint, F_OK) == 0)
+        fprintf(stderr, "; %s is step %lld, t = %.6g s, the last that held", output->checkpoint,
+                (long long)state->step, state->time);
+    fputc('\n', stderr);
+}
+
+/* All that a step needs, and the base of the results: the mesh, and the shape functions of inner nodes, are
+ * never in memory together with what the solver derives from the model. */
+static sf_status build(sf_model *model, const sf_h5 *model_file, const sf_provenance *provenance,
+                       const sf_output *output, sf_shapes *shapes, sf_operators *operators, sf_state *state,
+                       sf_error *err) {
+    if (sf_output_base(output, model, model_file, provenance, err) != SF_OK ||
+        sf_shapes_open(model, model_file, shapes, err) != SF_OK)
+        return err->status;
+    sf_model_drop_mesh(model);
+    sf_model_drop_inner_shapes(model);
+    if (sf_operators_take(model, operators, err) != SF_OK)
+        return err->status;
+    malloc_trim(0); /* what building took and gave back */
+    return sf_state_create(model, state, err);
+}
+
+sf_status sf_solve(const sf_solve_options *o, const char *command, const volatile sig_atomic_t *stop,
+                   sf_error *err) {
+    sf_model model = {0};
+    sf_operators operators = {0};
+    sf_state state = {0};
+    sf_shapes shapes = {0};
+    sf_output output;
+    sf_checkpoint from = {0};
+    sf_h5 *model_file = NULL;
+    char libraries[64], hash[17], path[PATH_MAX];
+    sf_provenance provenance = {.program = "softfall-solve",
+                                .command_line = command,
+                                .libraries = libraries,
+                                .model_path = path,
+                                .model_hash = hash};
+    snprintf(libraries, sizeof libraries, "HDF5 %s", sf_h5_version());
+    if (sf_output_name(&output, o->output, err) != SF_OK)
+        return err->status;
+    if (o->restart ? sf_checkpoint_open(output.checkpoint, &from, err) : check_output(o, &output, err))
+        return err->status;
+    if (read_model(o, &from, &model, &model_file, hash, err) != SF_OK ||
+        set_end_time(o, &from, &model, err) != SF_OK)
+        goto done;
+    if (!realpath(o->model ? o->model : from.model_path, path))
+        snprintf(path, sizeof path, "%s", o->model);
+    sf_solve_print_model(&model, o->threads);
+    if (o->restart)
+        compare_builds(&from);
+    if (sf_output_open(&output, err) != SF_OK ||
+        build(&model, model_file, &provenance, &output, &shapes, &operators, &state, err) != SF_OK ||
+        sf_output_start(&output, o->restart != NULL, err) != SF_OK) {
+        sf_output_abandon(&output);
+        goto done;
+    }
+    output.shapes = &shapes;
+    if (!o->restart)
+        unlink(output.checkpoint); /* of an earlier run, with --force */
+    sf_run run = {.stop = stop,
+                  .log = stdout,
+                  .terminal = isatty(STDOUT_FILENO),
+                  .threads = o->threads,
+                  .checkpoints = !o->no_checkpoint,
+                  .checkpoint_wall = o->checkpoint_wall,
+                  .checkpoint_time = o->checkpoint_time,
+                  .provenance = &provenance};
+    sf_run_drop(&model, &operators, &state, &run, &output, o->restart ? &from : NULL, err);
+    if (state.step > 0)
+        sf_solve_print_ledger(&model, &state, &run);
+    if (err->status == SF_ERR_NUMERIC)
+        handle_failure(o, &output, &state);
+done:
+    sf_output_close(&output);
+    sf_checkpoint_close(&from);
+    sf_shapes_close(&shapes);
+    sf_h5_close(&model_file, err);
+    sf_state_free(&state);
+    sf_operators_free(&operators);
+    sf_model_free(&model);
+    return err->status;
+}
