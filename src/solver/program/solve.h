@@ -7,7 +7,7 @@
 #include "solver/program/options.h"
 #include <signal.h>
 
-/* Solves the model of the options, or goes on with a run; `command` is for the provenance. Non-zero `*stop`
+/* Solves the model of the options, or resumes a run; `command` is for the provenance. Non-zero `*stop`
  * ends the run after the present step. Progress and report go to stdout. */
 sf_status sf_solve(const sf_solve_options *options, const char *command, const volatile sig_atomic_t *stop,
                    sf_error *err);

@@ -180,3 +180,12 @@ sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_sta
     free(buffer);
     return err->status;
 }
+
+sf_status sf_frame_take(const sf_model *m, const sf_operators *op, const sf_state *s, sf_frame_field field,
+                        double *values, sf_error *err) {
+    sf_shape_rows rows = {0};
+    if (sf_shapes_read(NULL, m, 0, m->node_count, &rows, err) == SF_OK)
+        take_field(m, op, s, &rows, field, 0, m->node_count, values);
+    sf_shapes_release(&rows);
+    return err->status;
+}

@@ -16,4 +16,8 @@ sf_status sf_frame_write(const sf_model *model, const sf_operators *operators, c
                          const sf_shapes *shapes, int64_t fields, const char *path, sf_h5 *file,
                          sf_error *err);
 
+/* One field of all nodes, [node_count][components]; the model has all its shape functions. */
+sf_status sf_frame_take(const sf_model *model, const sf_operators *operators, const sf_state *state,
+                        sf_frame_field field, double *values, sf_error *err);
+
 #endif

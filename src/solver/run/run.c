@@ -2,13 +2,13 @@
 #include "solver/run/run.h"
 
 #include "core/units.h"
+#include "solver/run/ending.h"
 #include "solver/step.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static const double REBOUND_WAIT = 1e-3;   /* s, without contact before the run may end */
 static const double PROGRESS_INTERVAL = 5; /* s of wall time between plain lines */
 
 typedef struct drop {
@@ -72,12 +72,6 @@ static bool checkpoint_is_due(const drop *d) {
            (d->s->time >= d->next_checkpoint || sf_clock() - d->last_checkpoint >= d->run->checkpoint_wall);
 }
 
-/* Has the missile left the pad for good? A driven one may come back. */
-static bool has_rebounded(const sf_model *m, const sf_state *s) {
-    return m->run.stop_after_rebound && sf_missile_is_leaving(m, &s->missile) && s->contact_count == 0 &&
-           s->time - s->missile.release_time > REBOUND_WAIT;
-}
-
 /* A new step: forces, a row of history, the fields at the peak and a frame if they are due. */
 static sf_status take_step(drop *d, sf_error *err) {
     if (sf_step_evaluate(d->m, d->op, d->s, err) != SF_OK || sf_recorder_add(&d->r, d->m, d->s, err) != SF_OK)
@@ -97,9 +91,9 @@ static const char *find_ending(const drop *d) {
         return d->s->step == d->last_step ? "failed" : NULL;
     if (*d->run->stop)
         return "interrupted";
-    if (has_rebounded(d->m, d->s))
+    if (sf_ending_rebounded(d->m, d->s))
         return "rebound";
-    return d->s->time >= d->m->run.end_time ? "finished" : NULL;
+    return sf_ending_finished(d->m, d->s) ? "finished" : NULL;
 }
 
 /* Steps to the end. A checkpoint holds a step that has been taken. */

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall: drop tests of rigid missiles on foam pads.
+ *
+ *     case -> model -> drop -> figures
+ *
+ * A case (case.cfg, docs/case.md) and its geometry give a model, which never changes after that. A drop is
+ * the solution of a model as it advances in time. The figures are those of softfall-post, digit for digit.
+ *
+ * Two libraries: libsoftfall has all functions but those under "Building a model", which are in
+ * libsoftfall-build, the only one that needs gmsh.
+ *
+ * Units are SI (m, kg, s, N, J, Pa), accelerations in figures are in g = 9.80665 m/s2. The frame is that of
+ * the geometry, with the pad's top towards +z. Forces and energies are those of the whole pad and the whole
+ * missile, whatever the symmetry of the model.
+ *
+ * Handles are opaque. A function that creates one gives it to the caller, who releases it with the function
+ * of that name and `_free`, which takes NULL as well. On failure the handle is NULL.
+ *
+ * Nothing is printed and the process is never ended. A function that can fail returns a status; `error`, if
+ * it is not NULL, then holds the status and a sentence that names the entity, the value and the bound. After
+ * success `error` holds SOFTFALL_OK and "". Texts are UTF-8.
+ *
+ * Threads: different handles may be used by different threads of the host at the same time, except that only
+ * one model can be built at a time and files are read and written by one thread at a time. */
+#ifndef SOFTFALL_SOFTFALL_H
+#define SOFTFALL_SOFTFALL_H
+
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define SOFTFALL_API __attribute__((visibility("default")))
+#else
+#define SOFTFALL_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Status, messages ---- */
+
+/* The numbers are the exit codes of the programs. */
+typedef enum softfall_status {
+    SOFTFALL_OK = 0,
+    SOFTFALL_INPUT = 2,   /* an argument, the case, the geometry or a curve is wrong: the user can mend it */
+    SOFTFALL_FILE = 3,    /* a file could not be opened, read, written or renamed */
+    SOFTFALL_MODEL = 4,   /* the model breaks one of its invariants */
+    SOFTFALL_NUMERIC = 5, /* the solution failed: collapsed domain, non-finite value, energy growth */
+    SOFTFALL_MEMORY = 6,  /* an allocation failed */
+    SOFTFALL_LIBRARY = 7  /* gmsh, HDF5 or another library reported an error that is none of the above */
+} softfall_status;
+
+typedef struct softfall_error {
+    softfall_status status;
+    char text[1024]; /* one sentence, no line end */
+} softfall_error;
+
+typedef enum softfall_severity {
+    SOFTFALL_NOTE = 0,   /* a choice that was made for the user */
+    SOFTFALL_WARNING = 1 /* legal, but probably not what the user wants */
+} softfall_severity;
+
+/* Where warnings and notes go. `sentence` is valid during the call only. Wherever a sink is taken, NULL means
+ * that nobody listens. */
+typedef struct softfall_sink {
+    void (*tell)(void *user, softfall_severity severity, const char *sentence);
+    void *user; /* handed on */
+} softfall_sink;
+
+/* "0.1.0" and the git revision; static storage. */
+SOFTFALL_API const char *softfall_version(void);
+SOFTFALL_API const char *softfall_revision(void);
+
+/* ---- Building a model (libsoftfall-build) ---- */
+
+typedef struct softfall_case softfall_case;
+typedef struct softfall_model softfall_model;
+
+/* Reads and checks a case file. `overrides`: `count` texts "group.key=value" as softfall-pre's --set takes
+ * them, borrowed for the call. */
+SOFTFALL_API softfall_status softfall_case_read(const char *path, const char *const *overrides, int count,
+                                                const softfall_sink *sink, softfall_case **out,
+                                                softfall_error *error);
+SOFTFALL_API void softfall_case_free(softfall_case *c);
+
+/* Meshes the geometry of the case and builds the model. A case can be built once; afterwards it can only be
+ * freed. */
+SOFTFALL_API softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink,
+                                                  softfall_model **out, softfall_error *error);
+
+/* ---- Models ---- */
+
+typedef struct softfall_model_info {
+    int64_t node_count;
+    int64_t symmetry_factor;   /* 1, 2 or 4: how many times the modelled part makes the whole */
+    double thickness;          /* m, of the pad */
+    double missile_mass;       /* kg, of the whole missile; 0 with a prescribed motion */
+    double missile_speed;      /* m/s, at t = 0; 0 with a prescribed motion */
+    double end_time;           /* s */
+    int has_prescribed_motion; /* 1: the missile's motion is given, 0: it is free */
+} softfall_model_info;
+
+/* model.h5 of softfall-pre (docs/formats.md). An earlier file is replaced, whole or not at all. */
+SOFTFALL_API softfall_status softfall_model_read(const char *path, softfall_model **out,
+                                                 softfall_error *error);
+SOFTFALL_API softfall_status softfall_model_write(const softfall_model *model, const char *path,
+                                                  softfall_error *error);
+SOFTFALL_API void softfall_model_free(softfall_model *model);
+
+SOFTFALL_API softfall_model_info softfall_model_describe(const softfall_model *model);
+/* [node_count][3] m, reference positions of the nodes; owned by the model. */
+SOFTFALL_API const double *softfall_model_positions(const softfall_model *model);
+
+/* ---- Drops ---- */
+
+typedef struct softfall_drop softfall_drop;
+
+typedef struct softfall_drop_options {
+    int threads;     /* OpenMP threads, 0: what OpenMP would take; the bits do not depend on it */
+    double end_time; /* s, 0: that of the model */
+} softfall_drop_options;
+
+typedef enum softfall_ending {
+    SOFTFALL_RUNNING = 0,
+    SOFTFALL_REBOUND = 1, /* the missile has left the pad upwards */
+    SOFTFALL_FINISHED = 2 /* the end time is reached */
+} softfall_ending;
+
+/* Of one time step; the names are those of the history's columns. */
+typedef struct softfall_observation {
+    int64_t step;
+    double time;                /* s */
+    double time_step;           /* s, the one that follows */
+    double acceleration;        /* m/s2, of the missile, against its direction of motion */
+    double velocity;            /* m/s, along its direction of motion */
+    double displacement;        /* m, likewise, since t = 0 */
+    double indentation;         /* m, depth of its first touching point below the undeformed top */
+    double contact_force;       /* N, on the missile, against its direction of motion */
+    double largest_compression; /* 1, 1 - smallest principal stretch */
+    double energy_error;        /* 1, of the energy balance */
+} softfall_observation;
+
+/* A column of the history, or a field over the nodes; static storage. */
+typedef struct softfall_quantity {
+    const char *name, *units, *description;
+    int components; /* 1, 3 or 9 (row-major) */
+} softfall_quantity;
+
+/* A drop at t = 0 before its first step. The model is borrowed: it must outlive the drop, and several drops
+ * may share it. `options` may be NULL: all zero. */
+SOFTFALL_API softfall_status softfall_drop_create(const softfall_model *model,
+                                                  const softfall_drop_options *options, softfall_drop **out,
+                                                  softfall_error *error);
+SOFTFALL_API void softfall_drop_free(softfall_drop *drop);
+
+/* Advances the drop by one step; the first computes the state at t = 0. `ending` (may be NULL) tells whether
+ * the drop has ended with it; further steps of an ended drop change nothing. After a failure the history up
+ * to the last good step can still be read, and further steps return the same failure. */
+SOFTFALL_API softfall_status softfall_drop_step(softfall_drop *drop, softfall_ending *ending,
+                                                softfall_error *error);
+
+/* Steps until the drop ends, or until `observe` (may be NULL), which is called after each step, returns
+ * nonzero: then `ending` is SOFTFALL_RUNNING and the drop can be continued. */
+SOFTFALL_API softfall_status softfall_drop_run(softfall_drop *drop,
+                                               int (*observe)(void *user,
+                                                              const softfall_observation *observation),
+                                               void *user, softfall_ending *ending, softfall_error *error);
+
+/* The last step. Before the first: all zero, but step = -1. */
+SOFTFALL_API softfall_observation softfall_drop_observe(const softfall_drop *drop);
+
+/* The history, a value for each step: `columns` [count] lists what there is. The values of a column are owned
+ * by the drop and valid until its next step; the result is their number, -1 if there is no such column. */
+SOFTFALL_API const softfall_quantity *softfall_drop_columns(const softfall_drop *drop, int *count);
+SOFTFALL_API int64_t softfall_drop_history(const softfall_drop *drop, const char *name,
+                                           const double **values);
+
+/* Fields over the nodes after the last step. `values` [node_count][components] belongs to the caller; `size`
+ * is its number of doubles. SOFTFALL_INPUT: no such field, another size, or no step yet. */
+SOFTFALL_API const softfall_quantity *softfall_drop_fields(const softfall_drop *drop, int *count);
+SOFTFALL_API softfall_status softfall_drop_field(const softfall_drop *drop, const char *name, double *values,
+                                                 int64_t size, softfall_error *error);
+
+/* ---- Figures ---- */
+
+/* What the run does not define (the missile never touched, contact had not ended, its motion was prescribed)
+ * is NaN. Indicative, not a certification. */
+typedef struct softfall_figures {
+    int touched;                          /* 1: the missile touched the pad */
+    int rebounded;                        /* 1: contact had ended before the last step, upwards */
+    double a_max_g;                       /* g, largest deceleration of the filtered curve */
+    double a_max_time;                    /* s */
+    double hic;                           /* 1, head injury criterion of the filtered curve */
+    double hic_t1, hic_t2;                /* s, its window */
+    double hic15, hic36;                  /* 1, windows limited to 15 and 36 ms */
+    double gadd;                          /* 1, Gadd severity index */
+    double clip_3ms_g;                    /* g, exceeded for 3 ms without a break */
+    double a_max_raw_g;                   /* g, of the unfiltered curve */
+    double v0, v_rebound;                 /* m/s, at contact and upwards after it */
+    double absorbed_energy;               /* J, lost by the missile */
+    double max_indentation;               /* m */
+    double max_mean_strain;               /* 1, over the thickness */
+    double max_local_strain;              /* 1 */
+    double energy_error;                  /* 1, largest; above 0.01 do not trust the figures */
+    double stabilisation_energy_fraction; /* 1, of the internal energy at its peak; above 0.05 likewise */
+    double contact_energy_fraction;       /* 1, likewise; above 0.01 likewise */
+    double peak_force;                    /* N, largest contact force (prescribed motion, like the next) */
+    double peak_stress;                   /* Pa, that force over the pad's mean cross-section */
+    double work;                          /* J, largest work of the motion on the pad */
+} softfall_figures;
+
+/* Of a drop so far (three steps at least), or of a results.h5 of softfall-solve. `filter`: channel frequency
+ * class (SAE J211) 60, 180, 600 or 1000; softfall-post takes 1000 unless told otherwise. */
+SOFTFALL_API softfall_status softfall_drop_figures(const softfall_drop *drop, double filter,
+                                                   softfall_figures *figures, softfall_error *error);
+SOFTFALL_API softfall_status softfall_results_figures(const char *path, double filter,
+                                                      softfall_figures *figures, softfall_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files behind include/softfall/softfall.h share. */
+#ifndef SF_API_API_H
+#define SF_API_API_H
+
+#include "softfall/softfall.h"
+
+#include "core/error.h"
+#include "core/model.h"
+#include "io/provenance.h"
+#include <stdio.h>
+
+_Static_assert((int)SOFTFALL_INPUT == SF_ERR_INPUT && (int)SOFTFALL_FILE == SF_ERR_IO &&
+                   (int)SOFTFALL_MODEL == SF_ERR_MODEL && (int)SOFTFALL_NUMERIC == SF_ERR_NUMERIC &&
+                   (int)SOFTFALL_MEMORY == SF_ERR_MEMORY && (int)SOFTFALL_LIBRARY == SF_ERR_LIBRARY,
+               "the two lists of statuses are one");
+
+struct softfall_model {
+    sf_model model;
+    char *case_text, *parameters, *mesh_hash; /* of the provenance; NULL: unknown; owned */
+    char libraries[96];                       /* that made it */
+};
+
+/* The outcome for the user. */
+static inline softfall_status softfall_return(const sf_error *err, softfall_error *error) {
+    if (error) {
+        error->status = (softfall_status)err->status;
+        snprintf(error->text, sizeof error->text, "%s", err->status == SF_OK ? "" : err->text);
+    }
+    return (softfall_status)err->status;
+}
+
+/* A block of one zeroed struct; NULL records SF_ERR_MEMORY. */
+static inline void *softfall_new(sf_error *err, unsigned long size, const char *what) {
+    return sf_alloc(err, 1, size, what);
+}
+
+#endif

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* libsoftfall-build: cases, and models made of them. */
+#include "api/api.h"
+
+#include "case/case.h"
+#include "pre/make.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct softfall_case {
+    sf_case data;
+    bool used_up; /* by softfall_model_build */
+};
+
+static void tell(void *user, sf_severity severity, const char *sentence) {
+    const softfall_sink *sink = user;
+    sink->tell(sink->user, severity == SF_WARNING ? SOFTFALL_WARNING : SOFTFALL_NOTE, sentence);
+}
+
+/* `copy` is what the result refers to. */
+static sf_sink listen(const softfall_sink *sink, softfall_sink *copy) {
+    *copy = sink ? *sink : (softfall_sink){0};
+    return (sf_sink){copy->tell ? tell : NULL, copy};
+}
+
+softfall_status softfall_case_read(const char *path, const char *const *overrides, int count,
+                                   const softfall_sink *sink, softfall_case **out, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    softfall_sink copy;
+    const sf_sink inner = listen(sink, &copy);
+    *out = softfall_new(&err, sizeof **out, "a case");
+    if (*out && sf_case_read(path, count, overrides, &inner, &(*out)->data, &err) != SF_OK) {
+        free(*out);
+        *out = NULL;
+    }
+    return softfall_return(&err, error);
+}
+
+void softfall_case_free(softfall_case *c) {
+    if (c)
+        sf_case_free(&c->data);
+    free(c);
+}
+
+/* What the model's file tells about its origin. */
+static void keep_texts(softfall_case *c, const sf_build_report *report, softfall_model *m, sf_error *err) {
+    m->case_text = strdup(c->data.text);
+    m->parameters = strdup(c->data.parameters);
+    m->mesh_hash = strdup(report->mesh_hash);
+    if (!m->case_text || !m->parameters || !m->mesh_hash)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the texts of the case");
+}
+
+softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink, softfall_model **out,
+                                     softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_build_report report;
+    softfall_sink copy;
+    const sf_sink inner = listen(sink, &copy);
+    *out = NULL;
+    if (c->used_up) {
+        SF_FAIL(&err, SF_ERR_INPUT, "the case %s has been built already: read it again", c->data.path);
+        return softfall_return(&err, error);
+    }
+    softfall_model *m = softfall_new(&err, sizeof *m, "a model");
+    if (m) {
+        c->used_up = true;
+        if (sf_model_make(&c->data, &m->model, &report, m->libraries, &inner, &err) == SF_OK)
+            keep_texts(c, &report, m, &err);
+    }
+    if (err.status == SF_OK)
+        *out = m;
+    else
+        softfall_model_free(m);
+    return softfall_return(&err, error);
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/run/ending.h"
+
+static const double REBOUND_WAIT = 1e-3; /* s, without contact before the run may end */
+
+bool sf_ending_rebounded(const sf_model *m, const sf_state *s) {
+    return m->run.stop_after_rebound && sf_missile_is_leaving(m, &s->missile) && s->contact_count == 0 &&
+           s->time - s->missile.release_time > REBOUND_WAIT;
+}
+
+bool sf_ending_finished(const sf_model *m, const sf_state *s) {
+    return s->time >= m->run.end_time;
+}

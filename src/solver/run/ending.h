@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* When a run is over. */
+#ifndef SF_SOLVER_RUN_ENDING_H
+#define SF_SOLVER_RUN_ENDING_H
+
+#include "core/model.h"
+#include "solver/state.h"
+
+/* The missile has left the pad for good, and the run shall end then. A driven missile may come back. */
+bool sf_ending_rebounded(const sf_model *model, const sf_state *state);
+
+/* The end time is reached. */
+bool sf_ending_finished(const sf_model *model, const sf_state *state);
+
+#endif

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* include/softfall/softfall.h as a host sees it, against what the programs compute. */
+#include "program_fixture.h"
+
+#include "model_fixture.h"
+#include "softfall/softfall.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
+static const char *const coarse[] = {"geometry.parameters.fine_spacing=20.0",
+                                     "geometry.parameters.outer_spacing=20.0",
+                                     "geometry.missile_parameters.element_size=20.0",
+                                     "kernel.support_ratio=2.0", "output.frame_interval=\"30 ms\""};
+enum { COARSE = sizeof coarse / sizeof coarse[0] };
+
+typedef struct place {
+    program_place folder;
+    softfall_model *model;
+    softfall_drop *drop;
+    int warnings;
+} place;
+
+static void count_warnings(void *user, softfall_severity severity, const char *sentence) {
+    int *count = user;
+    assert_int_equal(severity, SOFTFALL_WARNING);
+    assert_non_null(strstr(sentence, "kernel.support_ratio"));
+    ++*count;
+}
+
+/* One model and one drop, solved to its end, for all tests. */
+static int set_up(void **state) {
+    place *p = calloc(1, sizeof *p);
+    softfall_error error;
+    softfall_case *c = NULL;
+    softfall_model *second = NULL;
+    softfall_ending ending = SOFTFALL_RUNNING;
+    assert_non_null(p);
+    const softfall_sink sink = {count_warnings, &p->warnings};
+    const softfall_drop_options options = {.threads = 2};
+    program_set_up(&p->folder);
+    *state = p;
+    if (softfall_case_read(fixture_source(EXAMPLE), coarse, COARSE, &sink, &c, &error) != SOFTFALL_OK ||
+        softfall_model_build(c, &sink, &p->model, &error) != SOFTFALL_OK ||
+        softfall_drop_create(p->model, &options, &p->drop, &error) != SOFTFALL_OK ||
+        softfall_drop_run(p->drop, NULL, NULL, &ending, &error) != SOFTFALL_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(ending, SOFTFALL_REBOUND);
+    assert_int_equal(softfall_model_build(c, NULL, &second, &error), SOFTFALL_INPUT);
+    assert_null(second);
+    softfall_case_free(c);
+    return 0;
+}
+
+static int tear_down(void **state) {
+    place *p = *state;
+    softfall_drop_free(p->drop);
+    softfall_model_free(p->model);
+    program_tear_down(&p->folder);
+    free(p);
+    return 0;
+}
+
+static void warnings_go_to_the_sink_and_errors_to_the_caller(void **state) {
+    place *p = *state;
+    softfall_case *c = NULL;
+    softfall_model *m = NULL;
+    softfall_error error;
+    assert_int_equal(p->warnings, 1);
+    assert_int_equal(softfall_case_read("absent.cfg", NULL, 0, NULL, &c, &error), SOFTFALL_INPUT);
+    assert_null(c);
+    assert_int_equal(error.status, SOFTFALL_INPUT);
+    assert_non_null(strstr(error.text, "absent.cfg"));
+    assert_int_equal(softfall_case_read("absent.cfg", NULL, 0, NULL, &c, NULL), SOFTFALL_INPUT);
+    assert_int_equal(softfall_model_read("absent.h5", &m, &error), SOFTFALL_FILE);
+    assert_null(m);
+    softfall_case_free(NULL);
+    softfall_model_free(NULL);
+    softfall_drop_free(NULL);
+}
+
+static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
+    const place *p = *state;
+    softfall_error error;
+    softfall_figures ours, theirs;
+    assert_int_equal(softfall_model_write(p->model, program_path(&p->folder, "model.h5"), &error),
+                     SOFTFALL_OK);
+    program_succeed(&p->folder, "solve", "model.h5 -o results.h5 --threads 1");
+    assert_int_equal(softfall_drop_figures(p->drop, 1000, &ours, &error), SOFTFALL_OK);
+    assert_int_equal(softfall_results_figures(program_path(&p->folder, "results.h5"), 1000, &theirs, &error),
+                     SOFTFALL_OK);
+    assert_memory_equal(&ours, &theirs, sizeof ours);
+    assert_true(ours.hic > 0 && ours.a_max_g > 0 && ours.rebounded);
+    assert_int_equal(softfall_drop_figures(p->drop, 100, &ours, &error), SOFTFALL_INPUT);
+}
+
+/* Steps taken one by one, from a model that was written and read, are those of the run. */
+static void a_drop_can_be_stepped_observed_and_stopped(void **state) {
+    const place *p = *state;
+    softfall_model *model = NULL;
+    softfall_drop *drop = NULL;
+    softfall_error error;
+    softfall_figures figures;
+    softfall_ending ending;
+    const softfall_drop_options options = {.threads = 1, .end_time = 1e-3};
+    const double *time, *velocity;
+    const char *path = program_path(&p->folder, "again.h5");
+    assert_int_equal(softfall_model_write(p->model, path, &error), SOFTFALL_OK);
+    assert_int_equal(softfall_model_read(path, &model, &error), SOFTFALL_OK);
+    assert_int_equal(softfall_drop_create(model, &options, &drop, &error), SOFTFALL_OK);
+    assert_int_equal(softfall_drop_observe(drop).step, -1);
+    assert_int_equal(softfall_drop_figures(drop, 1000, &figures, &error), SOFTFALL_INPUT);
+    do {
+        assert_int_equal(softfall_drop_step(drop, &ending, &error), SOFTFALL_OK);
+    } while (ending == SOFTFALL_RUNNING);
+    const softfall_observation last = softfall_drop_observe(drop);
+    assert_int_equal(ending, SOFTFALL_FINISHED);
+    assert_true(last.time >= 1e-3 && last.time < 1.1e-3);
+    assert_int_equal(softfall_drop_step(drop, NULL, &error), SOFTFALL_OK);
+    assert_int_equal(softfall_drop_observe(drop).step, last.step);
+    assert_true(softfall_drop_history(p->drop, "time", &time) > last.step + 1);
+    assert_true(softfall_drop_history(p->drop, "velocity", &velocity) > last.step + 1);
+    assert_true(time[last.step] == last.time && velocity[last.step] == last.velocity);
+    assert_int_equal(softfall_drop_history(p->drop, "speed", &velocity), -1);
+    softfall_drop_free(drop);
+    softfall_model_free(model);
+}
+
+static int stop_at_third(void *user, const softfall_observation *now) {
+    (void)user;
+    return now->step == 2;
+}
+
+static void an_observer_can_stop_a_run(void **state) {
+    const place *p = *state;
+    softfall_drop *drop = NULL;
+    softfall_ending ending;
+    assert_int_equal(softfall_drop_create(p->model, NULL, &drop, NULL), SOFTFALL_OK);
+    assert_int_equal(softfall_drop_run(drop, stop_at_third, NULL, &ending, NULL), SOFTFALL_OK);
+    assert_int_equal(ending, SOFTFALL_RUNNING);
+    assert_int_equal(softfall_drop_observe(drop).step, 2);
+    softfall_drop_free(drop);
+}
+
+/* At the end the fields are those of the last frame of softfall-solve. */
+static void fields_are_those_of_the_frames(void **state) {
+    const place *p = *state;
+    softfall_error error;
+    sf_error err = SF_ERROR_INIT;
+    int count;
+    const int64_t nodes = softfall_model_describe(p->model).node_count;
+    const softfall_quantity *field = softfall_drop_fields(p->drop, &count);
+    sf_h5 *file = program_open_h5(&p->folder, "results.h5");
+    char last[32];
+    assert_int_equal(
+        sf_h5_group_member(file, "/frames", sf_h5_group_size(file, "/frames") - 1, last, sizeof last, &err),
+        SF_OK);
+    for (int k = 0; k < count; k++) {
+        char path[128];
+        void *expected = NULL;
+        int64_t dims[2] = {nodes, field[k].components}, size = nodes * field[k].components;
+        double *values = malloc((size_t)size * sizeof *values);
+        snprintf(path, sizeof path, "/frames/%s/%s", last, field[k].name);
+        assert_non_null(values);
+        assert_int_equal(softfall_drop_field(p->drop, field[k].name, values, size, &error), SOFTFALL_OK);
+        assert_int_equal(softfall_drop_field(p->drop, field[k].name, values, size - 1, &error),
+                         SOFTFALL_INPUT);
+        if (sf_h5_read(file, path, SF_H5_F64, dims[1] > 1 ? 2 : 1, dims, &expected, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_memory_equal(values, expected, (size_t)size * sizeof *values);
+        free(expected);
+        free(values);
+    }
+    assert_int_equal(count, 8);
+    assert_int_equal(softfall_drop_field(p->drop, "colour", NULL, 0, &error), SOFTFALL_INPUT);
+    sf_h5_close(&file, &err);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(warnings_go_to_the_sink_and_errors_to_the_caller),
+        cmocka_unit_test(the_programs_compute_the_same_figures_bit_for_bit),
+        cmocka_unit_test(a_drop_can_be_stepped_observed_and_stopped),
+        cmocka_unit_test(an_observer_can_stop_a_run),
+        cmocka_unit_test(fields_are_those_of_the_frames),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
