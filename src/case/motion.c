@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key missile.motion: the displacement over time of a missile that a machine drives, and the rules that
  * join it with other keys. */
-#include "case/keys.h"
+#include "case/motion.h"
 
-#include "core/motion.h"
 #include "case/csv.h"
+#include "core/motion.h"
 #include <math.h>
 #include <stdlib.h>
 
