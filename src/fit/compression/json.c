@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* fit.json */
-#include "fit/compression/output.h"
+#include "fit/compression/json.h"
 
 #include "build_info.h"
 #include "io/json.h"

@@ -2,7 +2,11 @@
 #include "fit/compression/output.h"
 
 #include "campaign/material_file.h"
-#include "fit/material_point.h"
+#include "fit/compression/check.h"
+#include "fit/compression/json.h"
+#include "fit/compression/phrase.h"
+#include "fit/compression/plot.h"
+#include "fit/compression/report.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -11,8 +15,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const double CARD_STEP = 5e-4; /* strain, of the check by the solver's law */
-
 /* Every file that may be written; the material file comes last, when the curves it names are there. */
 static const char *const output_names[] = {"simulation.csv", "fit.csv",        "loading_curve.csv",
                                            "fit.gp",         "fit.png",        "fit.json",
@@ -20,79 +22,6 @@ static const char *const output_names[] = {"simulation.csv", "fit.csv",        "
                                            "material-2.csv", "material-3.csv", "material-4.csv",
                                            "material-5.csv", "material-6.csv", "material-7.csv",
                                            "material-8.csv", "material.cfg",   NULL};
-
-const char *sf_compression_rate_phrase(sf_rate_model model) {
-    static const char *const phrases[SF_RATE_MODELS] = {
-        "none: one curve for all rates",
-        "log: curve times 1 + c ln(rate/slowest rate), written as a curve for each rate",
-        "maxwell: one curve and a Maxwell branch ED, BETA1",
-        "curves: a curve of its own for each rate",
-    };
-    return phrases[model];
-}
-
-const char *sf_compression_rule_phrase(sf_rule rule) {
-    static const char *const phrases[SF_RULES] = {
-        "H1, exponent by A = 0: B/(1 - strain)^m",
-        "H1, exponent free: A + B/(1 - strain)^m",
-        "H2: A + B/(limit - strain)^m",
-    };
-    return phrases[rule];
-}
-
-void sf_compression_text(const sf_estimate *e, double value, char *out, size_t size) {
-    bool pressure = strcmp(e->unit, "Pa") == 0;
-    double scale = pressure ? 1e-3 : 1;
-    const char *unit = pressure ? "kPa" : e->unit;
-    if (isfinite(value))
-        snprintf(out, size, "%.5g%s%s", value * scale, *unit ? " " : "", unit);
-    else
-        snprintf(out, size, "-");
-}
-
-/* ---- the card in the solver's law ---- */
-
-static double counted(const sf_compression_fit *fit, int i) {
-    const sf_compression_test *t = &fit->data.config->test[fit->data.test[i]];
-    return fmax(fabs(fit->stress[i]), 0.01 * t->largest_stress);
-}
-
-static void compare_data(const sf_compression_fit *fit, sf_compression_check *check) {
-    const sf_compression_data *d = &fit->data;
-    for (int k = 0; k < d->config->test_count; k++)
-        for (int side = 0; side < 2; side++) {
-            int first, count;
-            double sum = 0, relative = 0;
-            sf_compression_branch(d, k, side == 1, &first, &count);
-            for (int i = first; i < first + count; i++) {
-                double deviation = d->stress[i] - fit->stress[i];
-                sum += pow(deviation / d->sigma[i], 2);
-                relative += pow(deviation / counted(fit, i), 2);
-            }
-            check->rms[k][side] = count ? sqrt(sum / count) : NAN;
-            check->percent[k][side] = count ? 100 * sqrt(relative / count) : NAN;
-        }
-}
-
-static sf_status compare_card(const sf_compression_fit *fit, const sf_foam_card *card,
-                              sf_compression_check *check, sf_error *err) {
-    const sf_compression_data *d = &fit->data;
-    sf_foam foam;
-    if (sf_foam_build(card, &foam, err) != SF_OK)
-        return err->status;
-    double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
-    for (int k = 0, first = 0; stress && k < d->config->test_count; k++) {
-        const sf_compression_test *t = &d->config->test[k];
-        sf_material_point_drive(&foam, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
-        for (int i = first; i < first + t->count; i++)
-            check->card_percent =
-                fmax(check->card_percent, 100 * fabs(stress[i] - fit->stress[i]) / counted(fit, i));
-        first += t->count;
-    }
-    free(stress);
-    sf_foam_free(&foam);
-    return err->status;
-}
 
 /* ---- files ---- */
 
@@ -238,8 +167,7 @@ sf_status sf_compression_output(const sf_compression_fit *fit, const char *path,
     char warning[512] = "";
     if (sf_compression_card(fit, &card, err) != SF_OK)
         return err->status;
-    compare_data(fit, &check);
-    if (compare_card(fit, &card, &check, err) == SF_OK &&
+    if (sf_compression_check_card(fit, &card, &check, err) == SF_OK &&
         sf_output_begin(directory, output_names, force, &output, err) == SF_OK) {
         if (write_points(&output, fit, err) == SF_OK && write_curves(&output, fit, err) == SF_OK &&
             write_material(&output, fit, &card, err) == SF_OK &&

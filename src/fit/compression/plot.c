@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* fit.png: data against fit over the whole range and at the foot, deviations below. */
-#include "fit/compression/output.h"
+#include "fit/compression/plot.h"
 
 #include "io/gnuplot.h"
 #include <math.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.md */
-#include "fit/compression/output.h"
+#include "fit/compression/report.h"
 
 #include "build_info.h"
+#include "fit/compression/phrase.h"
 #include <math.h>
 
 static void put_tests(FILE *out, const sf_compression_fit *fit, const sf_compression_check *check) {
