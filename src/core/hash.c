@@ -14,3 +14,10 @@ uint64_t sf_hash(uint64_t hash, const void *data, size_t size) {
     }
     return hash;
 }
+
+uint64_t sf_hash_bytes(uint64_t hash, const void *data, size_t size) {
+    const unsigned char *byte = data;
+    for (size_t k = 0; k < size; k++)
+        hash = (hash ^ byte[k]) * FNV_PRIME;
+    return hash;
+}

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/compression/command.h"
 
-#include "campaign/runner.h"
 #include "fit/compression/output.h"
+#include "io/process.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -88,7 +88,7 @@ static sf_status run(const options *o, sf_error *err) {
 int sf_fit_compression_main(int argc, char **argv) {
     options o = {0};
     sf_error err = SF_ERROR_INIT;
-    sf_runner_handle_signals();
+    sf_process_handle_signals();
     if (parse_command(argc, argv, &o, &err) == SF_OK)
         run(&o, &err);
     return sf_error_report(&err, "softfall-fit");

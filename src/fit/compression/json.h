@@ -4,9 +4,9 @@
 #define SF_FIT_COMPRESSION_JSON_H
 
 #include "fit/compression/check.h"
-#include "post/output.h"
+#include "io/staging.h"
 
-sf_status sf_compression_write_json(const sf_output *output, const sf_compression_fit *fit,
+sf_status sf_compression_write_json(const sf_staging *output, const sf_compression_fit *fit,
                                     const sf_compression_check *check, const char *path, sf_error *err);
 
 #endif

@@ -7,13 +7,12 @@
 #include "fit/compression/phrase.h"
 #include "fit/compression/plot.h"
 #include "fit/compression/report.h"
+#include "io/folder.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Every file that may be written; the material file comes last, when the curves it names are there. */
 static const char *const output_names[] = {"simulation.csv", "fit.csv",        "loading_curve.csv",
@@ -65,20 +64,20 @@ static char *provenance(const sf_compression_fit *fit, sf_error *err) {
     return text;
 }
 
-static sf_status write_material(const sf_output *output, const sf_compression_fit *fit,
+static sf_status write_material(const sf_staging *output, const sf_compression_fit *fit,
                                 const sf_foam_card *card, sf_error *err) {
     char *text = provenance(fit, err);
     if (!text)
         return err->status;
     const sf_material_text comments = {fit->data.config->name, text};
-    sf_material_write(output->staging, "material", card, &comments, err);
+    sf_material_write(output->aside, "material", card, &comments, err);
     free(text);
     return err->status;
 }
 
-static sf_status write_points(const sf_output *output, const sf_compression_fit *fit, sf_error *err) {
+static sf_status write_points(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
     const sf_compression_data *d = &fit->data;
-    FILE *file = sf_output_open(output, "fit.csv", err);
+    FILE *file = sf_staging_open(output, "fit.csv", err);
     if (!file)
         return err->status;
     fputs("test,branch,strain,measured_kPa,fit_kPa,sigma_kPa,deviation_over_sigma\n", file);
@@ -86,11 +85,11 @@ static sf_status write_points(const sf_output *output, const sf_compression_fit 
         fprintf(file, "%d,%s,%.9g,%.9g,%.9g,%.9g,%.6g\n", d->test[i] + 1,
                 d->unloading[i] ? "unloading" : "loading", d->strain[i], 1e-3 * d->stress[i],
                 1e-3 * fit->stress[i], 1e-3 * d->sigma[i], (d->stress[i] - fit->stress[i]) / d->sigma[i]);
-    return sf_output_close(file, "fit.csv", err);
+    return sf_staging_close(file, "fit.csv", err);
 }
 
-static sf_status write_curves(const sf_output *output, const sf_compression_fit *fit, sf_error *err) {
-    FILE *file = sf_output_open(output, "loading_curve.csv", err);
+static sf_status write_curves(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
+    FILE *file = sf_staging_open(output, "loading_curve.csv", err);
     if (!file)
         return err->status;
     fprintf(file, "# Loading curves of the fit with their %g %% intervals; rate 0: one curve for all rates\n",
@@ -103,23 +102,22 @@ static sf_status write_curves(const sf_output *output, const sf_compression_fit 
                     fit->rate_count > 1 ? fit->data.config->test[r].rate : 0, fit->table_strain[k],
                     1e-3 * stress, 1e-3 * fmax(0, stress - width), 1e-3 * (stress + width));
         }
-    return sf_output_close(file, "loading_curve.csv", err);
+    return sf_staging_close(file, "loading_curve.csv", err);
 }
 
 /* Simulates the tests in DIR/simulation, which stays, and writes the curves. */
-static sf_status write_simulation(const sf_output *output, const sf_compression_fit *fit,
+static sf_status write_simulation(const sf_staging *output, const sf_compression_fit *fit,
                                   const sf_foam_card *card, const sf_cube_options *cube,
                                   sf_compression_check *check, sf_error *err) {
     char folder[PATH_MAX];
     if (!cube->case_path)
         return SF_OK;
     snprintf(folder, sizeof folder, "%s/simulation", output->directory);
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", folder, strerror(errno));
-    if (sf_compression_simulate(fit, card, cube, folder, check->cube, err) != SF_OK)
+    if (sf_folder_make(folder, err) != SF_OK ||
+        sf_compression_simulate(fit, card, cube, folder, check->cube, err) != SF_OK)
         return err->status;
     check->simulated = true;
-    FILE *file = sf_output_open(output, "simulation.csv", err);
+    FILE *file = sf_staging_open(output, "simulation.csv", err);
     if (!file)
         return err->status;
     fputs("test,strain,cube_kPa,point_kPa\n", file);
@@ -127,7 +125,7 @@ static sf_status write_simulation(const sf_output *output, const sf_compression_
         for (int i = 0; i < check->cube[k].count; i++)
             fprintf(file, "%d,%.9g,%.9g,%.9g\n", k + 1, check->cube[k].strain[i],
                     1e-3 * check->cube[k].cube[i], 1e-3 * check->cube[k].point[i]);
-    return sf_output_close(file, "simulation.csv", err);
+    return sf_staging_close(file, "simulation.csv", err);
 }
 
 /* ---- the summary ---- */
@@ -163,21 +161,21 @@ sf_status sf_compression_output(const sf_compression_fit *fit, const char *path,
                                 bool force, const sf_cube_options *cube, sf_error *err) {
     sf_compression_check check = {.card_percent = 0};
     sf_foam_card card;
-    sf_output output;
+    sf_staging output;
     char warning[512] = "";
     if (sf_compression_card(fit, &card, err) != SF_OK)
         return err->status;
     if (sf_compression_check_card(fit, &card, &check, err) == SF_OK &&
-        sf_output_begin(directory, output_names, force, &output, err) == SF_OK) {
+        sf_staging_begin(directory, output_names, force, &output, err) == SF_OK) {
         if (write_points(&output, fit, err) == SF_OK && write_curves(&output, fit, err) == SF_OK &&
             write_material(&output, fit, &card, err) == SF_OK &&
             write_simulation(&output, fit, &card, cube, &check, err) == SF_OK &&
             sf_compression_write_json(&output, fit, &check, path, err) == SF_OK &&
             sf_compression_write_plot(&output, fit, warning, sizeof warning, err) == SF_OK &&
             sf_compression_write_report(&output, fit, &check, path, err) == SF_OK &&
-            sf_output_commit(&output, err) == SF_OK)
+            sf_staging_commit(&output, err) == SF_OK)
             print_summary(fit, &check, directory, warning);
-        sf_output_end(&output);
+        sf_staging_end(&output);
     }
     sf_compression_card_free(&card);
     return err->status;

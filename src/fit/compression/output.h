@@ -8,7 +8,7 @@
 #include "fit/compression/fit.h"
 #include <stdbool.h>
 
-/* Writes into `directory` (sf_output) and prints the summary. `path`: FIT.cfg, as given. Simulates the tests
+/* Writes into `directory` (sf_staging) and prints the summary. `path`: FIT.cfg, as given. Simulates the tests
  * first if `cube` names a case. */
 sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *directory,
                                 bool force, const sf_cube_options *cube, sf_error *err);

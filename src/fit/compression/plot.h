@@ -5,9 +5,9 @@
 #define SF_FIT_COMPRESSION_PLOT_H
 
 #include "fit/compression/fit.h"
-#include "post/output.h"
+#include "io/staging.h"
 
-sf_status sf_compression_write_plot(const sf_output *output, const sf_compression_fit *fit, char *warning,
+sf_status sf_compression_write_plot(const sf_staging *output, const sf_compression_fit *fit, char *warning,
                                     size_t size, sf_error *err);
 
 #endif
