@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* sf_results_open and sf_frame_read (post/results.h). */
 #include "post/results.h"
 
 #include "core/mat3.h"
