@@ -6,6 +6,7 @@
 #include "program_fixture.h"
 
 #include "campaign/runner.h"
+#include "io/process.h"
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -151,11 +152,11 @@ static pid_t start_campaign(const program_place *p) {
     if (child > 0)
         return child;
     sf_error first, second;
-    sf_runner_handle_signals();
-    bool before = sf_runner_stopped();
+    sf_process_handle_signals();
+    bool before = sf_process_stopped();
     run_drop(p, &first);
     run_drop(p, &second);
-    _exit(before || !sf_runner_stopped() || first.status != SF_INTERRUPTED ||
+    _exit(before || !sf_process_stopped() || first.status != SF_INTERRUPTED ||
           second.status != SF_INTERRUPTED);
 }
 

@@ -10,13 +10,6 @@
 
 static const softfall_drop_options by_default;
 
-int softfall_drop_enter(const softfall_drop *d) {
-    int before = omp_get_max_threads();
-    if (d->threads > 0)
-        omp_set_num_threads(d->threads);
-    return before;
-}
-
 static sf_status check_options(const softfall_drop_options *o, sf_error *err) {
     if (o->threads < 0 || o->threads > 1024)
         return SF_FAIL(err, SF_ERR_INPUT, "threads: %d is not between 0 and 1024", o->threads);

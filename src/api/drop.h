@@ -8,6 +8,7 @@
 #include "solver/operators.h"
 #include "solver/run/recorder.h"
 #include "solver/state.h"
+#include <omp.h>
 
 struct softfall_drop {
     sf_model model; /* arrays borrowed from the caller's model */
@@ -21,7 +22,12 @@ struct softfall_drop {
 };
 
 /* Sets the number of threads of the drop and returns the number before. */
-int softfall_drop_enter(const softfall_drop *drop);
+static inline int softfall_drop_enter(const softfall_drop *drop) {
+    int before = omp_get_max_threads();
+    if (drop->threads > 0)
+        omp_set_num_threads(drop->threads);
+    return before;
+}
 
 /* Fills the lists of columns and fields. */
 void softfall_drop_list(softfall_drop *drop);

@@ -45,12 +45,6 @@ typedef struct sf_runner_result {
     bool reused;
 } sf_runner_result;
 
-/* From now on SIGINT and SIGTERM are passed to the program that runs, which ends its drop; the runner then
- * returns SF_INTERRUPTED. */
-void sf_runner_handle_signals(void);
-/* True once such a signal has come. */
-bool sf_runner_stopped(void);
-
 /* Simulates the drop unless a finished run of the same inputs is there: the same values of every key of the
  * case and the material, the same curves and geometry files, and programs of the same revision. Release with
  * sf_runner_result_free. Errors: what the programs said, with the path of their log; a drop that never

@@ -1,9 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/curve.h"
 
-#include "case/csv.h"
 #include <stdlib.h>
 #include <string.h>
+
+sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
+    static const sf_table_name names[] = {{"strain", 0, 1.0},
+                                          {"strain_percent", 0, 0.01},
+                                          {"stress_Pa", 1, 1.0},
+                                          {"stress_kPa", 1, 1e3},
+                                          {"stress_MPa", 1, 1e6}};
+    return (sf_table_layout){
+        .what = what,
+        .column = {"strain", "stress"},
+        .wanted = {"\"strain\" or \"strain_percent\"", "\"stress_Pa\", \"stress_kPa\" or \"stress_MPa\""},
+        .names = names,
+        .name_count = sizeof names / sizeof *names,
+        .check = check,
+    };
+}
 
 void sf_case_curve_free(sf_case_curve *curve) {
     free(curve->strain);
@@ -11,7 +26,7 @@ void sf_case_curve_free(sf_case_curve *curve) {
     memset(curve, 0, sizeof *curve);
 }
 
-static sf_status check_point(const sf_case_csv_point *p, sf_error *err) {
+static sf_status check_point(const sf_table_point *p, sf_error *err) {
     if (p->value[0] < 0.0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: strain %s is negative; compression is positive", p->path,
                        p->line, p->text[0]);
@@ -39,7 +54,7 @@ static sf_status check_point(const sf_case_csv_point *p, sf_error *err) {
 }
 
 /* The table's points, after (0, 0) if they begin above it. */
-static sf_status take_points(const sf_case_csv *table, sf_case_curve *curve, sf_error *err) {
+static sf_status take_points(const sf_table *table, sf_case_curve *curve, sf_error *err) {
     size_t points = (size_t)table->count, before = table->value[0][0] > 0.0;
     curve->extended = before > 0;
     curve->count = (int64_t)(points + before);
@@ -53,10 +68,10 @@ static sf_status take_points(const sf_case_csv *table, sf_case_curve *curve, sf_
 }
 
 sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err) {
-    const sf_case_csv_layout layout = sf_case_csv_stress_strain("curve", check_point);
-    sf_case_csv table;
+    const sf_table_layout layout = sf_case_curve_layout("curve", check_point);
+    sf_table table;
     memset(curve, 0, sizeof *curve);
-    if (sf_case_csv_read(path, &layout, &table, err) != SF_OK)
+    if (sf_table_read(path, &layout, &table, err) != SF_OK)
         return err->status;
     if (table.count < SF_CURVE_MIN_POINTS)
         SF_FAIL(err, SF_ERR_INPUT, "%s: %lld points; a compression curve needs at least %d", path,
@@ -68,7 +83,7 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
                 table.value[0][table.count - 1], SF_CURVE_MIN_END);
     else
         take_points(&table, curve, err);
-    sf_case_csv_free(&table);
+    sf_table_free(&table);
     if (err->status != SF_OK)
         sf_case_curve_free(curve);
     return err->status;

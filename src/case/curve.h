@@ -6,6 +6,7 @@
 #define SF_CASE_CURVE_H
 
 #include "core/error.h"
+#include "io/table_csv.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -18,6 +19,9 @@ typedef struct sf_case_curve {
     double *stress; /* [count] Pa, from 0, non-decreasing, finite; owned */
     bool extended;  /* the file began above zero strain and (0, 0) was put before it */
 } sf_case_curve;
+
+/* How such a file is read, `what` in sentences; also of tests with unloading. */
+sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check);
 
 /* Reads and checks a curve; SF_ERR_INPUT names file, line and value. On failure `*curve` is zeroed. */
 sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err);

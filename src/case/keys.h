@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of the case file's keys, and what the files of src/case share. Internal to src/case.
+/* The table of the case file's keys. Internal to src/case.
  *
  * One row per key drives reading, checking, the list of unknown keys, the used-parameters listing, `--keys`
  * and docs/case.md. Defaults are texts in libconfig syntax and pass through the same reader as given values.
@@ -7,13 +7,10 @@
 #ifndef SF_CASE_KEYS_H
 #define SF_CASE_KEYS_H
 
-#include "core/units.h"
 #include "case/case.h"
-#include "case/source.h"
-#include <libconfig.h>
+#include "core/units.h"
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
 /* How a value is written in the case, and what stands at the key's offset in sf_case. */
 typedef enum sf_key_kind {
@@ -61,53 +58,4 @@ void sf_case_list_names(const char *group, char *out, size_t size);
 /* The existing name nearest to `name` within two edits; NULL if none is near. */
 const char *sf_case_near_name(const char *group, const char *name, char *out, size_t size);
 
-/* What the readers need beside the table. */
-typedef struct sf_case_reader {
-    const char *path; /* of the case file, as given */
-    sf_units *units;
-    sf_case *out;
-    config_t config;
-    sf_case_source source;  /* of the settings without a hook */
-    bool given[SF_KEY_MAX]; /* per row of the table */
-    const sf_sink *sink;    /* borrowed */
-    FILE *listing;          /* the parameters text under construction */
-} sf_case_reader;
-
-enum { SF_CASE_WHERE_SIZE = 512 };
-
-/* The hook of a setting that does not stand in the case file: line 0: `text` is the --set text that put it
- * there; else the path of the file, given with "group=@file", and the line that holds it. */
-typedef struct sf_case_origin {
-    unsigned line;
-    char text[];
-} sf_case_origin;
-
-/* "file:line", or "--set key=value" for a setting that came from the command line. */
-const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out);
-/* Resolves `path` against the folder of the file in which `setting` stands; from malloc. */
-char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
-                      sf_error *err);
-/* Writes a setting's value in libconfig syntax on one line. */
-void sf_case_print_setting(FILE *file, const config_setting_t *setting);
-/* Reads one setting into the case. `detail` receives the SI value for the listing. */
-sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                             char *detail, size_t size, sf_error *err);
-/* The readers of SF_KEY_CURVE and SF_KEY_CURVES. */
-sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
-                              size_t size, sf_error *err);
-/* The reader of SF_KEY_MOTION, and the rules that join the motion with mass, velocity, gravity and end time.
- */
-sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *setting, char *detail,
-                              size_t size, sf_error *err);
-sf_status sf_case_check_motion(const sf_case_reader *reader, sf_error *err);
-/* True if the case gives the key. */
-bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name);
-/* Records that the key is missing. */
-sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
-/* Location of a key "group.name", or of its group, or of the file: whatever is there. */
-const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
-/* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
-const char *sf_case_override_file(const char *text);
-/* Puts one --set text into the configuration, whose destructor must be free(). */
-sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The keys material.curve and material.curves: compression curves into the foam card. */
-#include "case/keys.h"
+#include "case/material.h"
 
 #include "case/curve.h"
 

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key missile.motion: the displacement over time of a missile that a machine drives, and the rules that
  * join it with other keys. */
-#include "case/keys.h"
+#include "case/motion.h"
 
+#include "io/table_csv.h"
 #include "core/motion.h"
-#include "case/csv.h"
 #include <math.h>
 #include <stdlib.h>
 
-static sf_status check_point(const sf_case_csv_point *p, sf_error *err) {
+static sf_status check_point(const sf_table_point *p, sf_error *err) {
     if (p->index == 0) {
         for (int c = 0; c < 2; c++)
             if (p->value[c] != 0.0)
@@ -29,10 +29,10 @@ static sf_status check_point(const sf_case_csv_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_case_csv_name names[] = {
+static const sf_table_name names[] = {
     {"time_s", 0, 1.0}, {"time_ms", 0, 1e-3}, {"displacement_m", 1, 1.0}, {"displacement_mm", 1, 1e-3}};
 
-static const sf_case_csv_layout layout = {
+static const sf_table_layout layout = {
     .what = "motion",
     .column = {"time", "displacement"},
     .wanted = {"\"time_s\" or \"time_ms\"", "\"displacement_m\" or \"displacement_mm\""},
@@ -41,7 +41,7 @@ static const sf_case_csv_layout layout = {
     .check = check_point,
 };
 
-static sf_status check_table(const char *path, const sf_case_csv *table, sf_error *err) {
+static sf_status check_table(const char *path, const sf_table *table, sf_error *err) {
     double largest = 0.0;
     for (int64_t k = 0; k < table->count; k++)
         largest = fmax(largest, fabs(table->value[1][k]));
@@ -64,9 +64,9 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     char *path = sf_case_resolve(reader, setting, text, err);
     if (!path)
         return err->status;
-    sf_case_csv table = {0};
+    sf_table table = {0};
     sf_error inner = SF_ERROR_INIT;
-    if (sf_case_csv_read(path, &layout, &table, &inner) == SF_OK)
+    if (sf_table_read(path, &layout, &table, &inner) == SF_OK)
         check_table(path, &table, &inner);
     free(path);
     c->motion_count = table.count;

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `--set group.key=value`: puts values from the command line into the configuration before it is read. */
-#include "case/keys.h"
+#include "case/override.h"
+
+#include "case/reader.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-const char *sf_case_override_file(const char *text) {
-    const char *equals = strchr(text, '=');
-    const char *dot = strchr(text, '.');
-    return equals && equals[1] == '@' && (!dot || dot > equals) ? equals + 2 : NULL;
-}
 
 /* Marks a setting with where it came from; `line` 0: `text` is a --set text, else the path of a file. */
 static bool mark(config_setting_t *setting, const char *text, unsigned line) {

@@ -1,57 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads a case: file, overrides, unknown keys, every row of the table, then the rules that join several keys.
  */
-#include "case/keys.h"
+#include "case/case.h"
+
+#include "case/motion.h"
+#include "case/override.h"
+#include "case/print.h"
+#include "case/reader.h"
+#include "case/value.h"
 
 #include "core/mat3.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { GROUP_SIZE = 160, LEAST_STEPS = 3, MOST_FRAMES = 100000 };
-
-const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out) {
-    const sf_case_origin *origin = setting ? config_setting_get_hook(setting) : NULL;
-    int line = setting ? (int)config_setting_source_line(setting) : 0;
-    if (origin && origin->line == 0) {
-        snprintf(out, SF_CASE_WHERE_SIZE, "--set %s", origin->text);
-    } else if (origin) {
-        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%u", origin->text, origin->line);
-    } else if (line > 0) {
-        const char *path = sf_case_source_find(&reader->source, line, &line);
-        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%d", path, line);
-    } else {
-        snprintf(out, SF_CASE_WHERE_SIZE, "%s", reader->path);
-    }
-    return out;
-}
-
-char *sf_case_folder_of(const char *path, sf_error *err) {
-    const char *slash = strrchr(path, '/');
-    char *folder = !slash ? strdup(".") : slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
-    if (!folder)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
-    return folder;
-}
-
-char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
-                      sf_error *err) {
-    char *out = NULL;
-    const sf_case_origin *origin = config_setting_get_hook(setting);
-    int line = (int)config_setting_source_line(setting);
-    const char *file = origin && origin->line > 0 ? origin->text
-                       : !origin && line > 0      ? sf_case_source_find(&reader->source, line, &line)
-                                                  : reader->path;
-    char *folder = sf_case_folder_of(file, err);
-    if (folder && *path == '/')
-        out = strdup(path);
-    else if (folder && asprintf(&out, "%s/%s", folder, path) < 0)
-        out = NULL;
-    free(folder);
-    if (!out)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
-    return out;
-}
+enum { LEAST_STEPS = 3, MOST_FRAMES = 100000 };
 
 static sf_status unknown_name(const sf_case_reader *reader, const config_setting_t *setting,
                               const char *group, sf_error *err) {
@@ -77,7 +40,7 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
     for (int i = 0; i < config_setting_length(setting); i++) {
         const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
         const char *name = config_setting_name(item);
-        char inner[GROUP_SIZE];
+        char inner[SF_CASE_GROUP_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
         if (sf_case_find_key(group, name))
             continue;
@@ -106,7 +69,7 @@ static void list_value(sf_case_reader *reader, const sf_key *key, const config_s
     else
         fputs("(absent)", value);
     fclose(value);
-    char name[GROUP_SIZE];
+    char name[SF_CASE_GROUP_SIZE];
     snprintf(name, sizeof name, "%s.%s", key->group, key->name);
     fprintf(reader->listing, "%-34s %-24s %-24s %s\n", name, text ? text : "", detail, origin);
     free(text);
@@ -128,19 +91,6 @@ static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_erro
         list_value(reader, key, config_setting_get_elem(scratch.root, 0), detail, "default");
     config_destroy(&scratch);
     return status;
-}
-
-sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const config_setting_t *group = config_lookup(&reader->config, key->group);
-    sf_case_where(reader, group, where);
-    const char *absent = group ? "" : " (there is no such group)";
-    if (key->kind == SF_KEY_QUANTITY)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is missing%s: %s, for example %s = \"%s\"", where,
-                       key->group, key->name, absent, key->description, key->name,
-                       sf_quantity_example(key->quantity));
-    return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is missing%s: %s", where, key->group, key->name, absent,
-                   key->description);
 }
 
 static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
@@ -165,23 +115,6 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
         }
     }
     return SF_OK;
-}
-
-bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name) {
-    size_t count;
-    const sf_key *keys = sf_case_keys(&count);
-    return reader->given[sf_case_find_key(group, name) - keys];
-}
-
-const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out) {
-    char text[GROUP_SIZE];
-    snprintf(text, sizeof text, "%s", path);
-    const config_setting_t *setting = config_lookup(&reader->config, text);
-    for (char *dot = strrchr(text, '.'); !setting && dot; dot = strrchr(text, '.')) {
-        *dot = '\0';
-        setting = config_lookup(&reader->config, text);
-    }
-    return sf_case_where(reader, setting, out);
 }
 
 static sf_status check_densification(const sf_case_reader *reader, sf_error *err) {

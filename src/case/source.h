@@ -7,6 +7,8 @@
 
 #include "core/error.h"
 
+enum { SF_CASE_WHERE_SIZE = 512 /* of a text that says where a setting stands */ };
+
 /* Where the lines of a case's text come from, as its includes are put in place before libconfig reads it:
  * from line `first` of the text on, they are those of the file `path` from `line` on. */
 typedef struct sf_case_piece {
@@ -33,5 +35,8 @@ const char *sf_case_wide_integer(const char *text, int *length, int *line);
 
 /* The folder part of a path, "." if there is none; from malloc. */
 char *sf_case_folder_of(const char *path, sf_error *err);
+
+/* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
+const char *sf_case_override_file(const char *text);
 
 #endif

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads one value of each kind of sf_key_kind into the case. */
-#include "case/keys.h"
+#include "case/value.h"
 
+#include "case/material.h"
+#include "case/motion.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

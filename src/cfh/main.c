@@ -4,6 +4,7 @@
 #include "cfh/plot.h"
 #include "cfh/series.h"
 #include "core/program.h"
+#include "io/process.h"
 #include "io/provenance.h"
 #include "case/case.h"
 
@@ -67,12 +68,12 @@ static sf_cfh_plan make_plan(const sf_cfh_options *o, const sf_cfh_rig *rig, con
     return plan;
 }
 
-static sf_status write_output(sf_output *output, const sf_cfh_report *report, sf_error *err) {
+static sf_status write_output(sf_staging *output, const sf_cfh_report *report, sf_error *err) {
     char warning[512] = "";
     if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_json(output, report, err) != SF_OK ||
         sf_cfh_plot(output, report, warning, sizeof warning, err) != SF_OK ||
         sf_cfh_write_markdown(output, report, warning, err) != SF_OK ||
-        sf_output_commit(output, err) != SF_OK)
+        sf_staging_commit(output, err) != SF_OK)
         return err->status;
     sf_cfh_print(stdout, report);
     printf("Written: %s/report.md, cfh.json, cfh.csv%s\n", output->directory,
@@ -87,7 +88,7 @@ static sf_status write_output(sf_output *output, const sf_cfh_report *report, sf
     return SF_OK;
 }
 
-static sf_status simulate(const sf_cfh_options *o, sf_output *output, sf_cfh_report *report,
+static sf_status simulate(const sf_cfh_options *o, sf_staging *output, sf_cfh_report *report,
                           sf_cfh_points *points, sf_error *err) {
     char folder[4096];
     if ((size_t)snprintf(folder, sizeof folder, "%s/runs", output->directory) >= sizeof folder)
@@ -110,7 +111,7 @@ static sf_status simulate(const sf_cfh_options *o, sf_output *output, sf_cfh_rep
 /* Every file that this program writes; cfh.json last, so that it speaks of files that are there. */
 static const char *const output_names[] = {"cfh.csv", "cfh.gp", "cfh.png", "report.md", "cfh.json", NULL};
 
-static sf_status run(const sf_cfh_options *o, const char *command, sf_output *output, sf_error *err) {
+static sf_status run(const sf_cfh_options *o, const char *command, sf_staging *output, sf_error *err) {
     sf_cfh_rig rig = sf_cfh_free_fall();
     sf_cfh_points points = {0};
     sf_cfh_result result;
@@ -129,7 +130,7 @@ static sf_status run(const sf_cfh_options *o, const char *command, sf_output *ou
                             .result = &result,
                             .mass = s.mass,
                             .table_end = s.table_end};
-    if (sf_output_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
+    if (sf_staging_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
         simulate(o, output, &report, &points, err) != SF_OK)
         return err->status;
     sf_cfh_evaluate(&points, plan.limit, &result);
@@ -140,14 +141,14 @@ static sf_status run(const sf_cfh_options *o, const char *command, sf_output *ou
 
 int main(int argc, char **argv) {
     sf_cfh_options options;
-    sf_output output = {0};
+    sf_staging output = {0};
     sf_error err = SF_ERROR_INIT;
     char *command = sf_command_line(argc, argv);
     sf_error_ignore_closed_pipe();
-    sf_runner_handle_signals();
+    sf_process_handle_signals();
     if (sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)
         run(&options, command ? command : "softfall-cfh", &output, &err);
-    sf_output_end(&output);
+    sf_staging_end(&output);
     free(command);
     return sf_error_report(&err, "softfall-cfh");
 }

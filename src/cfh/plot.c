@@ -136,9 +136,9 @@ static void put_title(FILE *g, const sf_cfh_report *r) {
     fputs(" (indicative)'\n", g);
 }
 
-sf_status sf_cfh_plot(const sf_output *output, const sf_cfh_report *r, char *warning, size_t size,
+sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *warning, size_t size,
                       sf_error *err) {
-    FILE *g = sf_output_open(output, "cfh.gp", err);
+    FILE *g = sf_staging_open(output, "cfh.gp", err);
     if (!g)
         return err->status;
     put_style(g, r);
@@ -149,7 +149,7 @@ sf_status sf_cfh_plot(const sf_output *output, const sf_cfh_report *r, char *war
         put_curves(g, r, c);
     }
     fputs("unset multiplot\n", g);
-    if (sf_output_close(g, "cfh.gp", err) != SF_OK)
+    if (sf_staging_close(g, "cfh.gp", err) != SF_OK)
         return err->status;
     sf_gnuplot_draw(output, "cfh.gp", "cfh.png", warning, size);
     return SF_OK;

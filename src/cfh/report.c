@@ -176,8 +176,8 @@ static void put_points(sf_json *json, const sf_cfh_report *r) {
     sf_json_close(json, ']');
 }
 
-sf_status sf_cfh_write_json(const sf_output *output, const sf_cfh_report *r, sf_error *err) {
-    FILE *file = sf_output_open(output, "cfh.json", err);
+sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
+    FILE *file = sf_staging_open(output, "cfh.json", err);
     if (!file)
         return err->status;
     sf_json json = {.file = file};
@@ -199,7 +199,7 @@ sf_status sf_cfh_write_json(const sf_output *output, const sf_cfh_report *r, sf_
     put_criteria(&json, r);
     put_points(&json, r);
     sf_json_close(&json, '}');
-    return sf_output_close(file, "cfh.json", err);
+    return sf_staging_close(file, "cfh.json", err);
 }
 
 /* ---- cfh.csv ---- */
@@ -211,8 +211,8 @@ static void put_cell(FILE *file, double value) {
         fputc(',', file);
 }
 
-sf_status sf_cfh_write_csv(const sf_output *output, const sf_cfh_report *r, sf_error *err) {
-    FILE *file = sf_output_open(output, "cfh.csv", err);
+sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
+    FILE *file = sf_staging_open(output, "cfh.csv", err);
     if (!file)
         return err->status;
     fputs("height_m,speed_m_s,a_max_g,hic_1,a_max_fit_g,hic_fit_1,v_rebound_m_s,max_indentation_mm,max_local_"
@@ -235,7 +235,7 @@ sf_status sf_cfh_write_csv(const sf_output *output, const sf_cfh_report *r, sf_e
             put_cell(file, sf_cfh_rig_height(r->rig, p->height));
         fputc('\n', file);
     }
-    return sf_output_close(file, "cfh.csv", err);
+    return sf_staging_close(file, "cfh.csv", err);
 }
 
 /* ---- report.md ---- */
@@ -307,10 +307,10 @@ static void put_notes(FILE *file, const sf_cfh_report *r) {
     }
 }
 
-sf_status sf_cfh_write_markdown(const sf_output *output, const sf_cfh_report *r, const char *plot_warning,
+sf_status sf_cfh_write_markdown(const sf_staging *output, const sf_cfh_report *r, const char *plot_warning,
                                 sf_error *err) {
     char verdict[1200], rig[400];
-    FILE *file = sf_output_open(output, "report.md", err);
+    FILE *file = sf_staging_open(output, "report.md", err);
     if (!file)
         return err->status;
     sf_cfh_verdict_text(r, verdict, sizeof verdict);
@@ -333,7 +333,7 @@ sf_status sf_cfh_write_markdown(const sf_output *output, const sf_cfh_report *r,
             "The compression table ends at a strain of %.3f; beyond it the foam's curve is extrapolated.\n",
             r->table_end);
     put_notes(file, r);
-    return sf_output_close(file, "report.md", err);
+    return sf_staging_close(file, "report.md", err);
 }
 
 /* ---- terminal ---- */

@@ -4,7 +4,7 @@
 #define SF_CFH_REPORT_H
 
 #include "cfh/search.h"
-#include "post/output.h"
+#include "io/staging.h"
 
 typedef struct sf_cfh_report {
     const char *case_path;
@@ -23,10 +23,10 @@ typedef struct sf_cfh_report {
 /* The critical fall height in one sentence. */
 void sf_cfh_verdict_text(const sf_cfh_report *report, char *text, size_t size);
 
-sf_status sf_cfh_write_json(const sf_output *output, const sf_cfh_report *report, sf_error *err);
-sf_status sf_cfh_write_csv(const sf_output *output, const sf_cfh_report *report, sf_error *err);
+sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
+sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
 /* `plot_warning`: why there is no picture, or "". */
-sf_status sf_cfh_write_markdown(const sf_output *output, const sf_cfh_report *report,
+sf_status sf_cfh_write_markdown(const sf_staging *output, const sf_cfh_report *report,
                                 const char *plot_warning, sf_error *err);
 void sf_cfh_print(FILE *out, const sf_cfh_report *report);
 

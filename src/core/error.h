@@ -33,6 +33,16 @@ typedef struct sf_error {
 /* Records a failure (unless one is recorded already) and returns the recorded status. */
 #define SF_FAIL(err, status, ...) sf_error_set((err), (status), __FILE__, __LINE__, __VA_ARGS__)
 
+/* Leaves the function with the status of `call` unless that is SF_OK. For a sequence of calls in a function that
+ * returns sf_status and has nothing to release; where something must be released, chain the calls in one
+ * condition or use `goto done`. */
+#define SF_TRY(call)                                                                                         \
+    do {                                                                                                     \
+        sf_status sf_try_status = (call);                                                                    \
+        if (sf_try_status != SF_OK)                                                                          \
+            return sf_try_status;                                                                            \
+    } while (0)
+
 sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/model_io.h"
 
-#include <errno.h>
+#include "io/replace.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,19 +41,16 @@ static sf_status write_fields(sf_h5 *h5, const sf_model *model, sf_error *err) {
 
 sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance,
                          sf_error *err) {
-    char partial[4096];
+    char partial[SF_PATH_SIZE];
     sf_h5 *h5 = NULL;
-    if ((size_t)snprintf(partial, sizeof partial, "%s.partial", path) >= sizeof partial)
-        return SF_FAIL(err, SF_ERR_IO, "the path of the model file is too long");
-    if (sf_h5_create(partial, &h5, err) != SF_OK)
+    if (sf_replace_begin(path, partial, err) != SF_OK || sf_h5_create(partial, &h5, err) != SF_OK)
         return err->status;
     if (sf_provenance_write(h5, "softfall-model", provenance, err) == SF_OK)
         write_fields(h5, model, err);
     sf_h5_close(&h5, err);
-    if (err->status == SF_OK && rename(partial, path) != 0)
-        SF_FAIL(err, SF_ERR_IO, "cannot rename %s to %s: %s", partial, path, strerror(errno));
-    if (err->status != SF_OK)
-        unlink(partial);
+    if (err->status == SF_OK)
+        return sf_replace_commit(partial, path, err);
+    unlink(partial);
     return err->status;
 }
 

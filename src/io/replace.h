@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files that are whole at any instant: written under another name in the same folder, brought to the disk and
- * renamed. Whatever happens in between, the earlier file stays. */
+/* Files that are whole at any instant: written under another name on the same disk, brought to the disk and
+ * renamed. Whatever happens in between, the earlier file stays. Model, results, checkpoint and reports all go
+ * through here. */
 #ifndef SF_IO_REPLACE_H
 #define SF_IO_REPLACE_H
 
@@ -11,7 +12,8 @@ enum { SF_PATH_SIZE = 4096 };
 /* "path.partial", the name to write under. */
 sf_status sf_replace_begin(const char *path, char partial[SF_PATH_SIZE], sf_error *err);
 
-/* Makes the closed file `partial` the file `path`; removes it on failure. */
+/* Makes the closed file `partial` the file `path`, both on the disk (fsync of the file and of the folder);
+ * removes it on failure. */
 sf_status sf_replace_commit(const char *partial, const char *path, sf_error *err);
 
 #endif

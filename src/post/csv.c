@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/csv.h"
 
-sf_status sf_csv_write_history(const sf_output *output, const sf_results *results, const sf_figures *figures,
+sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err) {
-    FILE *file = sf_output_open(output, "history.csv", err);
+    FILE *file = sf_staging_open(output, "history.csv", err);
     if (!file)
         return err->status;
     const sf_history *h = &results->history;
@@ -28,12 +28,12 @@ sf_status sf_csv_write_history(const sf_output *output, const sf_results *result
         }
         fputc('\n', file);
     }
-    return sf_output_close(file, "history.csv", err);
+    return sf_staging_close(file, "history.csv", err);
 }
 
-sf_status sf_csv_write_compression(const sf_output *output, const sf_results *results,
+sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *results,
                                    const sf_figures *figures, sf_error *err) {
-    FILE *file = sf_output_open(output, "compression.csv", err);
+    FILE *file = sf_staging_open(output, "compression.csv", err);
     if (!file)
         return err->status;
     fputs("time_ms,strain_1,stress_kPa,force_N\n", file);
@@ -42,13 +42,13 @@ sf_status sf_csv_write_compression(const sf_output *output, const sf_results *re
         fprintf(file, "%.9g,%.9g,%.9g,%.9g\n", results->history.time[i] * 1e3,
                 results->history.indentation[i] / results->thickness, force / figures->area * 1e-3, force);
     }
-    return sf_output_close(file, "compression.csv", err);
+    return sf_staging_close(file, "compression.csv", err);
 }
 
-sf_status sf_csv_write_reference(const sf_output *output, const sf_comparison *comparison,
+sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *comparison,
                                  const sf_figures *figures, sf_error *err) {
     const sf_series *measured = &comparison->measured, *model = &figures->filtered;
-    FILE *file = sf_output_open(output, "reference.csv", err);
+    FILE *file = sf_staging_open(output, "reference.csv", err);
     if (!file)
         return err->status;
     fprintf(file, "time_ms,acceleration_measured_g,acceleration_cfc%.0f_g\n", figures->cfc);
@@ -59,5 +59,5 @@ sf_status sf_csv_write_reference(const sf_output *output, const sf_comparison *c
             fprintf(file, "%.9g", sf_series_at(model, time));
         fputc('\n', file);
     }
-    return sf_output_close(file, "reference.csv", err);
+    return sf_staging_close(file, "reference.csv", err);
 }

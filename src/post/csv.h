@@ -5,20 +5,20 @@
 
 #include "post/compare.h"
 #include "post/figures.h"
-#include "post/output.h"
+#include "io/staging.h"
 
 /* history.csv: every row of the history; the filtered acceleration is interpolated to its instants. */
-sf_status sf_csv_write_history(const sf_output *output, const sf_results *results, const sf_figures *figures,
+sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err);
 
 /* compression.csv: engineering strain (indentation / thickness) and nominal stress (contact force / mean
  * cross-section at rest) of every row; of a run with a prescribed motion. */
-sf_status sf_csv_write_compression(const sf_output *output, const sf_results *results,
+sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *results,
                                    const sf_figures *figures, sf_error *err);
 
 /* reference.csv: the measured curve on the clock of the model, and the model at the same instants (empty
  * outside). */
-sf_status sf_csv_write_reference(const sf_output *output, const sf_comparison *comparison,
+sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *comparison,
                                  const sf_figures *figures, sf_error *err);
 
 #endif

@@ -6,7 +6,7 @@
 #include "post/compare.h"
 #include "post/csv.h"
 #include "post/figures.h"
-#include "post/output.h"
+#include "io/staging.h"
 #include "post/plot.h"
 #include "post/results.h"
 #include "post/section.h"
@@ -37,7 +37,7 @@ typedef struct job {
     sf_results results;
     sf_figures figures;
     sf_comparison comparison;
-    sf_output output;
+    sf_staging output;
     char *command_line;
     int64_t frames;
     char plot_warning[512];
@@ -153,7 +153,7 @@ static const char *const output_names[] = {"pad.h5",           "pad.xdmf",      
 static sf_status write_output(const options *o, job *j, sf_error *err) {
     bool section = false;
     const sf_comparison *comparison = o->comparing ? &j->comparison : NULL;
-    if (sf_output_begin(o->directory, output_names, o->force, &j->output, err) != SF_OK ||
+    if (sf_staging_begin(o->directory, output_names, o->force, &j->output, err) != SF_OK ||
         sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
         (j->figures.driven && sf_csv_write_compression(&j->output, &j->results, &j->figures, err) != SF_OK) ||
         (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
@@ -166,7 +166,7 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
         fprintf(stderr,
                 "softfall-post: warning: no frame holds the von Mises stress at the peak: no section.csv\n");
     const sf_summary summary = {o->results_path, o->compare.path, &j->results, &j->figures, comparison};
-    if (sf_summary_write(&j->output, &summary, err) != SF_OK || sf_output_commit(&j->output, err) != SF_OK)
+    if (sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
         return err->status;
     sf_summary_print(stdout, &summary);
     return SF_OK;
@@ -202,7 +202,7 @@ static void print_files(const job *j) {
     };
     printf("Files\n");
     for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
-        if (sf_output_has(&j->output, files[k].name))
+        if (sf_staging_has(&j->output, files[k].name))
             printf("  %s/%-18s %s\n", j->output.directory, files[k].name, files[k].meaning);
 }
 
@@ -238,7 +238,7 @@ int main(int argc, char **argv) {
         j.command_line = sf_command_line(argc, argv);
         run(&o, &j, &err);
     }
-    sf_output_end(&j.output);
+    sf_staging_end(&j.output);
     if (o.comparing)
         sf_comparison_free(&j.comparison);
     sf_figures_free(&j.figures);

@@ -84,13 +84,13 @@ static void put_compression(FILE *g, const sf_results *r, const sf_figures *f) {
           g);
 }
 
-sf_status sf_plot_write(const sf_output *output, const sf_results *results, const sf_figures *figures,
+sf_status sf_plot_write(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                         const sf_comparison *comparison, char *warning, size_t size, sf_error *err) {
     const char *name = figures->driven ? "compression" : "acceleration";
     char source[32], picture[32];
     snprintf(source, sizeof source, "%s.gp", name);
     snprintf(picture, sizeof picture, "%s.png", name);
-    FILE *script = sf_output_open(output, source, err);
+    FILE *script = sf_staging_open(output, source, err);
     if (!script)
         return err->status;
     put_style(script, name);
@@ -100,7 +100,7 @@ sf_status sf_plot_write(const sf_output *output, const sf_results *results, cons
         put_axes(script, results, figures, comparison);
         put_curves(script, figures, comparison);
     }
-    if (sf_output_close(script, source, err) != SF_OK)
+    if (sf_staging_close(script, source, err) != SF_OK)
         return err->status;
     sf_gnuplot_draw(output, source, picture, warning, size);
     return SF_OK;

@@ -9,6 +9,7 @@
 #ifndef SF_POST_RESULTS_H
 #define SF_POST_RESULTS_H
 
+#include "core/mat3.h"
 #include "core/error.h"
 #include "core/frame_field.h"
 #include "core/history.h"
@@ -81,7 +82,9 @@ sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf
 void sf_frame_free(sf_frame *frame);
 
 /* Component of a vector along the missile's direction of motion. */
-double sf_results_along(const sf_results *results, const double vector[3]);
+static inline double sf_results_along(const sf_results *results, const double vector[3]) {
+    return sf_dot3(vector, results->missile_direction);
+}
 /* Speed of the missile downwards, along -z, at t = 0, m s-1. */
 double sf_results_fall_speed(const sf_results *results);
 /* Modelled parts that make the whole pad: see sf_model_whole. */

@@ -209,7 +209,8 @@ static const sf_frame_head *peak_head(const sf_results *r) {
     return best;
 }
 
-sf_status sf_section_write(const sf_output *output, const sf_results *results, bool *written, sf_error *err) {
+sf_status sf_section_write(const sf_staging *output, const sf_results *results, bool *written,
+                           sf_error *err) {
     const sf_frame_head *head = peak_head(results);
     sf_frame frame = {0};
     FILE *file = NULL;
@@ -218,14 +219,14 @@ sf_status sf_section_write(const sf_output *output, const sf_results *results, b
         return SF_OK;
     if (sf_frame_read(results, head, &frame, err) != SF_OK || !frame.field[SF_FRAME_VON_MISES])
         goto done;
-    file = sf_output_open(output, "section.csv", err);
+    file = sf_staging_open(output, "section.csv", err);
     if (!file)
         goto done;
     fputs("set,node,x_mm,y_mm,z_mm,depth_mm,displacement_x_mm,displacement_y_mm,displacement_z_mm,von_mises_"
           "kPa,stress_zz_kPa,largest_compression_1\n",
           file);
     write_rows(file, results, &frame, err);
-    if (sf_output_close(file, "section.csv", err) == SF_OK)
+    if (sf_staging_close(file, "section.csv", err) == SF_OK)
         *written = true;
 done:
     sf_frame_free(&frame);

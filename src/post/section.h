@@ -6,7 +6,7 @@
 #ifndef SF_POST_SECTION_H
 #define SF_POST_SECTION_H
 
-#include "post/output.h"
+#include "io/staging.h"
 #include "post/results.h"
 
 enum { SF_SECTION_STATIONS = 41 }; /* points under the axis */
@@ -17,6 +17,6 @@ void sf_section_axis(const sf_results *results, double axis[2]);
 
 /* From /peak, or without it the frame of the largest acceleration. `*written` is false if that holds no von
  * Mises stress: then there is no file. */
-sf_status sf_section_write(const sf_output *output, const sf_results *results, bool *written, sf_error *err);
+sf_status sf_section_write(const sf_staging *output, const sf_results *results, bool *written, sf_error *err);
 
 #endif

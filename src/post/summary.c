@@ -79,8 +79,8 @@ static void put_comparison(sf_json *json, const char *path, const sf_comparison 
     sf_json_close(json, '}');
 }
 
-sf_status sf_summary_write(const sf_output *output, const sf_summary *s, sf_error *err) {
-    FILE *file = sf_output_open(output, "summary.json", err);
+sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_error *err) {
+    FILE *file = sf_staging_open(output, "summary.json", err);
     if (!file)
         return err->status;
     sf_json json = {.file = file};
@@ -92,7 +92,7 @@ sf_status sf_summary_write(const sf_output *output, const sf_summary *s, sf_erro
     if (s->comparison)
         put_comparison(&json, s->reference_path, s->comparison);
     sf_json_close(&json, '}');
-    return sf_output_close(file, "summary.json", err);
+    return sf_staging_close(file, "summary.json", err);
 }
 
 /* A line of the printed table: the figure `key` times `factor`. */

@@ -6,7 +6,7 @@
 
 #include "post/compare.h"
 #include "post/figures.h"
-#include "post/output.h"
+#include "io/staging.h"
 
 /* `comparison` may be NULL. */
 typedef struct sf_summary {
@@ -17,7 +17,7 @@ typedef struct sf_summary {
     const sf_comparison *comparison;
 } sf_summary;
 
-sf_status sf_summary_write(const sf_output *output, const sf_summary *summary, sf_error *err);
+sf_status sf_summary_write(const sf_staging *output, const sf_summary *summary, sf_error *err);
 
 /* The table on `out`, ending with what the figures are not. */
 void sf_summary_print(FILE *out, const sf_summary *summary);

@@ -169,21 +169,21 @@ static sf_status write_all(sf_h5 **file, FILE *x, sf_results *r, const char *com
     return sf_h5_close(file, err);
 }
 
-sf_status sf_xdmf_write(const sf_output *output, sf_results *results, const char *command_line,
+sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const char *command_line,
                         int64_t *frames, sf_error *err) {
     sf_h5 *file = NULL;
     FILE *text = NULL;
     sf_error ignored = SF_ERROR_INIT;
     *frames = 0;
-    char *data = sf_output_path(output, "pad.h5", err);
-    char *xdmf = data ? sf_output_path(output, "pad.xdmf", err) : NULL;
+    char *data = sf_staging_path(output, "pad.h5", err);
+    char *xdmf = data ? sf_staging_path(output, "pad.xdmf", err) : NULL;
     if (!xdmf || sf_h5_create(data, &file, err) != SF_OK)
         goto done;
-    text = sf_output_open(output, "pad.xdmf", err);
+    text = sf_staging_open(output, "pad.xdmf", err);
     if (!text)
         goto done;
     write_all(&file, text, results, command_line, frames, err);
-    sf_output_close(text, "pad.xdmf", err);
+    sf_staging_close(text, "pad.xdmf", err);
 done:
     if (file)
         sf_h5_close(&file, err->status == SF_OK ? err : &ignored);

@@ -7,12 +7,12 @@
 #ifndef SF_POST_XDMF_H
 #define SF_POST_XDMF_H
 
-#include "post/output.h"
+#include "io/staging.h"
 #include "post/results.h"
 
 /* `*frames` is the number of frames written; with 0 there are no files. A frame that cannot be read ends the
  * export with a note if the run did not end well, and is an error otherwise. */
-sf_status sf_xdmf_write(const sf_output *output, sf_results *results, const char *command_line,
+sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const char *command_line,
                         int64_t *frames, sf_error *err);
 
 #endif

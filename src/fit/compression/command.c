@@ -2,8 +2,8 @@
 #include "core/program.h"
 #include "fit/compression/command.h"
 
-#include "campaign/runner.h"
 #include "fit/compression/output.h"
+#include "io/process.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -89,7 +89,7 @@ static sf_status run(const options *o, sf_error *err) {
 int sf_fit_compression_main(int argc, char **argv) {
     options o = {0};
     sf_error err = SF_ERROR_INIT;
-    sf_runner_handle_signals();
+    sf_process_handle_signals();
     if (parse_command(argc, argv, &o, &err) == SF_OK)
         run(&o, &err);
     return sf_error_report(&err, "softfall-fit");

@@ -22,10 +22,9 @@ static sf_status read_specimen(const sf_config *file, const config_setting_t *ro
     if (!config_setting_is_group(group))
         return sf_config_refuse(file, group, err,
                                 "specimen must be a group { side = \"50 mm\"; thickness = \"50 mm\"; }");
-    if (sf_config_names(file, group, "side|thickness", err) == SF_OK &&
-        sf_config_quantity(file, group, "side", SF_LENGTH, false, 0, &c->side, err) == SF_OK)
-        sf_config_quantity(file, group, "thickness", SF_LENGTH, false, 0, &c->thickness, err);
-    return err->status;
+    SF_TRY(sf_config_names(file, group, "side|thickness", err));
+    SF_TRY(sf_config_quantity(file, group, "side", SF_LENGTH, false, 0, &c->side, err));
+    return sf_config_quantity(file, group, "thickness", SF_LENGTH, false, 0, &c->thickness, err);
 }
 
 /* ---- tests ---- */
@@ -72,8 +71,7 @@ static sf_status read_test(const sf_config *file, const config_setting_t *entry,
 static sf_status read_tests(const sf_config *file, const config_setting_t *root, sf_compression_config *c,
                             sf_error *err) {
     const config_setting_t *tests;
-    if (sf_config_list(file, root, "tests", true, SF_COMPRESSION_TESTS, &tests, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_list(file, root, "tests", true, SF_COMPRESSION_TESTS, &tests, err));
     for (int i = 0; i < config_setting_length(tests) && err->status == SF_OK; i++)
         read_test(file, config_setting_get_elem(tests, (unsigned)i), c, err);
     return err->status;
@@ -97,21 +95,20 @@ static sf_status read_name(const sf_config *file, const config_setting_t *root, 
 static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
     const config_setting_t *root = config_root_setting(&file->config);
     int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
-    if (sf_config_names(file, root,
-                        "name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
-                        "confidence|specimen",
-                        err) != SF_OK ||
-        sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err) != SF_OK ||
-        read_name(file, root, c, err) != SF_OK ||
-        sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err) != SF_OK ||
-        sf_config_number(file, root, "E_range", false, 0.001, 0.2, &c->modulus_range, err) != SF_OK ||
-        sf_config_number(file, root, "confidence", false, 0.5, 0.9999, &c->confidence, err) != SF_OK ||
-        sf_config_number(file, root, "densification_start", false, 0.05, 0.98, &c->densification_start,
-                         err) != SF_OK ||
-        sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err) != SF_OK ||
-        sf_config_choice(file, root, "densification", RULE_WORDS, &rule, err) != SF_OK ||
-        read_specimen(file, root, c, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(file, root,
+                           "name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
+                           "confidence|specimen",
+                           err));
+    SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err));
+    SF_TRY(read_name(file, root, c, err));
+    SF_TRY(sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err));
+    SF_TRY(sf_config_number(file, root, "E_range", false, 0.001, 0.2, &c->modulus_range, err));
+    SF_TRY(sf_config_number(file, root, "confidence", false, 0.5, 0.9999, &c->confidence, err));
+    SF_TRY(
+        sf_config_number(file, root, "densification_start", false, 0.05, 0.98, &c->densification_start, err));
+    SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err));
+    SF_TRY(sf_config_choice(file, root, "densification", RULE_WORDS, &rule, err));
+    SF_TRY(read_specimen(file, root, c, err));
     c->rate_model = (sf_rate_model)model;
     c->rule = (sf_rule_choice)rule;
     return read_tests(file, root, c, err);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* fit.json */
-#include "fit/compression/output.h"
+#include "fit/compression/json.h"
 
 #include "build_info.h"
 #include "io/json.h"
@@ -98,9 +98,9 @@ static void put_simulation(sf_json *json, const sf_compression_fit *fit, const s
     sf_json_close(json, ']');
 }
 
-sf_status sf_compression_write_json(const sf_output *output, const sf_compression_fit *fit,
+sf_status sf_compression_write_json(const sf_staging *output, const sf_compression_fit *fit,
                                     const sf_compression_check *check, const char *path, sf_error *err) {
-    sf_json json = {.file = sf_output_open(output, "fit.json", err)};
+    sf_json json = {.file = sf_staging_open(output, "fit.json", err)};
     if (!json.file)
         return err->status;
     sf_json_open(&json, NULL, '{');
@@ -113,5 +113,5 @@ sf_status sf_compression_write_json(const sf_output *output, const sf_compressio
     put_quality(&json, fit, check);
     put_simulation(&json, fit, check);
     sf_json_close(&json, '}');
-    return sf_output_close(json.file, "fit.json", err);
+    return sf_staging_close(json.file, "fit.json", err);
 }

@@ -2,16 +2,17 @@
 #include "fit/compression/output.h"
 
 #include "campaign/material_file.h"
-#include "fit/material_point.h"
+#include "fit/compression/check.h"
+#include "fit/compression/json.h"
+#include "fit/compression/phrase.h"
+#include "fit/compression/plot.h"
+#include "fit/compression/report.h"
+#include "io/folder.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-static const double CARD_STEP = 5e-4; /* strain, of the check by the solver's law */
 
 /* Every file that may be written; the material file comes last, when the curves it names are there. */
 static const char *const output_names[] = {"simulation.csv", "fit.csv",        "loading_curve.csv",
@@ -20,79 +21,6 @@ static const char *const output_names[] = {"simulation.csv", "fit.csv",        "
                                            "material-2.csv", "material-3.csv", "material-4.csv",
                                            "material-5.csv", "material-6.csv", "material-7.csv",
                                            "material-8.csv", "material.cfg",   NULL};
-
-const char *sf_compression_rate_phrase(sf_rate_model model) {
-    static const char *const phrases[SF_RATE_MODELS] = {
-        "none: one curve for all rates",
-        "log: curve times 1 + c ln(rate/slowest rate), written as a curve for each rate",
-        "maxwell: one curve and a Maxwell branch ED, BETA1",
-        "curves: a curve of its own for each rate",
-    };
-    return phrases[model];
-}
-
-const char *sf_compression_rule_phrase(sf_rule rule) {
-    static const char *const phrases[SF_RULES] = {
-        "H1, exponent by A = 0: B/(1 - strain)^m",
-        "H1, exponent free: A + B/(1 - strain)^m",
-        "H2: A + B/(limit - strain)^m",
-    };
-    return phrases[rule];
-}
-
-void sf_compression_text(const sf_estimate *e, double value, char *out, size_t size) {
-    bool pressure = strcmp(e->unit, "Pa") == 0;
-    double scale = pressure ? 1e-3 : 1;
-    const char *unit = pressure ? "kPa" : e->unit;
-    if (isfinite(value))
-        snprintf(out, size, "%.5g%s%s", value * scale, *unit ? " " : "", unit);
-    else
-        snprintf(out, size, "-");
-}
-
-/* ---- the card in the solver's law ---- */
-
-static double counted(const sf_compression_fit *fit, int i) {
-    const sf_compression_test *t = &fit->data.config->test[fit->data.test[i]];
-    return fmax(fabs(fit->stress[i]), 0.01 * t->largest_stress);
-}
-
-static void compare_data(const sf_compression_fit *fit, sf_compression_check *check) {
-    const sf_compression_data *d = &fit->data;
-    for (int k = 0; k < d->config->test_count; k++)
-        for (int side = 0; side < 2; side++) {
-            int first, count;
-            double sum = 0, relative = 0;
-            sf_compression_branch(d, k, side == 1, &first, &count);
-            for (int i = first; i < first + count; i++) {
-                double deviation = d->stress[i] - fit->stress[i];
-                sum += pow(deviation / d->sigma[i], 2);
-                relative += pow(deviation / counted(fit, i), 2);
-            }
-            check->rms[k][side] = count ? sqrt(sum / count) : NAN;
-            check->percent[k][side] = count ? 100 * sqrt(relative / count) : NAN;
-        }
-}
-
-static sf_status compare_card(const sf_compression_fit *fit, const sf_foam_card *card,
-                              sf_compression_check *check, sf_error *err) {
-    const sf_compression_data *d = &fit->data;
-    sf_foam foam;
-    if (sf_foam_build(card, &foam, err) != SF_OK)
-        return err->status;
-    double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
-    for (int k = 0, first = 0; stress && k < d->config->test_count; k++) {
-        const sf_compression_test *t = &d->config->test[k];
-        sf_material_point_drive(&foam, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
-        for (int i = first; i < first + t->count; i++)
-            check->card_percent =
-                fmax(check->card_percent, 100 * fabs(stress[i] - fit->stress[i]) / counted(fit, i));
-        first += t->count;
-    }
-    free(stress);
-    sf_foam_free(&foam);
-    return err->status;
-}
 
 /* ---- files ---- */
 
@@ -136,20 +64,20 @@ static char *provenance(const sf_compression_fit *fit, sf_error *err) {
     return text;
 }
 
-static sf_status write_material(const sf_output *output, const sf_compression_fit *fit,
+static sf_status write_material(const sf_staging *output, const sf_compression_fit *fit,
                                 const sf_foam_card *card, sf_error *err) {
     char *text = provenance(fit, err);
     if (!text)
         return err->status;
     const sf_material_text comments = {fit->data.config->name, text};
-    sf_material_write(output->staging, "material", card, &comments, err);
+    sf_material_write(output->aside, "material", card, &comments, err);
     free(text);
     return err->status;
 }
 
-static sf_status write_points(const sf_output *output, const sf_compression_fit *fit, sf_error *err) {
+static sf_status write_points(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
     const sf_compression_data *d = &fit->data;
-    FILE *file = sf_output_open(output, "fit.csv", err);
+    FILE *file = sf_staging_open(output, "fit.csv", err);
     if (!file)
         return err->status;
     fputs("test,branch,strain,measured_kPa,fit_kPa,sigma_kPa,deviation_over_sigma\n", file);
@@ -157,11 +85,11 @@ static sf_status write_points(const sf_output *output, const sf_compression_fit 
         fprintf(file, "%d,%s,%.9g,%.9g,%.9g,%.9g,%.6g\n", d->test[i] + 1,
                 d->unloading[i] ? "unloading" : "loading", d->strain[i], 1e-3 * d->stress[i],
                 1e-3 * fit->stress[i], 1e-3 * d->sigma[i], (d->stress[i] - fit->stress[i]) / d->sigma[i]);
-    return sf_output_close(file, "fit.csv", err);
+    return sf_staging_close(file, "fit.csv", err);
 }
 
-static sf_status write_curves(const sf_output *output, const sf_compression_fit *fit, sf_error *err) {
-    FILE *file = sf_output_open(output, "loading_curve.csv", err);
+static sf_status write_curves(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
+    FILE *file = sf_staging_open(output, "loading_curve.csv", err);
     if (!file)
         return err->status;
     fprintf(file, "# Loading curves of the fit with their %g %% intervals; rate 0: one curve for all rates\n",
@@ -174,23 +102,22 @@ static sf_status write_curves(const sf_output *output, const sf_compression_fit 
                     fit->rate_count > 1 ? fit->data.config->test[r].rate : 0, fit->table_strain[k],
                     1e-3 * stress, 1e-3 * fmax(0, stress - width), 1e-3 * (stress + width));
         }
-    return sf_output_close(file, "loading_curve.csv", err);
+    return sf_staging_close(file, "loading_curve.csv", err);
 }
 
 /* Simulates the tests in DIR/simulation, which stays, and writes the curves. */
-static sf_status write_simulation(const sf_output *output, const sf_compression_fit *fit,
+static sf_status write_simulation(const sf_staging *output, const sf_compression_fit *fit,
                                   const sf_foam_card *card, const sf_cube_options *cube,
                                   sf_compression_check *check, sf_error *err) {
     char folder[PATH_MAX];
     if (!cube->case_path)
         return SF_OK;
     snprintf(folder, sizeof folder, "%s/simulation", output->directory);
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", folder, strerror(errno));
-    if (sf_compression_simulate(fit, card, cube, folder, check->cube, err) != SF_OK)
+    if (sf_folder_make(folder, err) != SF_OK ||
+        sf_compression_simulate(fit, card, cube, folder, check->cube, err) != SF_OK)
         return err->status;
     check->simulated = true;
-    FILE *file = sf_output_open(output, "simulation.csv", err);
+    FILE *file = sf_staging_open(output, "simulation.csv", err);
     if (!file)
         return err->status;
     fputs("test,strain,cube_kPa,point_kPa\n", file);
@@ -198,7 +125,7 @@ static sf_status write_simulation(const sf_output *output, const sf_compression_
         for (int i = 0; i < check->cube[k].count; i++)
             fprintf(file, "%d,%.9g,%.9g,%.9g\n", k + 1, check->cube[k].strain[i],
                     1e-3 * check->cube[k].cube[i], 1e-3 * check->cube[k].point[i]);
-    return sf_output_close(file, "simulation.csv", err);
+    return sf_staging_close(file, "simulation.csv", err);
 }
 
 /* ---- the summary ---- */
@@ -234,22 +161,21 @@ sf_status sf_compression_output(const sf_compression_fit *fit, const char *path,
                                 bool force, const sf_cube_options *cube, sf_error *err) {
     sf_compression_check check = {.card_percent = 0};
     sf_foam_card card;
-    sf_output output;
+    sf_staging output;
     char warning[512] = "";
     if (sf_compression_card(fit, &card, err) != SF_OK)
         return err->status;
-    compare_data(fit, &check);
-    if (compare_card(fit, &card, &check, err) == SF_OK &&
-        sf_output_begin(directory, output_names, force, &output, err) == SF_OK) {
+    if (sf_compression_check_card(fit, &card, &check, err) == SF_OK &&
+        sf_staging_begin(directory, output_names, force, &output, err) == SF_OK) {
         if (write_points(&output, fit, err) == SF_OK && write_curves(&output, fit, err) == SF_OK &&
             write_material(&output, fit, &card, err) == SF_OK &&
             write_simulation(&output, fit, &card, cube, &check, err) == SF_OK &&
             sf_compression_write_json(&output, fit, &check, path, err) == SF_OK &&
             sf_compression_write_plot(&output, fit, warning, sizeof warning, err) == SF_OK &&
             sf_compression_write_report(&output, fit, &check, path, err) == SF_OK &&
-            sf_output_commit(&output, err) == SF_OK)
+            sf_staging_commit(&output, err) == SF_OK)
             print_summary(fit, &check, directory, warning);
-        sf_output_end(&output);
+        sf_staging_end(&output);
     }
     sf_compression_card_free(&card);
     return err->status;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* fit.png: data against fit over the whole range and at the foot, deviations below. */
-#include "fit/compression/output.h"
+#include "fit/compression/plot.h"
 
 #include "io/gnuplot.h"
 #include <math.h>
@@ -78,9 +78,9 @@ static void put_deviations(FILE *g, const sf_compression_fit *fit) {
     fputs("0 with lines lw 1.5 lc rgb '#404040' notitle\n", g);
 }
 
-sf_status sf_compression_write_plot(const sf_output *output, const sf_compression_fit *fit, char *warning,
+sf_status sf_compression_write_plot(const sf_staging *output, const sf_compression_fit *fit, char *warning,
                                     size_t size, sf_error *err) {
-    FILE *g = sf_output_open(output, "fit.gp", err);
+    FILE *g = sf_staging_open(output, "fit.gp", err);
     if (!g)
         return err->status;
     double end = fit->data.end;
@@ -99,7 +99,7 @@ sf_status sf_compression_write_plot(const sf_output *output, const sf_compressio
     fprintf(g, "set size 1,0.39\nset origin 0,0\nset xrange [0:%.6g]\n", 1.02 * end);
     put_deviations(g, fit);
     fputs("unset multiplot\n", g);
-    if (sf_output_close(g, "fit.gp", err) != SF_OK)
+    if (sf_staging_close(g, "fit.gp", err) != SF_OK)
         return err->status;
     sf_gnuplot_draw(output, "fit.gp", "fit.png", warning, size);
     return SF_OK;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.md */
-#include "fit/compression/output.h"
+#include "fit/compression/report.h"
 
 #include "build_info.h"
+#include "fit/compression/phrase.h"
 #include <math.h>
 
 static void put_tests(FILE *out, const sf_compression_fit *fit, const sf_compression_check *check) {
@@ -166,9 +167,9 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
                 e[SF_ESTIMATE_SHAPE].value, e[SF_ESTIMATE_HU].note);
 }
 
-sf_status sf_compression_write_report(const sf_output *output, const sf_compression_fit *fit,
+sf_status sf_compression_write_report(const sf_staging *output, const sf_compression_fit *fit,
                                       const sf_compression_check *check, const char *path, sf_error *err) {
-    FILE *out = sf_output_open(output, "report.md", err);
+    FILE *out = sf_staging_open(output, "report.md", err);
     if (!out)
         return err->status;
     fprintf(out,
@@ -181,5 +182,5 @@ sf_status sf_compression_write_report(const sf_output *output, const sf_compress
     put_quality(out, fit, check);
     put_simulation(out, fit, check);
     put_limits(out, fit);
-    return sf_output_close(out, "report.md", err);
+    return sf_staging_close(out, "report.md", err);
 }

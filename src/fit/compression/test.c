@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/compression/test.h"
 
-#include "case/csv.h"
+#include "case/curve.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -26,7 +26,7 @@ void sf_compression_test_free(sf_compression_test *test) {
 /* ---- reading ---- */
 
 /* What a single row can tell; quotes the cells as written. */
-static sf_status check_row(const sf_case_csv_point *p, sf_error *err) {
+static sf_status check_row(const sf_table_point *p, sf_error *err) {
     bool fraction = p->value[0] == strtod(p->text[0], NULL);
     if (p->value[0] >= 1 && fraction)
         return SF_FAIL(err, SF_ERR_INPUT,
@@ -42,7 +42,7 @@ static sf_status check_row(const sf_case_csv_point *p, sf_error *err) {
 }
 
 /* The table's arrays become the test's. */
-static void take_table(sf_case_csv *table, sf_compression_test *t) {
+static void take_table(sf_table *table, sf_compression_test *t) {
     t->count = (int)table->count;
     t->strain = table->value[0];
     t->stress = table->value[1];
@@ -182,16 +182,16 @@ static void condense(sf_compression_test *t) {
 
 sf_status sf_compression_test_read(const char *path, double rate, sf_compression_test *test, sf_error *err) {
     *test = (sf_compression_test){.path = strdup(path), .rate = rate};
-    const sf_case_csv_layout layout = sf_case_csv_stress_strain("test", check_row);
-    sf_case_csv table = {0};
+    const sf_table_layout layout = sf_case_curve_layout("test", check_row);
+    sf_table table = {0};
     if (!test->path)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
-    if (sf_case_csv_read(path, &layout, &table, err) == SF_OK) {
+    if (sf_table_read(path, &layout, &table, err) == SF_OK) {
         take_table(&table, test);
         if (check_test(test, table.scale, err) == SF_OK)
             condense(test);
     }
-    sf_case_csv_free(&table);
+    sf_table_free(&table);
     if (err->status != SF_OK)
         sf_compression_test_free(test);
     return err->status;

@@ -3,13 +3,13 @@
 #include "fit/drop/command.h"
 
 #include "fit/drop/report.h"
+#include "io/folder.h"
+#include "io/process.h"
 #include <argp.h>
-#include <errno.h>
 #include <gsl/gsl_errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct options {
@@ -47,7 +47,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     }
 }
 
-/* "<material>.cfg" and so on, for sf_output. */
+/* "<material>.cfg" and so on, for sf_staging. */
 typedef struct names {
     char card[SF_FIT_NAME_SIZE + 8], curve[SF_FIT_NAME_SIZE + 8];
     const char *list[9];
@@ -65,18 +65,17 @@ static void name_files(const sf_fit_input *in, names *n) {
 /* The drops' folders are kept between runs of the command: DIR/runs. */
 static sf_status make_runs(const char *directory, char *runs, sf_error *err) {
     snprintf(runs, PATH_MAX, "%s/runs", directory);
-    if (mkdir(runs, 0777) != 0 && errno != EEXIST)
-        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", runs, strerror(errno));
-    return SF_OK;
+    return sf_folder_make(runs, err);
 }
 
-static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_output *output, sf_error *err) {
+static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_staging *output,
+                     sf_error *err) {
     char runs[PATH_MAX], warning[512] = "";
     names n;
     if (sf_fit_input_read(o->input, in, err) != SF_OK)
         return err->status;
     name_files(in, &n);
-    if (sf_output_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
+    if (sf_staging_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
         make_runs(o->directory, runs, err) != SF_OK)
         return err->status;
     sf_runner runner = {.folder = runs, .threads = o->threads, .log = stdout};
@@ -85,7 +84,7 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_ou
            in->unknown_count, in->drop_count, runs);
     if (sf_drop_fit_run(fit, err) != SF_OK ||
         sf_drop_report_write(fit, o->input, output, warning, sizeof warning, err) != SF_OK ||
-        sf_output_commit(output, err) != SF_OK)
+        sf_staging_commit(output, err) != SF_OK)
         return err->status;
     sf_drop_report_print(fit, stdout);
     printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.md, fit.json, fit.png\n",
@@ -114,14 +113,14 @@ int sf_fit_drop_main(int argc, char **argv) {
     sf_error err = SF_ERROR_INIT;
     sf_fit_input input = {0};
     sf_drop_fit fit = {0};
-    sf_output output = {0};
+    sf_staging output = {0};
     static char name[] = "softfall-fit drop";
     argv[0] = name;
     gsl_set_error_handler_off(); /* statuses are looked at */
-    sf_runner_handle_signals();
+    sf_process_handle_signals();
     argp_parse(&parser, argc, argv, 0, NULL, &o);
     run(&o, &input, &fit, &output, &err);
-    sf_output_end(&output);
+    sf_staging_end(&output);
     sf_drop_fit_free(&fit);
     sf_fit_input_free(&input);
     return sf_error_report(&err, "softfall-fit");

@@ -239,9 +239,9 @@ static void put_strains(FILE *f, const sf_drop_fit *fit) {
     fputc('\n', f);
 }
 
-static sf_status write_report(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+static sf_status write_report(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
                               bool picture, sf_error *err) {
-    FILE *f = sf_output_open(output, "report.md", err);
+    FILE *f = sf_staging_open(output, "report.md", err);
     if (!f)
         return err->status;
     fprintf(f,
@@ -257,7 +257,7 @@ static sf_status write_report(const sf_drop_fit *fit, const char *input_path, co
     put_strains(f, fit);
     if (picture)
         fputs("![Identified curve, what the drops see of it, and the drops](fit.png)\n", f);
-    return sf_output_close(f, "report.md", err);
+    return sf_staging_close(f, "report.md", err);
 }
 
 /* ---- fit.json ---- */
@@ -296,9 +296,9 @@ static void json_parameter(sf_json *j, const sf_drop_fit *fit, int k) {
     sf_json_close(j, '}');
 }
 
-static sf_status write_json(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+static sf_status write_json(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
                             sf_error *err) {
-    FILE *f = sf_output_open(output, "fit.json", err);
+    FILE *f = sf_staging_open(output, "fit.json", err);
     if (!f)
         return err->status;
     sf_json j = {.file = f, .empty = true};
@@ -329,12 +329,12 @@ static sf_status write_json(const sf_drop_fit *fit, const char *input_path, cons
     sf_json_close(&j, ']');
     sf_json_close(&j, '}');
     fputc('\n', f);
-    return sf_output_close(f, "fit.json", err);
+    return sf_staging_close(f, "fit.json", err);
 }
 
 /* ---- the material ---- */
 
-static sf_status write_material(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+static sf_status write_material(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
                                 sf_error *err) {
     char *provenance = NULL;
     size_t size = 0;
@@ -374,7 +374,7 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
     const sf_material_text text = {fit->input->title, provenance};
     if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
-        sf_material_write(output->staging, fit->input->material_name, &card, &text, err);
+        sf_material_write(output->aside, fit->input->material_name, &card, &text, err);
         sf_foam_card_free(&card);
     }
     free(provenance);
@@ -383,10 +383,10 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
 
 /* ---- the picture ---- */
 
-static sf_status write_strain_data(const sf_drop_fit *fit, const sf_output *output, sf_error *err) {
+static sf_status write_strain_data(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
     sf_foam_card card;
     double sum = 0;
-    FILE *f = sf_output_open(output, "fit-curve.csv", err);
+    FILE *f = sf_staging_open(output, "fit-curve.csv", err);
     if (!f)
         return err->status;
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
@@ -405,11 +405,11 @@ static sf_status write_strain_data(const sf_drop_fit *fit, const sf_output *outp
         sf_curve_free(&curve);
         sf_foam_card_free(&card);
     }
-    return sf_output_close(f, "fit-curve.csv", err);
+    return sf_staging_close(f, "fit-curve.csv", err);
 }
 
-static sf_status write_drop_data(const sf_drop_fit *fit, const sf_output *output, sf_error *err) {
-    FILE *f = sf_output_open(output, "fit-drops.csv", err);
+static sf_status write_drop_data(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
+    FILE *f = sf_staging_open(output, "fit-drops.csv", err);
     if (!f)
         return err->status;
     fputs("# one block per drop: time after the run's start (ms), deceleration (g)\n", f);
@@ -419,7 +419,7 @@ static sf_status write_drop_data(const sf_drop_fit *fit, const sf_output *output
         for (int64_t k = 0; k < s->count; k += 10)
             fprintf(f, "%.6g,%.6g\n", 1e3 * s->time[k], s->value[k]);
     }
-    return sf_output_close(f, "fit-drops.csv", err);
+    return sf_staging_close(f, "fit-drops.csv", err);
 }
 
 static double peak_time_ms(const sf_series *curve) {
@@ -459,8 +459,8 @@ static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
     fputs("NaN w p pt 6 ps 2 lw 2 lc rgb '#404040' t 'measured peak'\n", f);
 }
 
-static sf_status write_script(const sf_drop_fit *fit, const sf_output *output, sf_error *err) {
-    FILE *f = sf_output_open(output, "fit.gp", err);
+static sf_status write_script(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
+    FILE *f = sf_staging_open(output, "fit.gp", err);
     if (!f)
         return err->status;
     fprintf(f,
@@ -472,10 +472,10 @@ static sf_status write_script(const sf_drop_fit *fit, const sf_output *output, s
     put_strain_panels(f);
     put_drop_panel(f, fit);
     fputs("unset multiplot\n", f);
-    return sf_output_close(f, "fit.gp", err);
+    return sf_staging_close(f, "fit.gp", err);
 }
 
-sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
                                char *warning, size_t size, sf_error *err) {
     if (write_strain_data(fit, output, err) != SF_OK || write_drop_data(fit, output, err) != SF_OK ||
         write_script(fit, output, err) != SF_OK || write_material(fit, input_path, output, err) != SF_OK ||

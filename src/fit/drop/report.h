@@ -4,11 +4,11 @@
 #define SF_FIT_DROP_REPORT_H
 
 #include "fit/drop/fit.h"
-#include "post/output.h"
+#include "io/staging.h"
 
 /* Writes everything into the staging directory; `warning` (size bytes) says why there is no picture, or is
  * "". */
-sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const sf_output *output,
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
                                char *warning, size_t size, sf_error *err);
 
 /* The short form, for the terminal. */

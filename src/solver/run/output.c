@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/output.h"
 
+#include "io/folder.h"
 #include "solver/run/frame.h"
 #include "solver/run/results_file.h"
 #include <dirent.h>
@@ -9,7 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { NAME_SIZE = SF_PATH_SIZE + 32 };
@@ -63,8 +63,8 @@ static void remove_files(const sf_output *o, const char *kept) {
 }
 
 sf_status sf_output_open(sf_output *o, sf_error *err) {
-    if (mkdir(o->folder, 0777) != 0 && errno != EEXIST)
-        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", o->folder, strerror(errno));
+    if (sf_folder_make(o->folder, err) != SF_OK)
+        return err->status;
     o->lock = open(o->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (o->lock < 0)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be opened: %s", o->folder, strerror(errno));

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* sf_results_open and sf_frame_read (post/results.h). */
 #include "post/results.h"
 
 #include "core/mat3.h"
@@ -8,10 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-double sf_results_along(const sf_results *r, const double vector[3]) {
-    return sf_dot3(vector, r->missile_direction);
-}
 
 double sf_results_fall_speed(const sf_results *r) {
     return -r->missile_speed * r->missile_direction[2];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/output.h"
+#include "io/staging.h"
 
+#include "io/replace.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -31,7 +32,7 @@ static bool file_exists(const char *directory, const char *name) {
     return found;
 }
 
-static sf_status make_directory(sf_output *output, bool force, sf_error *err) {
+static sf_status make_directory(sf_staging *output, bool force, sf_error *err) {
     struct stat status;
     if (mkdir(output->directory, 0777) == 0) {
         output->created = true;
@@ -85,36 +86,36 @@ static char *name_staging(const char *directory, sf_error *err) {
     return join(directory, name, err);
 }
 
-sf_status sf_output_begin(const char *directory, const char *const *names, bool force, sf_output *output,
-                          sf_error *err) {
-    *output = (sf_output){.names = names};
+sf_status sf_staging_begin(const char *directory, const char *const *names, bool force, sf_staging *output,
+                           sf_error *err) {
+    *output = (sf_staging){.names = names};
     output->directory = strdup(directory);
     if (!output->directory)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", directory);
     if (make_directory(output, force, err) != SF_OK)
         goto failed;
     remove_stale(directory);
-    output->staging = name_staging(directory, err);
-    if (!output->staging)
+    output->aside = name_staging(directory, err);
+    if (!output->aside)
         goto failed;
-    if (!mkdtemp(output->staging)) {
+    if (!mkdtemp(output->aside)) {
         SF_FAIL(err, SF_ERR_IO, "cannot write in %s: %s", directory, strerror(errno));
-        free(output->staging);
-        output->staging = NULL;
+        free(output->aside);
+        output->aside = NULL;
         goto failed;
     }
     return SF_OK;
 failed:
-    sf_output_end(output);
+    sf_staging_end(output);
     return err->status;
 }
 
-char *sf_output_path(const sf_output *output, const char *name, sf_error *err) {
-    return join(output->staging, name, err);
+char *sf_staging_path(const sf_staging *output, const char *name, sf_error *err) {
+    return join(output->aside, name, err);
 }
 
-FILE *sf_output_open(const sf_output *output, const char *name, sf_error *err) {
-    char *path = sf_output_path(output, name, err);
+FILE *sf_staging_open(const sf_staging *output, const char *name, sf_error *err) {
+    char *path = sf_staging_path(output, name, err);
     FILE *file = path ? fopen(path, "w") : NULL;
     if (path && !file)
         SF_FAIL(err, SF_ERR_IO, "cannot write %s: %s", path, strerror(errno));
@@ -122,26 +123,26 @@ FILE *sf_output_open(const sf_output *output, const char *name, sf_error *err) {
     return file;
 }
 
-sf_status sf_output_close(FILE *file, const char *name, sf_error *err) {
+sf_status sf_staging_close(FILE *file, const char *name, sf_error *err) {
     bool failed = ferror(file) != 0;
     if (fclose(file) != 0 || failed)
         return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", name);
     return SF_OK;
 }
 
-bool sf_output_has(const sf_output *output, const char *name) {
-    return file_exists(output->staging ? output->staging : output->directory, name);
+bool sf_staging_has(const sf_staging *output, const char *name) {
+    return file_exists(output->aside ? output->aside : output->directory, name);
 }
 
-sf_status sf_output_commit(sf_output *output, sf_error *err) {
+sf_status sf_staging_commit(sf_staging *output, sf_error *err) {
     for (const char *const *name = output->names; *name && err->status == SF_OK; name++) {
-        char *from = join(output->staging, *name, err);
+        char *from = join(output->aside, *name, err);
         char *to = from ? join(output->directory, *name, err) : NULL;
         if (to && access(from, F_OK) != 0) {
             if (unlink(to) != 0 && errno != ENOENT)
                 SF_FAIL(err, SF_ERR_IO, "cannot remove the old %s: %s", to, strerror(errno));
-        } else if (to && rename(from, to) != 0) {
-            SF_FAIL(err, SF_ERR_IO, "cannot move %s into place: %s", to, strerror(errno));
+        } else if (to) {
+            sf_replace_commit(from, to, err);
         }
         free(from);
         free(to);
@@ -149,18 +150,18 @@ sf_status sf_output_commit(sf_output *output, sf_error *err) {
     if (err->status != SF_OK)
         return err->status;
     output->created = false;
-    rmdir(output->staging);
-    free(output->staging);
-    output->staging = NULL;
+    rmdir(output->aside);
+    free(output->aside);
+    output->aside = NULL;
     return SF_OK;
 }
 
-void sf_output_end(sf_output *output) {
-    if (output->staging)
-        remove_flat(AT_FDCWD, output->staging);
+void sf_staging_end(sf_staging *output) {
+    if (output->aside)
+        remove_flat(AT_FDCWD, output->aside);
     if (output->created)
         rmdir(output->directory);
-    free(output->staging);
+    free(output->aside);
     free(output->directory);
-    *output = (sf_output){0};
+    *output = (sf_staging){0};
 }

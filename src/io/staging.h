@@ -2,42 +2,42 @@
 /* The output directory. Files are first written in a hidden directory inside it and moved to their places
  * when all of them are complete: a run that fails leaves the files of an earlier run as they were. The hidden
  * directory bears the process's number; that of a run that was killed is removed by the next one. */
-#ifndef SF_POST_OUTPUT_H
-#define SF_POST_OUTPUT_H
+#ifndef SF_IO_STAGING_H
+#define SF_IO_STAGING_H
 
 #include "core/error.h"
 #include <stdbool.h>
 #include <stdio.h>
 
-typedef struct sf_output {
+typedef struct sf_staging {
     const char *const *names; /* every file that the program may write, in the order in which they are moved;
                                  ends with NULL; borrowed */
     char *directory;          /* where the files will be */
-    char *staging;            /* where they are written */
+    char *aside;              /* where they are written */
     bool created;             /* the directory did not exist before */
-} sf_output;
+} sf_staging;
 
 /* Makes the directory if need be. SF_ERR_INPUT if it holds one of the named files already and `force` is
  * false. */
-sf_status sf_output_begin(const char *directory, const char *const *names, bool force, sf_output *output,
-                          sf_error *err);
+sf_status sf_staging_begin(const char *directory, const char *const *names, bool force, sf_staging *output,
+                           sf_error *err);
 
 /* "staging/name"; from malloc, owned by the caller; NULL on failure. */
-char *sf_output_path(const sf_output *output, const char *name, sf_error *err);
+char *sf_staging_path(const sf_staging *output, const char *name, sf_error *err);
 
-/* A text file of that name in the staging directory; NULL on failure. sf_output_close reports writes that
+/* A text file of that name in the staging directory; NULL on failure. sf_staging_close reports writes that
  * failed. */
-FILE *sf_output_open(const sf_output *output, const char *name, sf_error *err);
-sf_status sf_output_close(FILE *file, const char *name, sf_error *err);
+FILE *sf_staging_open(const sf_staging *output, const char *name, sf_error *err);
+sf_status sf_staging_close(FILE *file, const char *name, sf_error *err);
 
 /* True if the file has been written in this run. */
-bool sf_output_has(const sf_output *output, const char *name);
+bool sf_staging_has(const sf_staging *output, const char *name);
 
 /* Moves every file to its place and removes those of an earlier run that have no successor. */
-sf_status sf_output_commit(sf_output *output, sf_error *err);
+sf_status sf_staging_commit(sf_staging *output, sf_error *err);
 
 /* Removes what was not committed (and the directory, if this run made it and it is empty); releases. Always
  * safe. */
-void sf_output_end(sf_output *output);
+void sf_staging_end(sf_staging *output);
 
 #endif

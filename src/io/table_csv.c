@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/csv.h"
+#include "io/table_csv.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -10,44 +10,32 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MAX_COLUMNS = 16 };
+enum { MAX_COLUMNS = 256 };
 
 /* The file being read: what the sentences and the growing arrays need. */
 typedef struct csv {
     const char *path;
-    const sf_case_csv_layout *layout;
+    const sf_table_layout *layout;
     int line;
     int columns;     /* in the header */
     int place[2];    /* of the two columns, -1: not seen yet */
     double scale[2]; /* that makes them SI */
-    sf_case_csv *table;
+    sf_table *table;
 } csv;
 
-sf_case_csv_layout sf_case_csv_stress_strain(const char *what, sf_case_csv_check *check) {
-    static const sf_case_csv_name names[] = {{"strain", 0, 1.0},
-                                             {"strain_percent", 0, 0.01},
-                                             {"stress_Pa", 1, 1.0},
-                                             {"stress_kPa", 1, 1e3},
-                                             {"stress_MPa", 1, 1e6}};
-    return (sf_case_csv_layout){
-        .what = what,
-        .column = {"strain", "stress"},
-        .wanted = {"\"strain\" or \"strain_percent\"", "\"stress_Pa\", \"stress_kPa\" or \"stress_MPa\""},
-        .names = names,
-        .name_count = sizeof names / sizeof *names,
-        .check = check,
-    };
-}
-
-void sf_case_csv_free(sf_case_csv *table) {
+void sf_table_free(sf_table *table) {
     free(table->value[0]);
     free(table->value[1]);
     free(table->line);
     memset(table, 0, sizeof *table);
 }
 
-/* Splits at commas in place, trimming blanks; returns the number of cells (MAX_COLUMNS + 1 if there are
- * more). */
+static bool is_margin(char c) {
+    return isspace((unsigned char)c) || c == '"';
+}
+
+/* Splits at commas in place, trimming blanks and quotes; returns the number of cells (MAX_COLUMNS + 1 if
+ * there are more). */
 static int split(char *line, char *cell[MAX_COLUMNS]) {
     int count = 0;
     for (char *rest = line; rest; count++) {
@@ -57,9 +45,9 @@ static int split(char *line, char *cell[MAX_COLUMNS]) {
         rest = strchr(rest, ',');
         if (rest)
             *rest++ = '\0';
-        while (isspace((unsigned char)*text))
+        while (is_margin(*text))
             text++;
-        for (char *end = text + strlen(text); end > text && isspace((unsigned char)end[-1]);)
+        for (char *end = text + strlen(text); end > text && is_margin(end[-1]);)
             *--end = '\0';
         cell[count] = text;
     }
@@ -67,7 +55,7 @@ static int split(char *line, char *cell[MAX_COLUMNS]) {
 }
 
 static sf_status read_header(csv *file, char *line, sf_error *err) {
-    const sf_case_csv_layout *layout = file->layout;
+    const sf_table_layout *layout = file->layout;
     char *cell[MAX_COLUMNS];
     file->columns = split(line, cell);
     file->place[0] = file->place[1] = -1;
@@ -75,10 +63,12 @@ static sf_status read_header(csv *file, char *line, sf_error *err) {
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: more than %d columns", file->path, file->line, MAX_COLUMNS);
     for (int i = 0; i < file->columns; i++) {
         for (int k = 0; k < layout->name_count; k++) {
-            const sf_case_csv_name *name = &layout->names[k];
+            const sf_table_name *name = &layout->names[k];
             if (strcmp(cell[i], name->name) != 0)
                 continue;
             int *place = &file->place[name->column];
+            if (*place >= 0 && layout->first)
+                continue;
             if (*place >= 0)
                 return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: two %s columns (\"%s\" and \"%s\")", file->path,
                                file->line, layout->column[name->column], cell[*place], cell[i]);
@@ -107,7 +97,7 @@ static sf_status read_number(const csv *file, const char *name, const char *text
 }
 
 static sf_status append(csv *file, const double value[2], sf_error *err) {
-    sf_case_csv *table = file->table;
+    sf_table *table = file->table;
     if (table->count == table->capacity) {
         int64_t capacity = table->capacity ? 2 * table->capacity : 64;
         for (int c = 0; c < 2; c++) {
@@ -132,10 +122,11 @@ static sf_status append(csv *file, const double value[2], sf_error *err) {
 
 static sf_status read_point(csv *file, char *line, sf_error *err) {
     char *cell[MAX_COLUMNS];
-    const sf_case_csv *table = file->table;
-    sf_case_csv_point point = {.path = file->path, .line = file->line, .index = table->count};
+    const sf_table *table = file->table;
+    sf_table_point point = {.path = file->path, .line = file->line, .index = table->count};
     int count = split(line, cell);
-    if (count != file->columns)
+    int needed = file->place[0] > file->place[1] ? file->place[0] : file->place[1];
+    if (count != file->columns && !(file->layout->ragged && count > needed))
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %d values where the header has %d columns", file->path,
                        file->line, count, file->columns);
     for (int c = 0; c < 2; c++) {
@@ -171,8 +162,7 @@ static sf_status read_lines(csv *file, FILE *stream, sf_error *err) {
     return status;
 }
 
-sf_status sf_case_csv_read(const char *path, const sf_case_csv_layout *layout, sf_case_csv *table,
-                           sf_error *err) {
+sf_status sf_table_read(const char *path, const sf_table_layout *layout, sf_table *table, sf_error *err) {
     memset(table, 0, sizeof *table);
     struct stat info;
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
@@ -183,8 +173,10 @@ sf_status sf_case_csv_read(const char *path, const sf_case_csv_layout *layout, s
                        strerror(errno));
     csv file = {.path = path, .layout = layout, .table = table};
     sf_status status = read_lines(&file, stream, err);
+    if (status == SF_OK && ferror(stream))
+        status = SF_FAIL(err, SF_ERR_IO, "reading the %s %s failed: %s", layout->what, path, strerror(errno));
     fclose(stream);
     if (status != SF_OK)
-        sf_case_csv_free(table);
+        sf_table_free(table);
     return status;
 }

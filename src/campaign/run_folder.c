@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "campaign/run_folder.h"
+
+#include "campaign/key.h"
+#include "case/case.h"
+#include "io/folder.h"
+#include "io/process.h"
+#include "post/results.h"
+#include <assert.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MAX_ARGUMENTS = 64 };
+
+sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
+                             const char *const *overrides, sf_run_folder *at, sf_error *err) {
+    sf_case c;
+    uint64_t key = 0;
+    if (sf_case_read(case_path, count, overrides, NULL, &c, err) != SF_OK)
+        return err->status;
+    sf_campaign_key(&c, &key, err);
+    sf_case_free(&c);
+    snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
+    snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
+    snprintf(at->results, sizeof at->results, "%s/results.h5", at->path);
+    snprintf(at->checkpoint, sizeof at->checkpoint, "%s/results.h5.restart", at->path);
+    snprintf(at->log, sizeof at->log, "%s/log.txt", at->path);
+    return err->status;
+}
+
+bool sf_run_folder_is_finished(const sf_run_folder *at) {
+    sf_error none = SF_ERROR_INIT;
+    sf_results r;
+    if (access(at->results, R_OK) != 0 || sf_results_open(at->results, &r, &none) != SF_OK)
+        return false;
+    bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;
+    sf_results_close(&r);
+    return finished;
+}
+
+/* The last line of a log that says something, for an error's sentence. */
+static void last_line(const char *path, char *out, size_t size) {
+    char *line = NULL;
+    size_t room = 0;
+    FILE *file = fopen(path, "r");
+    snprintf(out, size, "it said nothing");
+    while (file && getline(&line, &room, file) >= 0) {
+        line[strcspn(line, "\n")] = '\0';
+        if (*line)
+            snprintf(out, size, "%s", line);
+    }
+    free(line);
+    if (file)
+        fclose(file);
+}
+
+sf_status sf_run_folder_interrupted(sf_error *err) {
+    return SF_FAIL(err, SF_INTERRUPTED,
+                   "interrupted; finished drops are kept: the same command goes on from here");
+}
+
+/* Runs a program with its words appended to `log`; its exit code decides. */
+static sf_status run_program(const char *const *arguments, const char *log, sf_error *err) {
+    const sf_process process = {.arguments = arguments, .log = log, .stoppable = true};
+    int code = 0, reason = sf_process_run(&process, &code);
+    if (reason != 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s cannot be run: %s", arguments[0], strerror(reason));
+    if (code == 0)
+        return SF_OK;
+    if (sf_process_stopped() || code == SF_INTERRUPTED || code == 128 + SIGTERM)
+        return sf_run_folder_interrupted(err);
+    char said[800];
+    last_line(log, said, sizeof said);
+    return SF_FAIL(err, code <= SF_ERR_LIBRARY ? (sf_status)code : SF_ERR_LIBRARY,
+                   "%s (exit code %d; see %s)", said, code, log);
+}
+
+/* Takes up a drop that was interrupted. False if there is none, or it cannot go on: then it starts anew. */
+static bool resume(const char *solve, const char *threads, const sf_run_folder *at, sf_error *err) {
+    const char *run[] = {solve, "--restart", at->results, at->model, "-t", threads, NULL};
+    sf_error trial = SF_ERROR_INIT;
+    if (access(at->model, R_OK) != 0 || access(at->checkpoint, R_OK) != 0)
+        return false;
+    run_program(run, at->log, &trial);
+    if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC)
+        return false;
+    if (trial.status != SF_OK)
+        SF_FAIL(err, trial.status, "%s", trial.text);
+    return true;
+}
+
+sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path, int count,
+                                 const char *const *overrides, int threads, sf_error *err) {
+    char pre[PATH_MAX], solve[PATH_MAX], thread_text[16];
+    const char *build[MAX_ARGUMENTS] = {pre, case_path, "-o", at->model, "--force"};
+    assert(5 + 2 * count < MAX_ARGUMENTS);
+    int n = 5;
+    for (int k = 0; k < count; k++) {
+        build[n++] = "--set";
+        build[n++] = overrides[k];
+    }
+    snprintf(thread_text, sizeof thread_text, "%d", threads);
+    const char *run[] = {solve, at->model, "-o", at->results, "--force", "-t", thread_text, NULL};
+    if (sf_process_find("softfall-pre", pre, sizeof pre, err) != SF_OK ||
+        sf_process_find("softfall-solve", solve, sizeof solve, err) != SF_OK ||
+        sf_folder_make(at->path, err) != SF_OK)
+        return err->status;
+    if (!resume(solve, thread_text, at, err)) {
+        remove(at->log);
+        if (run_program(build, at->log, err) == SF_OK)
+            run_program(run, at->log, err);
+    }
+    if (err->status != SF_INTERRUPTED) {
+        remove(at->model);
+        remove(at->checkpoint);
+    }
+    return err->status;
+}

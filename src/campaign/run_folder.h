@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The folder of one drop: it holds the log, the model and the checkpoint while the drop is not finished, and
+ * the results. */
+#ifndef SF_CAMPAIGN_RUN_FOLDER_H
+#define SF_CAMPAIGN_RUN_FOLDER_H
+
+#include "core/error.h"
+#include <limits.h>
+#include <stdbool.h>
+
+enum { SF_RUN_PATH_SIZE = PATH_MAX + 128 };
+
+typedef struct sf_run_folder {
+    char path[PATH_MAX];
+    char model[SF_RUN_PATH_SIZE], results[SF_RUN_PATH_SIZE], checkpoint[SF_RUN_PATH_SIZE],
+        log[SF_RUN_PATH_SIZE];
+} sf_run_folder;
+
+/* The names, "parent/label-<key of the case with its overrides>" and what is below; nothing is made. */
+sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
+                             const char *const *overrides, sf_run_folder *folder, sf_error *err);
+
+/* True if the folder holds a drop that ran to its end. */
+bool sf_run_folder_is_finished(const sf_run_folder *folder);
+
+/* Simulates the drop by softfall-pre and softfall-solve on `threads` threads, with what they print in the
+ * log. A drop that was interrupted resumes from its checkpoint, or starts anew if it cannot. Errors: the last
+ * line that the program printed, with its exit code and the log; SF_INTERRUPTED (io/process.h), which keeps
+ * model and checkpoint. */
+sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,
+                                 const char *const *overrides, int threads, sf_error *err);
+
+/* Records SF_INTERRUPTED. */
+sf_status sf_run_folder_interrupted(sf_error *err);
+
+#endif

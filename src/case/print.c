@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "case/print.h"
+
+#include "case/keys.h"
+#include <stdbool.h>
+#include <string.h>
+
+static void print_text(FILE *file, const char *text) {
+    fputc('"', file);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\')
+            fputc('\\', file);
+        if (*text == '\n')
+            fputs("\\n", file);
+        else
+            fputc(*text, file);
+    }
+    fputc('"', file);
+}
+
+void sf_case_print_setting(FILE *file, const config_setting_t *setting) {
+    int type = config_setting_type(setting);
+    switch (type) {
+    case CONFIG_TYPE_INT:
+        fprintf(file, "%d", config_setting_get_int(setting));
+        return;
+    case CONFIG_TYPE_INT64:
+        fprintf(file, "%lld", config_setting_get_int64(setting));
+        return;
+    case CONFIG_TYPE_FLOAT:
+        fprintf(file, "%.12g", config_setting_get_float(setting));
+        return;
+    case CONFIG_TYPE_BOOL:
+        fputs(config_setting_get_bool(setting) ? "true" : "false", file);
+        return;
+    case CONFIG_TYPE_STRING:
+        print_text(file, config_setting_get_string(setting));
+        return;
+    default:
+        break;
+    }
+    bool group = type == CONFIG_TYPE_GROUP;
+    fputs(group ? "{ " : type == CONFIG_TYPE_ARRAY ? "[" : "(", file);
+    for (int i = 0; i < config_setting_length(setting); i++) {
+        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
+        if (group)
+            fprintf(file, "%s = ", config_setting_name(item));
+        else if (i > 0)
+            fputs(", ", file);
+        sf_case_print_setting(file, item);
+        if (group)
+            fputs("; ", file);
+    }
+    fputs(group ? "}" : type == CONFIG_TYPE_ARRAY ? "]" : ")", file);
+}
+
+/* How a value of the key is written. */
+static void print_kind(FILE *file, const sf_key *key) {
+    static const char *const phrase[] = {
+        [SF_KEY_UNIT] = "unit of length",
+        [SF_KEY_NUMBER] = "number",
+        [SF_KEY_BOOL] = "true or false",
+        [SF_KEY_NAME] = "name",
+        [SF_KEY_NAMES] = "array of names",
+        [SF_KEY_TIMES] = "array of times",
+        [SF_KEY_VECTOR] = "three numbers",
+        [SF_KEY_PATH] = "file",
+        [SF_KEY_PARAMETERS] = "group of numbers",
+        [SF_KEY_CURVE] = "file",
+        [SF_KEY_MOTION] = "file",
+        [SF_KEY_CURVES] = "list of { rate; file; }",
+    };
+    if (key->kind == SF_KEY_CHOICE || key->kind == SF_KEY_FIELDS) {
+        fputs(key->kind == SF_KEY_FIELDS ? "array of " : "", file);
+        for (const char *w = key->words; *w; w++)
+            *w == '|' ? fputs(", ", file) : fputc(*w, file);
+        return;
+    }
+    if (key->kind == SF_KEY_QUANTITY) {
+        fprintf(file, "%s", sf_quantity_phrase(key->quantity));
+        if (key->words)
+            fprintf(file, " or \"%s\"", key->words);
+    } else {
+        fputs(phrase[key->kind], file);
+    }
+    bool bounded = key->kind == SF_KEY_QUANTITY || key->kind == SF_KEY_NUMBER;
+    if (!bounded)
+        return;
+    fprintf(file, ", %s %g", key->low_open ? "above" : "from", key->low);
+    if (key->high != 0.0)
+        fprintf(file, " to %g%s%s", key->high, key->kind == SF_KEY_QUANTITY ? " " : "",
+                key->kind == SF_KEY_QUANTITY ? sf_quantity_unit(key->quantity) : "");
+}
+
+void sf_case_print_keys(FILE *file) {
+    size_t count;
+    const sf_key *keys = sf_case_keys(&count);
+    const char *group = "";
+    for (size_t k = 0; k < count; k++) {
+        const sf_key *key = &keys[k];
+        if (strcmp(group, key->group) != 0) {
+            group = key->group;
+            fprintf(file, "%s### %s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
+                    k ? "\n" : "", group);
+        }
+        fprintf(file, "| `%s` | ", key->name);
+        print_kind(file, key);
+        if (!key->fallback)
+            fputs(" | required", file);
+        else if (!*key->fallback)
+            fputs(" | absent", file);
+        else if (key->kind == SF_KEY_FIELDS)
+            fputs(" | all", file);
+        else
+            fprintf(file, " | `%s`", key->fallback);
+        fprintf(file, " | %s |\n", key->description);
+    }
+}

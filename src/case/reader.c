@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "case/reader.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out) {
+    const sf_case_origin *origin = setting ? config_setting_get_hook(setting) : NULL;
+    int line = setting ? (int)config_setting_source_line(setting) : 0;
+    if (origin && origin->line == 0) {
+        snprintf(out, SF_CASE_WHERE_SIZE, "--set %s", origin->text);
+    } else if (origin) {
+        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%u", origin->text, origin->line);
+    } else if (line > 0) {
+        const char *path = sf_case_source_find(&reader->source, line, &line);
+        snprintf(out, SF_CASE_WHERE_SIZE, "%.480s:%d", path, line);
+    } else {
+        snprintf(out, SF_CASE_WHERE_SIZE, "%s", reader->path);
+    }
+    return out;
+}
+
+char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
+                      sf_error *err) {
+    char *out = NULL;
+    const sf_case_origin *origin = config_setting_get_hook(setting);
+    int line = (int)config_setting_source_line(setting);
+    const char *file = origin && origin->line > 0 ? origin->text
+                       : !origin && line > 0      ? sf_case_source_find(&reader->source, line, &line)
+                                                  : reader->path;
+    char *folder = sf_case_folder_of(file, err);
+    if (folder && *path == '/')
+        out = strdup(path);
+    else if (folder && asprintf(&out, "%s/%s", folder, path) < 0)
+        out = NULL;
+    free(folder);
+    if (!out)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    return out;
+}
+
+bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name) {
+    size_t count;
+    const sf_key *keys = sf_case_keys(&count);
+    return reader->given[sf_case_find_key(group, name) - keys];
+}
+
+const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out) {
+    char text[SF_CASE_GROUP_SIZE];
+    snprintf(text, sizeof text, "%s", path);
+    const config_setting_t *setting = config_lookup(&reader->config, text);
+    for (char *dot = strrchr(text, '.'); !setting && dot; dot = strrchr(text, '.')) {
+        *dot = '\0';
+        setting = config_lookup(&reader->config, text);
+    }
+    return sf_case_where(reader, setting, out);
+}
+
+sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const config_setting_t *group = config_lookup(&reader->config, key->group);
+    sf_case_where(reader, group, where);
+    const char *absent = group ? "" : " (there is no such group)";
+    if (key->kind == SF_KEY_QUANTITY)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is missing%s: %s, for example %s = \"%s\"", where,
+                       key->group, key->name, absent, key->description, key->name,
+                       sf_quantity_example(key->quantity));
+    return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is missing%s: %s", where, key->group, key->name, absent,
+                   key->description);
+}

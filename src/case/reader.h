@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the readers of a case's keys share: the case under construction, where a setting stands, what the case
+ * gives. Internal to src/case. */
+#ifndef SF_CASE_READER_H
+#define SF_CASE_READER_H
+
+#include "case/case.h"
+#include "case/keys.h"
+#include "case/source.h"
+#include "core/sink.h"
+#include "core/units.h"
+#include <libconfig.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct sf_case_reader {
+    const char *path; /* of the case file, as given */
+    sf_units *units;
+    sf_case *out;
+    config_t config;
+    sf_case_source source;  /* of the settings without a hook */
+    bool given[SF_KEY_MAX]; /* per row of the table */
+    const sf_sink *sink;    /* borrowed */
+    FILE *listing;          /* the parameters text under construction */
+} sf_case_reader;
+
+enum { SF_CASE_GROUP_SIZE = 160 /* of a text "group.key" */ };
+
+/* The hook of a setting that does not stand in the case file: line 0: `text` is the --set text that put it
+ * there; else the path of the file, given with "group=@file", and the line that holds it. */
+typedef struct sf_case_origin {
+    unsigned line;
+    char text[];
+} sf_case_origin;
+
+/* "file:line", or "--set key=value" for a setting that came from the command line. */
+const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out);
+/* Location of a key "group.name", or of its group, or of the file: whatever is there. */
+const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
+/* Resolves `path` against the folder of the file in which `setting` stands; from malloc. */
+char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
+                      sf_error *err);
+/* True if the case gives the key. */
+bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name);
+/* Records that the key is missing. */
+sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
+
+#endif

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes report.md into the staging directory. `path`: FIT.cfg, as given. */
+#ifndef SF_FIT_COMPRESSION_REPORT_H
+#define SF_FIT_COMPRESSION_REPORT_H
+
+#include "fit/compression/check.h"
+#include "io/staging.h"
+
+sf_status sf_compression_write_report(const sf_staging *output, const sf_compression_fit *fit,
+                                      const sf_compression_check *check, const char *path, sf_error *err);
+
+#endif

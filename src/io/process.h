@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Other programs, run to their end. */
+#ifndef SF_IO_PROCESS_H
+#define SF_IO_PROCESS_H
+
+#include "core/error.h"
+#include <stdbool.h>
+#include <stddef.h>
+
+/* The path of one of softfall's own programs: in SF_BIN_DIR if that is set, else in the folder of the running
+ * program. SF_ERR_IO if it is not there. */
+sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *err);
+
+typedef struct sf_process {
+    const char *const *arguments; /* the program, a path or a name to look for in PATH, and its arguments;
+                                     ends with NULL */
+    const char *folder;           /* in which it runs; NULL: the present one */
+    const char *log;              /* file to which what it prints is appended; NULL: it is dropped */
+    bool stoppable;               /* signals are passed on to it, see sf_process_handle_signals */
+} sf_process;
+
+/* Runs the program with nothing to read. Returns 0 and its exit code (128 + the signal that ended it), or the
+ * errno value that says why it cannot be run. */
+int sf_process_run(const sf_process *process, int *exit_code);
+
+/* From now on SIGINT and SIGTERM do not end this process but are passed on to the stoppable program that
+ * runs; one that is started later gets SIGTERM at once. */
+void sf_process_handle_signals(void);
+/* True once such a signal has come. */
+bool sf_process_stopped(void);
+
+#endif
