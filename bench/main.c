@@ -302,7 +302,6 @@ static sf_status run_model(const options *o, sf_model *model, double spacing, co
     sf_state state = {0};
     struct rusage usage;
     sf_model_drop_mesh(model);
-    sf_model_drop_inner_shapes(model);
     if (sf_operators_build(model, &operators, err) ==
         SF_OK) /* once before: pages of libraries do not count */
         sf_operators_free(&operators);

@@ -10,8 +10,8 @@ static const double PAIR = 84, SCALAR_PAIR = 33;
 
 /* Reading B, the places of its nodes, and the groups' lists of others. */
 static double gradient_bytes(const sf_model *m, const sf_operators *op) {
-    return (double)sf_packed_start(m->node_count, m->domain_nnz) + 2 * (double)m->domain_nnz +
-           WORD * (double)m->node_count + 4 * (double)op->halo.ptr[op->halo.group_count];
+    return (3 * WORD + 2) * (double)m->domain_nnz + WORD * (double)m->node_count +
+           4 * (double)op->halo.ptr[op->halo.group_count];
 }
 
 static double pair_bytes(const sf_model *m, double inner, double outer) {

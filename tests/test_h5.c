@@ -114,66 +114,6 @@ static void rows_in_slabs_make_the_whole(void **state) {
     free(data);
 }
 
-/* Pieces of a table and of a list are those of the whole; rows that are not there are refused, and what is no
- * such dataset is not opened. */
-static void rows_are_read_where_they_stand(void **state) {
-    enum { ROWS = 40, COLUMNS = 3 };
-    const program_place *p = *state;
-    const int64_t dims[2] = {ROWS, COLUMNS}, pieces[][2] = {{0, 1}, {7, 12}, {39, 1}, {40, 0}, {0, 40}},
-                  missing[][2] = {{-1, 1}, {0, 41}, {39, 2}, {41, 0}, {0, -1}, {INT64_MAX, 1}};
-    const sf_h5_info table = {"/table", "m", "one"}, list = {"/list", "1", "two"};
-    double number[ROWS * COLUMNS], back[ROWS * COLUMNS];
-    int32_t whole[ROWS], part[ROWS];
-    sf_error err = SF_ERROR_INIT;
-    sf_h5 *file = NULL;
-    sf_h5_source source[2], none;
-    for (int k = 0; k < ROWS * COLUMNS; k++)
-        number[k] = 1 / (1.0 + k);
-    for (int k = 0; k < ROWS; k++)
-        whole[k] = k * k;
-    sf_h5_create(program_path(p, "pieces.h5"), &file, &err);
-    sf_h5_write(file, &table, SF_H5_F64, 2, dims, number, &err);
-    sf_h5_write(file, &list, SF_H5_I32, 1, dims, whole, &err);
-    sf_h5_close(&file, &err);
-    int64_t found[2] = {-1, COLUMNS}, wrong[2] = {ROWS + 1, COLUMNS};
-    sf_h5_open(program_path(p, "pieces.h5"), &file, &err);
-    sf_h5_source_open(file, "/table", SF_H5_F64, 2, found, &source[0], &err);
-    assert_int_equal(sf_h5_source_open(file, "/list", SF_H5_I32, 1, found, &source[1], &err), SF_OK);
-    for (size_t k = 0; k < sizeof pieces / sizeof pieces[0]; k++) {
-        int64_t first = pieces[k][0], count = pieces[k][1];
-        assert_int_equal(sf_h5_source_read(&source[0], first, count, back, &err), SF_OK);
-        assert_int_equal(sf_h5_source_read(&source[1], first, count, part, &err), SF_OK);
-        assert_memory_equal(back, &number[COLUMNS * first], (size_t)(COLUMNS * count) * sizeof *back);
-        assert_memory_equal(part, &whole[first], (size_t)count * sizeof *part);
-    }
-    for (size_t k = 0; k < sizeof missing / sizeof missing[0]; k++) {
-        sf_error refused = SF_ERROR_INIT;
-        assert_int_equal(sf_h5_source_read(&source[1], missing[k][0], missing[k][1], part, &refused),
-                         SF_ERR_IO);
-        assert_non_null(strstr(refused.text, "pieces.h5: /list has 40 rows"));
-    }
-    const struct {
-        const char *path;
-        sf_h5_type type;
-        int rank;
-        int64_t *dims;
-    } bad[] = {{"/table", SF_H5_F64, 2, wrong},
-               {"/table", SF_H5_F64, 1, found},
-               {"/list", SF_H5_F64, 1, found},
-               {"/nothing", SF_H5_F64, 1, found}};
-    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
-        sf_error refused = SF_ERROR_INIT;
-        assert_int_equal(
-            sf_h5_source_open(file, bad[k].path, bad[k].type, bad[k].rank, bad[k].dims, &none, &refused),
-            SF_ERR_IO);
-        sf_h5_source_close(&none);
-    }
-    sf_h5_source_close(&source[0]);
-    sf_h5_source_close(&source[1]);
-    sf_h5_close(&file, &err);
-    assert_int_equal(err.status, SF_OK);
-}
-
 static void links_are_not_followed(void **state) {
     const program_place *p = *state;
     sf_h5 *opened = NULL;
@@ -297,7 +237,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plain_data_are_read),
         cmocka_unit_test(rows_in_slabs_make_the_whole),
-        cmocka_unit_test(rows_are_read_where_they_stand),
         cmocka_unit_test(links_are_not_followed),
         cmocka_unit_test(data_of_other_files_are_not_read),
         cmocka_unit_test(claims_are_checked_before_anything_is_allocated),

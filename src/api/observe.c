@@ -76,7 +76,8 @@ static sf_status take_field(const softfall_drop *d, const char *name, double *va
                        (long long)needed, (long long)size);
     if (d->recorder.history.rows == 0 || d->failure.status != SF_OK)
         return SF_FAIL(err, SF_ERR_INPUT, "the drop has no good step whose fields could be read");
-    return sf_frame_take(&d->model, &d->operators, &d->state, (sf_frame_field)field, values, err);
+    sf_frame_take(&d->model, &d->operators, &d->state, (sf_frame_field)field, values);
+    return SF_OK;
 }
 
 softfall_status softfall_drop_field(const softfall_drop *d, const char *name, double *values, int64_t size,

@@ -165,33 +165,3 @@ void sf_model_drop_edges(sf_model *model) {
     model->edge_ptr = NULL;
     model->edge_node = NULL;
 }
-
-/* Is i in an ascending list, in which *next is the first that is not below an earlier i? */
-static bool is_next(const int32_t *list, int64_t count, int64_t i, int64_t *next) {
-    while (*next < count && list[*next] < i)
-        ++*next;
-    return *next < count && list[*next] == i;
-}
-
-/* A block that cannot be made smaller stays as it is. */
-static void *shrink(void *block, size_t size) {
-    void *smaller = realloc(block, size > 0 ? size : 1);
-    return smaller ? smaller : block;
-}
-
-void sf_model_drop_inner_shapes(sf_model *m) {
-    int64_t count = 0, begin = 0, next_fixed = 0, next_contact = 0;
-    for (int64_t i = 0; i < m->node_count; i++) {
-        bool held = is_next(m->fixed_node, m->fixed_count, i, &next_fixed);
-        bool touched = is_next(m->contact_node, m->contact_count, i, &next_contact);
-        int64_t end = m->phi_ptr[i + 1], length = held || touched ? end - begin : 0;
-        memmove(&m->phi_node[count], &m->phi_node[begin], (size_t)length * sizeof *m->phi_node);
-        memmove(&m->phi_value[count], &m->phi_value[begin], (size_t)length * sizeof *m->phi_value);
-        begin = end;
-        count += length;
-        m->phi_ptr[i + 1] = count;
-    }
-    m->phi_nnz = count;
-    m->phi_node = shrink(m->phi_node, (size_t)count * sizeof *m->phi_node);
-    m->phi_value = shrink(m->phi_value, (size_t)count * sizeof *m->phi_value);
-}

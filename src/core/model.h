@@ -175,10 +175,6 @@ void sf_model_drop_domain_nodes(sf_model *model);
 /* Releases the edges: the solver has its pairs. */
 void sf_model_drop_edges(sf_model *model);
 
-/* Empties the rows of the shape functions but those of held nodes and contact points: a step needs no others.
- */
-void sf_model_drop_inner_shapes(sf_model *model);
-
 /* True if sizes, index ranges, finiteness, CSR monotonicity and the physical bounds of the cards hold;
  * otherwise records SF_ERR_MODEL with the first violation. Everything that reads a model.h5 calls it. */
 sf_status sf_model_check(const sf_model *model, sf_error *err);

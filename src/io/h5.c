@@ -99,10 +99,6 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
     return status;
 }
 
-const char *sf_h5_path(const sf_h5 *file) {
-    return file->path;
-}
-
 enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE };
 
 /* Does the link stand for the object of the same path in a file of the folder that belongs to this file while
@@ -370,64 +366,36 @@ static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, siz
     return SF_OK;
 }
 
-sf_status sf_h5_source_open(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
-                            sf_h5_source *source, sf_error *err) {
-    hid_t set = -1;
-    *source = (sf_h5_source){.set = -1};
-    if (open_dataset(file, path, &set, err) != SF_OK)
-        return err->status;
+static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h5_type type, int rank,
+                            int64_t *dims, void **data, sf_error *err) {
+    unsigned long count = 0;
     hid_t stored = H5Dget_type(set);
     H5T_class_t expected = type == SF_H5_F64 ? H5T_FLOAT : H5T_INTEGER, found = H5Tget_class(stored);
     size_t size = H5Tget_size(stored);
-    unsigned long items = 0;
     H5Tclose(stored);
     if (found != expected)
-        SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
-                expected == H5T_FLOAT ? "floating-point" : "integer");
-    else if (check_storage(file, path, set, err) == SF_OK)
-        check_shape(file, path, set, size, rank, dims, &items, err);
-    if (err->status != SF_OK) {
-        H5Dclose(set);
+        return SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
+                       expected == H5T_FLOAT ? "floating-point" : "integer");
+    if (check_storage(file, path, set, err) != SF_OK ||
+        check_shape(file, path, set, size, rank, dims, &count, err) != SF_OK)
         return err->status;
+    *data = sf_alloc(err, count, type_size(type), path);
+    if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0) {
+        SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", file->path, path);
+        free(*data);
+        *data = NULL;
     }
-    int64_t rows = rank == 0 ? 1 : dims[0];
-    *source = (sf_h5_source){.file = file,
-                             .path = path,
-                             .type = type,
-                             .rows = rows,
-                             .row_items = rows > 0 ? (int64_t)items / rows : 0,
-                             .set = set};
-    return SF_OK;
-}
-
-sf_status sf_h5_source_read(const sf_h5_source *source, int64_t first, int64_t count, void *data,
-                            sf_error *err) {
-    if (first < 0 || count < 0 || first > source->rows - count)
-        return SF_FAIL(err, SF_ERR_IO, "%s: %s has %lld rows, not %lld from row %lld", source->file->path,
-                       source->path, (long long)source->rows, (long long)count, (long long)first);
-    if (!move_rows(source->set, native_type(source->type), first, count, data, NULL))
-        return SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", source->file->path, source->path);
-    return SF_OK;
-}
-
-void sf_h5_source_close(sf_h5_source *source) {
-    if (source->file)
-        H5Dclose(source->set);
-    *source = (sf_h5_source){.set = -1};
+    return err->status;
 }
 
 sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
                      void **data, sf_error *err) {
-    sf_h5_source source;
+    hid_t set = -1;
     *data = NULL;
-    if (sf_h5_source_open(file, path, type, rank, dims, &source, err) != SF_OK)
+    if (open_dataset(file, path, &set, err) != SF_OK)
         return err->status;
-    *data = sf_alloc(err, (unsigned long)(source.rows * source.row_items), type_size(type), path);
-    if (*data && sf_h5_source_read(&source, 0, source.rows, *data, err) != SF_OK) {
-        free(*data);
-        *data = NULL;
-    }
-    sf_h5_source_close(&source);
+    read_items(file, path, set, type, rank, dims, data, err);
+    H5Dclose(set);
     return err->status;
 }
 

@@ -28,9 +28,6 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
 /* Closes; `*file` may be NULL and is NULL afterwards. Reports a failed final write. */
 sf_status sf_h5_close(sf_h5 **file, sf_error *err);
 
-/* As it was given, as long as the file is open. */
-const char *sf_h5_path(const sf_h5 *file);
-
 /* True if a group or dataset of this path exists in the file itself, or by a link of sf_h5_link into the
  * folder of its run (FILE.run); other soft and external links do not count and are never followed. */
 bool sf_h5_exists(const sf_h5 *file, const char *path);
@@ -72,23 +69,6 @@ sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int r
 sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err);
 /* One string of fixed length. `*text` is NUL-terminated, from malloc, owned by the caller. */
 sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_error *err);
-
-/* A dataset from which rows are read some at a time. */
-typedef struct sf_h5_source {
-    const sf_h5 *file; /* borrowed, like the path; NULL: closed */
-    const char *path;
-    sf_h5_type type;         /* of an item */
-    int64_t rows, row_items; /* of the dataset, and items of a row; a scalar is one row */
-    int64_t set;             /* the library's name of it */
-} sf_h5_source;
-
-/* Opens with the checks of sf_h5_read; reads `count` rows from row `first` on; closes, also what failed to
- * open. The file stays open meanwhile. */
-sf_status sf_h5_source_open(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
-                            sf_h5_source *source, sf_error *err);
-sf_status sf_h5_source_read(const sf_h5_source *source, int64_t first, int64_t count, void *data,
-                            sf_error *err);
-void sf_h5_source_close(sf_h5_source *source);
 
 /* Attributes of an existing group or dataset ("/" for the file). */
 sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text,

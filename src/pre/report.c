@@ -69,8 +69,8 @@ static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r)
 static void print_cost(FILE *out, const sf_model *m, const sf_build_report *r) {
     double step = fmin(m->run.step_safety * r->first_step, m->run.step_limit);
     double steps = TYPICAL * m->run.end_time / step, n = (double)m->node_count;
-    double bytes = 20 * (double)m->domain_nnz + 7 * (double)m->edge_nnz + 565 * n +
-                   800 * (double)(m->fixed_count + m->contact_count);
+    double bytes = 26 * (double)m->domain_nnz + 12 * (double)m->phi_nnz + 7 * (double)m->edge_nnz + 541 * n +
+                   720 * (double)(m->fixed_count + m->contact_count);
     fprintf(out, "%-26s%.2f us (bound %.2f us)\n", "first time step, at least", 1e6 * step,
             1e6 * r->first_step);
     fprintf(out, "%-26s%.0f MB (%.2f kB per node)\n", "memory of the solver", bytes / 1e6, bytes / n / 1e3);

@@ -12,9 +12,6 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
     if (err->status != SF_OK || sf_foam_build(&m->foam, &op->foam, err) != SF_OK ||
         sf_stability_constants(m, op->stability, err) != SF_OK || sf_halo_build(m, &op->halo, err) != SF_OK)
         return err->status;
-    if ((owned ? sf_gradient_take(owned, &op->gradient, err) : sf_gradient_build(m, &op->gradient, err)) !=
-        SF_OK)
-        return err->status;
     if (owned)
         sf_model_drop_domain_nodes(owned);
     if (sf_pairs_build(m, &op->pairs, err) != SF_OK)
@@ -46,7 +43,6 @@ void sf_operators_free(sf_operators *op) {
     sf_contact_gram_free(&op->gram);
     sf_missile_surface_free(&op->surface);
     free(op->stability);
-    free(op->gradient);
     sf_pairs_free(&op->pairs);
     memset(op, 0, sizeof *op);
 }

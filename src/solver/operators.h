@@ -8,7 +8,6 @@
 #include "solver/constraint/constraint.h"
 #include "solver/contact/contact_gram.h"
 #include "solver/material/foam.h"
-#include "solver/field/gradient.h"
 #include "solver/field/halo.h"
 #include "solver/contact/missile_surface.h"
 #include "solver/field/pairs.h"
@@ -17,8 +16,7 @@ typedef struct sf_operators {
     sf_foam foam;
     double *stability; /* [n] m kg-1, core/stability.h */
 
-    uint8_t *gradient; /* B, packed (gradient.h) */
-    sf_halo halo;      /* what groups of domains see */
+    sf_halo halo; /* what groups of domains see */
 
     sf_pairs pairs;
 
@@ -29,7 +27,7 @@ typedef struct sf_operators {
 
 sf_status sf_operators_build(const sf_model *model, sf_operators *operators, sf_error *err);
 /* The same, and releases what of the model only operators are made of, so that both are never in memory
- * together: domain_node, domain_b, support, the edges. */
+ * together: domain_node, support, the edges. */
 sf_status sf_operators_take(sf_model *model, sf_operators *operators, sf_error *err);
 void sf_operators_free(sf_operators *operators);
 

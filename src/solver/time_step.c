@@ -44,43 +44,39 @@ static power_work use_work(const sf_model *m, const sf_halo *h) {
     return w;
 }
 
-/* The gradient from entries with numbers of `width` bytes; two sums run side by side, as each addition waits
- * for the one before. */
-static inline void add_gradient(sf_gradient_part row, int width, const double *field, double g[3]) {
+/* The gradient of a field in domain l; two sums run side by side, as each addition waits for the one before.
+ */
+static inline void field_gradient(const sf_model *m, const sf_halo *h, int64_t l, const double *field,
+                                  float g[3]) {
+    const int64_t first = m->domain_ptr[l], count = m->domain_ptr[l + 1] - first;
+    const double *b = &m->domain_b[3 * first];
+    const uint16_t *local = &h->local[first];
     double even[3] = {0}, odd[3] = {0};
-    for (int64_t k = 0; k + 1 < row.count; k += 2) {
-        const uint8_t *b = &row.b[3 * width * k];
-        double x = field[row.local[k]], y = field[row.local[k + 1]];
-        __builtin_prefetch(b + SF_AHEAD);
+    for (int64_t k = 0; k + 1 < count; k += 2) {
+        double x = field[local[k]], y = field[local[k + 1]];
+        __builtin_prefetch(&b[3 * k + SF_AHEAD]);
         for (int c = 0; c < 3; c++) {
-            even[c] += x * sf_packed_number(b + c * width);
-            odd[c] += y * sf_packed_number(b + (3 + c) * width);
+            even[c] += x * b[3 * k + c];
+            odd[c] += y * b[3 * k + 3 + c];
         }
     }
     for (int c = 0; c < 3; c++) {
-        if (row.count > 0 && row.count % 2)
-            even[c] +=
-                field[row.local[row.count - 1]] * sf_packed_number(&row.b[(3 * (row.count - 1) + c) * width]);
-        g[c] += even[c] + odd[c];
+        if (count % 2)
+            even[c] += field[local[count - 1]] * b[3 * (count - 1) + c];
+        g[c] = (float)(even[c] + odd[c]);
     }
 }
 
 /* Gradient of the mode in the domains of a group. */
-static SF_KERNEL void mode_gradients(const sf_model *m, const sf_operators *op, const double *field,
-                                     int64_t group, float *gradient) {
-    const sf_halo *h = &op->halo;
+static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, const double *field, int64_t group,
+                                     float *gradient) {
     int64_t own = sf_halo_first(group), end = sf_halo_end(m, group);
     double seen[SF_GROUP_SEES];
     memcpy(seen, &field[own], (size_t)(end - own) * sizeof *seen);
     for (int64_t q = h->ptr[group]; q < h->ptr[group + 1]; q++)
         seen[end - own + q - h->ptr[group]] = field[h->node[q]];
-    for (int64_t l = own; l < end; l++) {
-        double g[3] = {0};
-        add_gradient(sf_gradient_takers(m, op->gradient, h->local, l), 8, seen, g);
-        add_gradient(sf_gradient_others(m, op->gradient, h->local, l), 6, seen, g);
-        for (int c = 0; c < 3; c++)
-            gradient[3 * l + c] = (float)g[c];
-    }
+    for (int64_t l = own; l < end; l++)
+        field_gradient(m, h, l, seen, &gradient[3 * l]);
 }
 
 /* What one pair does for a scalar field: force on i, the opposite on j; the same couple on both. */
@@ -138,28 +134,26 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
         w->flux[3 * own + q] = (float)flux[q];
 }
 
-static inline void add_flux(sf_gradient_part row, int width, const float q[3], double *restrict sum) {
-    const double x = q[0], y = q[1], z = q[2];
-    for (int64_t k = 0; k < row.count; k++) {
-        const uint8_t *b = &row.b[3 * width * k];
-        __builtin_prefetch(b + SF_AHEAD);
-        sum[row.local[k]] +=
-            x * sf_packed_number(b) + y * sf_packed_number(b + width) + z * sf_packed_number(b + 2 * width);
+static inline void add_flux(const sf_model *m, const sf_halo *h, int64_t l, const float q[3],
+                            double *restrict sum) {
+    const int64_t first = m->domain_ptr[l], count = m->domain_ptr[l + 1] - first;
+    const double *b = &m->domain_b[3 * first], x = q[0], y = q[1], z = q[2];
+    const uint16_t *local = &h->local[first];
+    for (int64_t k = 0; k < count; k++) {
+        __builtin_prefetch(&b[3 * k + SF_AHEAD]);
+        sum[local[k]] += x * b[3 * k] + y * b[3 * k + 1] + z * b[3 * k + 2];
     }
 }
 
 /* What the domains of a group exert: on its own nodes at once, on others by what waits for them. */
-static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_operators *op, int64_t group,
+static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_halo *h, int64_t group,
                                      const power_work *w) {
-    const sf_halo *h = &op->halo;
     int64_t own = sf_halo_first(group), end = sf_halo_end(m, group),
             others = h->ptr[group + 1] - h->ptr[group];
     double sum[SF_GROUP_SEES];
     memset(sum, 0, (size_t)(end - own + others) * sizeof *sum);
-    for (int64_t l = own; l < end; l++) {
-        add_flux(sf_gradient_takers(m, op->gradient, h->local, l), 8, &w->flux[3 * l], sum);
-        add_flux(sf_gradient_others(m, op->gradient, h->local, l), 6, &w->flux[3 * l], sum);
-    }
+    for (int64_t l = own; l < end; l++)
+        add_flux(m, h, l, &w->flux[3 * l], sum);
     for (int64_t i = own; i < end; i++)
         w->out[i] += sum[i - own];
     for (int64_t q = 0; q < others; q++)
@@ -174,13 +168,13 @@ static void apply_operator(const sf_model *m, const sf_operators *op, const sf_s
     {
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
-            mode_gradients(m, op, s->mode, g, w->gradient);
+            mode_gradients(m, h, s->mode, g, w->gradient);
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
             mode_fluxes(m, op, s, g, w);
 #pragma omp for schedule(static)
         for (int64_t g = 0; g < h->group_count; g++)
-            collect_fluxes(m, op, g, w);
+            collect_fluxes(m, h, g, w);
 #pragma omp for schedule(static)
         for (int64_t i = 0; i < m->node_count; i++)
             for (int32_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)

@@ -3,7 +3,6 @@
 
 #include "pre/cloud/mls.h"
 #include "pre/cloud/neighbours.h"
-#include "pre/cloud/rounding.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -408,8 +407,8 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
     b.edge = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge, "edge integrals");
     b.poor = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.poor, "node marks");
     if (err->status == SF_OK && integrate_with_growth(&b, support, err) == SF_OK &&
-        shape_at_nodes(&b, support, err) == SF_OK && assemble_rows(&b, err) == SF_OK)
-        sf_domains_round(mesh, out, err);
+        shape_at_nodes(&b, support, err) == SF_OK)
+        assemble_rows(&b, err);
     if (b.edge)
         clear_edges(&b);
     free(b.edge);

@@ -17,7 +17,7 @@ typedef struct sf_domains {
     double *volume;             /* [n] m3 */
     int64_t *ptr;               /* [n + 1] rows of B */
     int32_t *node;              /* [ptr[n]] ascending within a row */
-    double *b;                  /* [ptr[n]][3] m-1, rounded (rounding.h) */
+    double *b;                  /* [ptr[n]][3] m-1 */
     int64_t *phi_ptr;           /* [n + 1] rows of phi at the nodes */
     int32_t *phi_node;          /* [phi_ptr[n]] ascending within a row */
     double *phi_value;          /* [phi_ptr[n]] */

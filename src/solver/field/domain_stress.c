@@ -6,32 +6,27 @@
 #include <math.h>
 #include <string.h>
 
-/* Adds d_J B_J^T of entries with numbers of `width` bytes to the columns of F - I. Two sums run side by side,
+/* Columns of F - I of domain l, from the coefficients d that its group sees. Two sums run side by side,
  * because each addition waits for the one before. */
-static inline void add_entries(sf_gradient_part row, int width, const sf_vec *restrict d, sf_vec sum[2][3]) {
-    for (int64_t k = 0; k + 1 < row.count; k += 2) {
-        const uint8_t *b = &row.b[3 * width * k];
-        sf_vec x = d[row.local[k]], y = d[row.local[k + 1]];
-        __builtin_prefetch(b + SF_AHEAD);
+static inline void displacement_gradient(const sf_model *m, const sf_halo *h, const sf_vec *restrict d,
+                                         int64_t l, sf_vec g[3]) {
+    const int64_t first = m->domain_ptr[l], count = m->domain_ptr[l + 1] - first;
+    const double *b = &m->domain_b[3 * first];
+    const uint16_t *local = &h->local[first];
+    sf_vec sum[2][3] = {{{0}, {0}, {0}}, {{0}, {0}, {0}}};
+    for (int64_t k = 0; k + 1 < count; k += 2) {
+        sf_vec x = d[local[k]], y = d[local[k + 1]];
+        __builtin_prefetch(&b[3 * k + SF_AHEAD]);
         for (int c = 0; c < 3; c++) {
-            sum[0][c] += x * sf_packed_number(b + c * width);
-            sum[1][c] += y * sf_packed_number(b + (3 + c) * width);
+            sum[0][c] += x * b[3 * k + c];
+            sum[1][c] += y * b[3 * k + 3 + c];
         }
     }
-    if (row.count > 0 && row.count % 2)
-        for (int c = 0; c < 3; c++)
-            sum[0][c] +=
-                d[row.local[row.count - 1]] * sf_packed_number(&row.b[(3 * (row.count - 1) + c) * width]);
-}
-
-/* Columns of F - I of domain l, from the coefficients d that its group sees. */
-static inline void displacement_gradient(const sf_model *m, const sf_operators *op, const sf_vec *d,
-                                         int64_t l, sf_vec g[3]) {
-    sf_vec sum[2][3] = {{{0}, {0}, {0}}, {{0}, {0}, {0}}};
-    add_entries(sf_gradient_takers(m, op->gradient, op->halo.local, l), 8, d, sum);
-    add_entries(sf_gradient_others(m, op->gradient, op->halo.local, l), 6, d, sum);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
+        if (count % 2)
+            sum[0][c] += d[local[count - 1]] * b[3 * (count - 1) + c];
         g[c] = sum[0][c] + sum[1][c];
+    }
 }
 
 /* The coefficients that group g sees. */
@@ -53,7 +48,7 @@ static void load_batch(const sf_model *m, const sf_operators *op, const sf_state
         const double *old = l < count ? &s->f[9 * (first + l)] : rest;
         sf_vec g[3] = {{0}, {0}, {0}};
         if (l < count)
-            displacement_gradient(m, op, d, first + l, g);
+            displacement_gradient(m, &op->halo, d, first + l, g);
         for (int r = 0; r < 3; r++)
             for (int c = 0; c < 3; c++)
                 b->f[3 * r + c][l] = (r == c) + g[c][r];

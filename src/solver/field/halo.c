@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/field/halo.h"
 
-#include "solver/field/gradient.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,20 +24,16 @@ static int64_t list_others(const sf_model *m, int64_t g, uint8_t *seen, int32_t 
     return count;
 }
 
-/* `place` [n], `order` [longest row]: scratch. */
-static void number_entries(const sf_model *m, sf_halo *h, int32_t *place, int32_t *order) {
+/* `place` [n]: scratch. */
+static void number_entries(const sf_model *m, sf_halo *h, int32_t *place) {
     for (int64_t g = 0; g < h->group_count; g++) {
         int64_t first = sf_halo_first(g), end = sf_halo_end(m, g);
         for (int64_t i = first; i < end; i++)
             place[i] = (int32_t)(i - first);
         for (int64_t q = h->ptr[g]; q < h->ptr[g + 1]; q++)
             place[h->node[q]] = (int32_t)(end - first + q - h->ptr[g]);
-        for (int64_t l = first; l < end; l++) {
-            int64_t start = m->domain_ptr[l];
-            sf_gradient_order(m, l, order);
-            for (int64_t k = start; k < m->domain_ptr[l + 1]; k++)
-                h->local[k] = (uint16_t)place[m->domain_node[start + order[k - start]]];
-        }
+        for (int64_t k = m->domain_ptr[first]; k < m->domain_ptr[end]; k++)
+            h->local[k] = (uint16_t)place[m->domain_node[k]];
     }
 }
 
@@ -60,7 +55,6 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
     h->group_count = (m->node_count + SF_GROUP - 1) / SF_GROUP;
     uint8_t *seen = sf_alloc(err, n, 1, "group lists");
     int32_t *place = sf_alloc(err, n, sizeof *place, "group lists");
-    int32_t *order = sf_alloc(err, (unsigned long)sf_gradient_longest(m), sizeof *order, "group lists");
     h->ptr = sf_alloc(err, (unsigned long)h->group_count + 1, sizeof *h->ptr, "group lists");
     h->slot_ptr = sf_alloc(err, n + 1, sizeof *h->slot_ptr, "group lists");
     h->local = sf_alloc(err, (unsigned long)m->domain_nnz, sizeof *h->local, "group lists");
@@ -88,12 +82,11 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
     if (err->status == SF_OK) {
         for (int64_t g = 0; g < h->group_count; g++)
             list_others(m, g, seen, &h->node[h->ptr[g]]);
-        number_entries(m, h, place, order);
+        number_entries(m, h, place);
         list_slots(m, h);
     }
     free(seen);
     free(place);
-    free(order);
     if (err->status != SF_OK)
         sf_halo_free(h);
     return err->status;

@@ -15,14 +15,16 @@ enum {
     SF_HALO_WORK = 8,     /* doubles per node that passes may count on */
     SF_GROUP = 128,       /* nodes, a multiple of SF_CHUNK (state.h) */
     SF_GROUP_SEES = 4096, /* nodes at most */
+    SF_AHEAD = 512,       /* numbers of B between what a kernel works on and what it asks the memory for, as B
+                             does not fit into the caches and processors stop reading ahead at the end of a page */
 };
 
 typedef struct sf_halo {
     int64_t group_count;
     int64_t *ptr;      /* [group_count + 1] */
     int32_t *node;     /* [ptr[group_count]] nodes of other groups that the group sees, ascending */
-    uint16_t *local;   /* [domain_nnz] place of each entry of the packed gradient in what its group sees: its
-                          own nodes, then those others */
+    uint16_t *local;   /* [domain_nnz] place of each entry of B (domain_b) in what its group sees: its own
+                          nodes, then those others */
     int32_t *slot_ptr; /* [n + 1] */
     int32_t *slot;     /* [ptr[group_count]] where the other groups' lists hold node i, ascending */
     double *work;      /* [SF_HALO_WORK n or 3 ptr[group_count], the larger] of use within one pass */

@@ -3,29 +3,28 @@
 
 #include <string.h>
 
-/* Adds V P B_J of entries with numbers of `width` bytes to what their nodes get; x, y, z: columns of V P. */
-static inline void add_entries(sf_gradient_part row, int width, sf_vec x, sf_vec y, sf_vec z,
-                               sf_vec *restrict sum) {
-    for (int64_t k = 0; k < row.count; k++) {
-        const uint8_t *b = &row.b[3 * width * k];
-        __builtin_prefetch(b + SF_AHEAD);
-        sum[row.local[k]] +=
-            x * sf_packed_number(b) + y * sf_packed_number(b + width) + z * sf_packed_number(b + 2 * width);
+/* Adds V P B_J of domain l to what its nodes get; x, y, z: columns of V P. */
+static inline void add_domain(const sf_model *m, const sf_halo *h, int64_t l, sf_vec x, sf_vec y, sf_vec z,
+                              sf_vec *restrict sum) {
+    const int64_t first = m->domain_ptr[l], count = m->domain_ptr[l + 1] - first;
+    const double *b = &m->domain_b[3 * first];
+    const uint16_t *local = &h->local[first];
+    for (int64_t k = 0; k < count; k++) {
+        __builtin_prefetch(&b[3 * k + SF_AHEAD]);
+        sum[local[k]] += x * b[3 * k] + y * b[3 * k + 1] + z * b[3 * k + 2];
     }
 }
 
 /* What the domains of group g exert: on its own nodes at once, on others by what waits for them. */
-static SF_KERNEL void collect_group(const sf_model *m, const sf_operators *op, const double *stress,
-                                    int64_t g, double *force) {
-    const sf_halo *h = &op->halo;
+static SF_KERNEL void collect_group(const sf_model *m, const sf_halo *h, const double *stress, int64_t g,
+                                    double *force) {
     int64_t own = sf_halo_first(g), end = sf_halo_end(m, g), others = h->ptr[g + 1] - h->ptr[g];
     sf_vec seen[SF_GROUP_SEES];
     memset(seen, 0, (size_t)(end - own + others) * sizeof *seen);
     for (int64_t l = own; l < end; l++) {
         const double *p = &stress[9 * l];
         const sf_vec x = {p[0], p[3], p[6]}, y = {p[1], p[4], p[7]}, z = {p[2], p[5], p[8]};
-        add_entries(sf_gradient_takers(m, op->gradient, h->local, l), 8, x, y, z, seen);
-        add_entries(sf_gradient_others(m, op->gradient, h->local, l), 6, x, y, z, seen);
+        add_domain(m, h, l, x, y, z, seen);
     }
     for (int64_t i = own; i < end; i++)
         for (int r = 0; r < 3; r++)
@@ -49,7 +48,7 @@ void sf_internal_force(const sf_model *m, const sf_operators *op, sf_state *s) {
     const sf_halo *h = &op->halo;
 #pragma omp for schedule(static)
     for (int64_t g = 0; g < h->group_count; g++)
-        collect_group(m, op, s->stress, g, s->force);
+        collect_group(m, h, s->stress, g, s->force);
 #pragma omp for schedule(static)
     for (int64_t g = 0; g < h->group_count; g++)
         take_waiting(m, h, g, s->force);

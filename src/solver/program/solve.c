@@ -80,16 +80,14 @@ static void handle_failure(const sf_solve_options *o, const sf_output *output, c
     fputc('\n', stderr);
 }
 
-/* All that a step needs, and the base of the results: the mesh, and the shape functions of inner nodes, are
- * never in memory together with what the solver derives from the model. */
-static sf_status build(sf_model *model, const sf_h5 *model_file, const sf_provenance *provenance,
-                       const sf_output *output, sf_shapes *shapes, sf_operators *operators, sf_state *state,
-                       sf_error *err) {
-    if (sf_output_base(output, model, model_file, provenance, err) != SF_OK ||
-        sf_shapes_open(model, model_file, shapes, err) != SF_OK)
+/* All that a step needs, and the base of the results: the mesh is never in memory together with what the
+ * solver derives from the model, and the model's file is needed no more. */
+static sf_status build(sf_model *model, sf_h5 **model_file, const sf_provenance *provenance,
+                       const sf_output *output, sf_operators *operators, sf_state *state, sf_error *err) {
+    if (sf_output_base(output, model, *model_file, provenance, err) != SF_OK ||
+        sf_h5_close(model_file, err) != SF_OK)
         return err->status;
     sf_model_drop_mesh(model);
-    sf_model_drop_inner_shapes(model);
     if (sf_operators_take(model, operators, err) != SF_OK)
         return err->status;
     malloc_trim(0); /* what building took and gave back */
@@ -101,7 +99,6 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     sf_model model = {0};
     sf_operators operators = {0};
     sf_state state = {0};
-    sf_shapes shapes = {0};
     sf_output output;
     sf_checkpoint from = {0};
     sf_h5 *model_file = NULL;
@@ -125,12 +122,11 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     if (o->restart)
         compare_builds(&from);
     if (sf_output_open(&output, err) != SF_OK ||
-        build(&model, model_file, &provenance, &output, &shapes, &operators, &state, err) != SF_OK ||
+        build(&model, &model_file, &provenance, &output, &operators, &state, err) != SF_OK ||
         sf_output_start(&output, o->restart != NULL, err) != SF_OK) {
         sf_output_abandon(&output);
         goto done;
     }
-    output.shapes = &shapes;
     if (!o->restart)
         unlink(output.checkpoint); /* of an earlier run, with --force */
     sf_run run = {.stop = stop,
@@ -149,7 +145,6 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
 done:
     sf_output_close(&output);
     sf_checkpoint_close(&from);
-    sf_shapes_close(&shapes);
     sf_h5_close(&model_file, err);
     sf_state_free(&state);
     sf_operators_free(&operators);

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SLAB = 64 * SF_LANES }; /* nodes: more would be felt in the memory of a run */
+
 static double determinant(const double *f) {
     return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
            f[2] * (f[3] * f[7] - f[4] * f[6]);
@@ -41,12 +43,11 @@ static void sort_stretches(const sf_foam_batch *b, int lane, double out[3]) {
 }
 
 /* The approximation of a coefficient field at node i. */
-static void take_value(const sf_shape_rows *rows, const double *coefficient, int64_t i, double out[3]) {
-    const int64_t *ptr = &rows->ptr[i - rows->first];
+static void take_value(const sf_model *m, const double *coefficient, int64_t i, double out[3]) {
     double sum[3] = {0};
-    for (int64_t k = ptr[0] - rows->ptr[0]; k < ptr[1] - rows->ptr[0]; k++)
+    for (int64_t k = m->phi_ptr[i]; k < m->phi_ptr[i + 1]; k++)
         for (int c = 0; c < 3; c++)
-            sum[c] += rows->value[k] * coefficient[3 * (int64_t)rows->node[k] + c];
+            sum[c] += m->phi_value[k] * coefficient[3 * (int64_t)m->phi_node[k] + c];
     memcpy(out, sum, sizeof sum);
 }
 
@@ -84,14 +85,11 @@ static void take_law_field(const sf_model *m, const sf_operators *op, const sf_s
     }
 }
 
-/* One field of `count` nodes from node `start`, the first of a group; `shapes`: their shape functions, if the
- * field needs them. */
-static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s,
-                       const sf_shape_rows *shapes, sf_frame_field kind, int64_t start, int64_t count,
-                       double *out) {
+/* One field of `count` nodes from node `start`, the first of a group. */
+static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s, sf_frame_field kind,
+                       int64_t start, int64_t count, double *out) {
     int columns = sf_frame_field_get(kind)->components;
-#pragma omp parallel for default(none) schedule(static)                                                      \
-    shared(m, op, s, shapes, kind, start, count, columns, out)
+#pragma omp parallel for default(none) schedule(static) shared(m, op, s, kind, start, count, columns, out)
     for (int64_t first = start; first < start + count; first += SF_GROUP) {
         int64_t end = first + SF_GROUP < start + count ? first + SF_GROUP : start + count;
         double *rows = &out[(first - start) * columns];
@@ -99,7 +97,7 @@ static void take_field(const sf_model *m, const sf_operators *op, const sf_state
         case SF_FRAME_DISPLACEMENT:
         case SF_FRAME_VELOCITY:
             for (int64_t i = first; i < end; i++)
-                take_value(shapes, kind == SF_FRAME_DISPLACEMENT ? s->d : s->v, i, &rows[3 * (i - first)]);
+                take_value(m, kind == SF_FRAME_DISPLACEMENT ? s->d : s->v, i, &rows[3 * (i - first)]);
             break;
         case SF_FRAME_CAUCHY_STRESS:
         case SF_FRAME_VON_MISES:
@@ -146,46 +144,36 @@ static sf_status write_head(const sf_model *m, const sf_state *s, const char *pa
 
 /* One field of all nodes, through a buffer for a slab. */
 static sf_status write_field(const sf_model *m, const sf_operators *op, const sf_state *s,
-                             const sf_shapes *shapes, sf_frame_field kind, const char *path, double *buffer,
-                             sf_h5 *file, sf_error *err) {
+                             sf_frame_field kind, const char *path, double *buffer, sf_h5 *file,
+                             sf_error *err) {
     char name[128];
     const sf_frame_field_info *field = sf_frame_field_get(kind);
     const int64_t dims[2] = {m->node_count, field->components};
     sf_h5_info info = {name, field->units, field->description};
-    sf_h5_rows out;
+    sf_h5_rows rows;
     snprintf(name, sizeof name, "%s/%s", path, field->name);
-    sf_h5_rows_begin(file, &info, SF_H5_F64, dims[1] > 1 ? 2 : 1, dims, &out, err);
-    for (int64_t start = 0; start < m->node_count && err->status == SF_OK; start += SF_SLAB) {
-        int64_t count = start + SF_SLAB < m->node_count ? SF_SLAB : m->node_count - start;
-        sf_shape_rows rows = {0};
-        if ((kind != SF_FRAME_DISPLACEMENT && kind != SF_FRAME_VELOCITY) ||
-            sf_shapes_read(shapes, m, start, count, &rows, err) == SF_OK) {
-            take_field(m, op, s, &rows, kind, start, count, buffer);
-            sf_h5_rows_add(&out, count, buffer, err);
-        }
-        sf_shapes_release(&rows);
+    sf_h5_rows_begin(file, &info, SF_H5_F64, dims[1] > 1 ? 2 : 1, dims, &rows, err);
+    for (int64_t start = 0; start < m->node_count && err->status == SF_OK; start += SLAB) {
+        int64_t count = start + SLAB < m->node_count ? SLAB : m->node_count - start;
+        take_field(m, op, s, kind, start, count, buffer);
+        sf_h5_rows_add(&rows, count, buffer, err);
     }
-    return sf_h5_rows_end(&out, err);
+    return sf_h5_rows_end(&rows, err);
 }
 
-sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s,
-                         const sf_shapes *shapes, int64_t wanted, const char *path, sf_h5 *file,
-                         sf_error *err) {
-    double *buffer = sf_alloc(err, SF_SLAB, 9 * sizeof *buffer, "fields of a frame");
+sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t wanted,
+                         const char *path, sf_h5 *file, sf_error *err) {
+    double *buffer = sf_alloc(err, SLAB, 9 * sizeof *buffer, "fields of a frame");
     if (buffer)
         write_head(m, s, path, file, err);
     for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
         if (wanted >> k & 1)
-            write_field(m, op, s, shapes, (sf_frame_field)k, path, buffer, file, err);
+            write_field(m, op, s, (sf_frame_field)k, path, buffer, file, err);
     free(buffer);
     return err->status;
 }
 
-sf_status sf_frame_take(const sf_model *m, const sf_operators *op, const sf_state *s, sf_frame_field field,
-                        double *values, sf_error *err) {
-    sf_shape_rows rows = {0};
-    if (sf_shapes_read(NULL, m, 0, m->node_count, &rows, err) == SF_OK)
-        take_field(m, op, s, &rows, field, 0, m->node_count, values);
-    sf_shapes_release(&rows);
-    return err->status;
+void sf_frame_take(const sf_model *m, const sf_operators *op, const sf_state *s, sf_frame_field field,
+                   double *values) {
+    take_field(m, op, s, field, 0, m->node_count, values);
 }

@@ -7,17 +7,15 @@
 #include "core/model.h"
 #include "io/h5.h"
 #include "solver/operators.h"
-#include "solver/field/shapes.h"
 #include "solver/state.h"
 
 /* Writes the state after sf_step_evaluate to the group `path`: time, missile and the fields whose SF_FIELD_
- * bits are set, a slab of nodes at a time; `shapes` as of sf_shapes_read. */
+ * bits are set, some nodes at a time. */
 sf_status sf_frame_write(const sf_model *model, const sf_operators *operators, const sf_state *state,
-                         const sf_shapes *shapes, int64_t fields, const char *path, sf_h5 *file,
-                         sf_error *err);
+                         int64_t fields, const char *path, sf_h5 *file, sf_error *err);
 
-/* One field of all nodes, [node_count][components]; the model has all its shape functions. */
-sf_status sf_frame_take(const sf_model *model, const sf_operators *operators, const sf_state *state,
-                        sf_frame_field field, double *values, sf_error *err);
+/* One field of all nodes into values [node_count][components]. */
+void sf_frame_take(const sf_model *model, const sf_operators *operators, const sf_state *state,
+                   sf_frame_field field, double *values);
 
 #endif

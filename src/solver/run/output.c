@@ -132,7 +132,7 @@ static sf_status write_state(const sf_output *o, const sf_model *m, const sf_ope
     sf_h5 *file = NULL;
     if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
-    sf_frame_write(m, op, s, o->shapes, fields, group, file, err);
+    sf_frame_write(m, op, s, fields, group, file, err);
     return commit(&file, partial, path, err);
 }
 

@@ -11,7 +11,6 @@
 #include "io/provenance.h"
 #include "io/replace.h"
 #include "solver/operators.h"
-#include "solver/field/shapes.h"
 #include "solver/state.h"
 
 typedef struct sf_output {
@@ -20,7 +19,6 @@ typedef struct sf_output {
     char folder[SF_PATH_SIZE];     /* results.h5.run */
     char partial[SF_PATH_SIZE];    /* of results.h5, between sf_output_begin and sf_output_commit */
     int lock;                      /* the open folder; -1: closed */
-    const sf_shapes *shapes;       /* for the frames, as of sf_shapes_read; borrowed */
 } sf_output;
 
 /* The names only. */
