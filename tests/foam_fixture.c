@@ -28,7 +28,7 @@ void foam_uniaxial(double stretch, double f[9]) {
     memcpy(f, diagonal, sizeof diagonal);
 }
 
-void foam_reset(sf_foam_batch *batch) {
+void foam_reset(sf_law_batch *batch) {
     double identity[9];
     memset(batch, 0, sizeof *batch);
     batch->directions = true;
@@ -40,7 +40,7 @@ void foam_reset(sf_foam_batch *batch) {
     }
 }
 
-void foam_step(const sf_foam *foam, double dt, const double f[9], sf_foam_batch *batch) {
+void foam_step(const sf_foam *foam, double dt, const double f[9], sf_law_batch *batch) {
     double old[9];
     foam_get(batch->f, 0, old);
     for (int lane = 0; lane < SF_LANES; lane++) {
@@ -51,10 +51,10 @@ void foam_step(const sf_foam *foam, double dt, const double f[9], sf_foam_batch 
 }
 
 foam_point foam_elastic(const sf_foam *foam, const double f[9], double peak) {
-    sf_foam_batch batch;
+    sf_law_batch batch;
     foam_reset(&batch);
     for (int lane = 0; lane < SF_LANES; lane++)
-        batch.peak[lane] = peak;
+        batch.history[SF_FOAM_PEAK][lane] = peak;
     foam_step(foam, 0, f, &batch);
     foam_point point = {.energy = batch.energy[0],
                         .tangent = batch.tangent[0],
@@ -64,12 +64,12 @@ foam_point foam_elastic(const sf_foam *foam, const double f[9], double peak) {
     return point;
 }
 
-void foam_tangent(const sf_foam *foam, double dt, const sf_foam_batch *batch, double tangent[81]) {
+void foam_tangent(const sf_foam *foam, double dt, const sf_law_batch *batch, double tangent[81]) {
     const double h = 1e-6;
     for (int column = 0; column < 9; column++) {
         double p[2][9];
         for (int side = 0; side < 2; side++) {
-            sf_foam_batch moved = *batch;
+            sf_law_batch moved = *batch;
             moved.f[column][0] += side ? h : -h;
             sf_foam_update(foam, dt, &moved);
             foam_get(moved.p, 0, p[side]);
@@ -79,7 +79,7 @@ void foam_tangent(const sf_foam *foam, double dt, const sf_foam_batch *batch, do
     }
 }
 
-void foam_assert_bounds(const sf_foam_batch *batch, const double tangent[81]) {
+void foam_assert_bounds(const sf_law_batch *batch, const double tangent[81]) {
     static const int sym[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};
     double bound = batch->tangent[0], rest[81], largest = point_largest_eigenvalue(9, tangent);
     if (!(largest <= bound * (1 + 1e-6)))
@@ -95,23 +95,23 @@ void foam_assert_bounds(const sf_foam_batch *batch, const double tangent[81]) {
 }
 
 void foam_assert_tangent_bounds(const sf_foam *foam, uint64_t *seed, double dt) {
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9], old[9], tangent[81];
     point_deformation(seed, 0.2, 1.2, old);
     foam_reset(&batch);
     foam_step(foam, 0, old, &batch);
     for (int lane = 0; lane < SF_LANES; lane++) {
         for (int k = 0; k < 6; k++)
-            batch.maxwell[k][lane] = foam->maxwell * point_random(seed, -0.1, 0.1);
-        batch.rate[lane] = point_random(seed, 0, 120);
+            batch.history[SF_FOAM_MAXWELL + k][lane] = foam->maxwell * point_random(seed, -0.1, 0.1);
+        batch.history[SF_FOAM_RATE][lane] = point_random(seed, 0, 120);
     }
     for (int k = 0; k < 9; k++)
         f[k] = old[k] + point_random(seed, -50, 50) * dt;
     foam_set(batch.f_old, 0, old);
     foam_set(batch.f, 0, f);
     if (point_random(seed, 0, 1) < 0.5)
-        batch.peak[0] *= 2;
-    sf_foam_batch after = batch;
+        batch.history[SF_FOAM_PEAK][0] *= 2;
+    sf_law_batch after = batch;
     foam_tangent(foam, dt, &batch, tangent);
     sf_foam_update(foam, dt, &after);
     foam_assert_bounds(&after, tangent);

@@ -11,11 +11,11 @@
 void foam_build(const point_card *card, sf_foam *foam);
 
 /* Undeformed batch, without history, lengths 1 m. */
-void foam_reset(sf_foam_batch *batch);
+void foam_reset(sf_law_batch *batch);
 void foam_set(double matrix[9][SF_LANES], int lane, const double f[9]);
 void foam_get(double matrix[9][SF_LANES], int lane, double out[9]);
 /* Puts F of lane 0 into all lanes' f_old and `f` into all lanes' f, then updates. */
-void foam_step(const sf_foam *foam, double dt, const double f[9], sf_foam_batch *batch);
+void foam_step(const sf_foam *foam, double dt, const double f[9], sf_law_batch *batch);
 
 /* P, W and the tangent bound at F without viscosity, when the largest W so far was `peak`. */
 typedef struct foam_point {
@@ -29,10 +29,10 @@ void foam_uniaxial(double stretch, double f[9]);
 
 /* dP/dF [9][9] at batch->f by central differences, over a step `dt` from batch->f_old with the batch's
  * history. */
-void foam_tangent(const sf_foam *foam, double dt, const sf_foam_batch *batch, double tangent[81]);
+void foam_tangent(const sf_foam *foam, double dt, const sf_law_batch *batch, double tangent[81]);
 
 /* Asserts that dF : tangent : dF is at most the batch's bound of lane 0, as one number and by direction. */
-void foam_assert_bounds(const sf_foam_batch *batch, const double tangent[81]);
+void foam_assert_bounds(const sf_law_batch *batch, const double tangent[81]);
 
 /* Asserts that the bounds cover the numerical tangent over a step of dt (s) from a random
  * deformation at a random rate, with random history. */

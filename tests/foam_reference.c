@@ -163,14 +163,15 @@ static void bounds(const sf_foam *foam, const principal *p, double damp, double 
 }
 
 /* Maxwell branch and Kelvin viscosity (theory eq. 19, 20) into s; returns the norm of their stress. */
-static double viscous(const sf_foam *foam, double dt, sf_foam_batch *b, int l, const double e[6],
+static double viscous(const sf_foam *foam, double dt, sf_law_batch *b, int l, const double e[6],
                       double s[6]) {
     double decay = exp(-foam->maxwell_rate * dt), norm = 0;
     double gain = foam->maxwell > 0 ? foam->maxwell / foam->maxwell_rate * (1 - decay) : 0;
     for (int k = 0; k < 6; k++) {
-        double old = b->maxwell[k][l], now = decay * old + gain * e[k], twice = k < 3 ? 1 : 2;
+        double old = b->history[SF_FOAM_MAXWELL + k][l], now = decay * old + gain * e[k],
+               twice = k < 3 ? 1 : 2;
         double stress = now + foam->kelvin * e[k];
-        b->maxwell[k][l] = now;
+        b->history[SF_FOAM_MAXWELL + k][l] = now;
         b->work[l] += twice * (0.5 * (old + now) + foam->kelvin * e[k]) * e[k] * dt;
         b->directional[k][l] += stress;
         norm += twice * stress * stress;
@@ -180,7 +181,7 @@ static double viscous(const sf_foam *foam, double dt, sf_foam_batch *b, int l, c
 }
 
 /* Theory eq. 21: P_D = eta (J D) cof F. */
-static void damping(double dt, double eta, sf_foam_batch *b, int l) {
+static void damping(double dt, double eta, sf_law_batch *b, int l) {
     double a[9], rate[9], jd[9];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
@@ -211,7 +212,7 @@ static double determinant(double f[9][SF_LANES], int l) {
            f[2][l] * (f[3][l] * f[7][l] - f[4][l] * f[6][l]);
 }
 
-void foam_reference_update(const sf_foam *foam, double dt, sf_foam_batch *b, int l) {
+void foam_reference_update(const sf_foam *foam, double dt, sf_law_batch *b, int l) {
     double c[9], old[9], e[6] = {0}, s[6] = {0}, part[3], a[3], eta[3], extra = 0;
     principal p;
     right_cauchy_green(b->f, l, c);
@@ -222,17 +223,17 @@ void foam_reference_update(const sf_foam *foam, double dt, sf_foam_batch *b, int
     b->jacobian[l] = determinant(b->f, l);
     eigen(c, p.stretch, p.n);
     base_law(foam, &p);
-    hysteresis(foam, &b->peak[l], &p);
+    hysteresis(foam, &b->history[SF_FOAM_PEAK][l], &p);
     b->energy[l] = p.energy;
     b->factor[l] = p.factor;
-    sf_foam_energies(foam, p.energy, b->peak[l], &b->stored[l], &b->lost[l]);
+    sf_foam_energies(foam, p.energy, b->history[SF_FOAM_PEAK][l], &b->stored[l], &b->lost[l]);
     b->stiffness[l] = fmax(fmax(foam->modulus, foam->curve[0].piece[0].c[1]),
                            fmax(p.slope[0], fmax(p.slope[1], p.slope[2])));
     b->work[l] = 0;
     for (int i = 0; i < 3; i++)
         part[i] = p.factor * p.t[i] / p.stretch[i];
     if (foam->curve_count > 1 && dt > 0)
-        extra = overstress(foam, dt, &p, e, &b->rate[l], part, &b->work[l]);
+        extra = overstress(foam, dt, &p, e, &b->history[SF_FOAM_RATE][l], part, &b->work[l]);
     double damp = foam->damp * b->length[l] * sqrt(foam->density * b->stiffness[l]);
     bounds(foam, &p, damp, a, eta);
     for (int k = 0; k < 6; k++)

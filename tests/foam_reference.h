@@ -10,6 +10,6 @@
 void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost);
 
 /* sf_foam_update for lane l alone. */
-void foam_reference_update(const sf_foam *foam, double dt, sf_foam_batch *batch, int l);
+void foam_reference_update(const sf_foam *foam, double dt, sf_law_batch *batch, int l);
 
 #endif

@@ -36,10 +36,11 @@ static sf_status read_case(const char *path, sf_error *err) {
     sf_case c;
     if (sf_case_read(path, 0, NULL, NULL, &c, err) != SF_OK)
         return err->status;
-    for (int64_t k = 0; k < c.foam.curve_count; k++) { /* as the solver does with every model */
+    for (int64_t k = 0; k < sf_foam_card_of(&c.material)->curve_count;
+         k++) { /* as the solver does with every model */
         sf_curve curve;
         sf_error flat = SF_ERROR_INIT;
-        if (sf_curve_build(&c.foam, k, &curve, &flat) == SF_OK)
+        if (sf_curve_build(sf_foam_card_of(&c.material), k, &curve, &flat) == SF_OK)
             sf_curve_free(&curve);
     }
     sf_case_free(&c);

@@ -60,26 +60,33 @@ void fixture_case(sf_case *c, const char *const *overrides) {
 }
 
 void fixture_make_elastic(sf_case *c) {
-    c->foam.hysteresis_hu = 1;
-    c->foam.damp = 0;
-    c->foam.maxwell_modulus = 0;
-    c->foam.kelvin_viscosity = 0;
+    sf_foam_card *card = sf_foam_card_of(&c->material);
+    card->hysteresis_hu = 1;
+    card->damp = 0;
+    card->maxwell_modulus = 0;
+    card->kelvin_viscosity = 0;
 }
 
 void fixture_make_linear(sf_case *c) {
     enum { POINTS = 5 };
+    sf_foam_card *card = sf_foam_card_of(&c->material);
     fixture_make_elastic(c);
-    free(c->foam.curve_strain);
-    free(c->foam.curve_stress);
-    c->foam.curve_strain = allocate(POINTS, sizeof(double));
-    c->foam.curve_stress = allocate(POINTS, sizeof(double));
+    free(card->curve_strain);
+    free(card->curve_stress);
+    card->curve_strain = allocate(POINTS, sizeof(double));
+    card->curve_stress = allocate(POINTS, sizeof(double));
     for (int k = 0; k < POINTS; k++) {
-        c->foam.curve_strain[k] = 0.2 * k;
-        c->foam.curve_stress[k] = 0.2 * k * c->foam.modulus;
+        card->curve_strain[k] = 0.2 * k;
+        card->curve_stress[k] = 0.2 * k * card->modulus;
     }
-    c->foam.curve_points = c->foam.curve_ptr[1] = POINTS;
-    c->foam.densification_start = c->foam.densification_exponent = 0;
-    c->foam.densification_limit = 1;
+    card->curve_points = card->curve_ptr[1] = POINTS;
+    card->densification_start = card->densification_exponent = 0;
+    card->densification_limit = 1;
+}
+
+double fixture_peak(const fixture *f, int64_t node) {
+    int64_t row = node / SF_LANES * f->state.history_rows + SF_FOAM_PEAK;
+    return f->state.history[row * SF_LANES + node % SF_LANES];
 }
 
 void fixture_hold(sf_case *c, const char *const *names) {

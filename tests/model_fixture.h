@@ -7,6 +7,7 @@
 #define SF_TESTS_MODEL_FIXTURE_H
 
 #include "pre/build.h"
+#include "solver/material/foam.h"
 #include "solver/operators.h"
 #include "solver/state.h"
 
@@ -35,6 +36,9 @@ const char *fixture_source(const char *name);
 
 /* Reads the example case; `overrides` as of --set, up to NULL. */
 void fixture_case(sf_case *c, const char *const *overrides);
+
+/* The largest W of a node so far, J m-3. */
+double fixture_peak(const fixture *f, int64_t node);
 
 /* Replaces the foam by a linear elastic one without losses: stress = E strain up to 80 %. */
 void fixture_make_linear(sf_case *c);

@@ -3,6 +3,7 @@
 
 #include "core/units.h"
 #include "io/h5.h"
+#include "io/provenance.h"
 #include "post/injury.h"
 #include "post/results.h"
 #include <math.h>
@@ -197,7 +198,7 @@ sf_status fixture_write(const char *path, const fixture_options *o, sf_error *er
     if (sf_h5_create(path, &file, err) != SF_OK)
         return err->status;
     sf_h5_set_attribute(file, "/", "format", o->format ? o->format : "softfall-results", err);
-    sf_h5_set_attribute_i64(file, "/", "format_version", 1, err);
+    sf_h5_set_attribute_i64(file, "/", "format_version", SF_FORMAT_VERSION, err);
     put_model(file, &c, err);
     put_history(file, o, err);
     for (int k = 0; k < FIXTURE_FRAMES; k++) {

@@ -203,16 +203,34 @@ static void no_mass(sf_model *m) {
     m->mass[0] = 0;
 }
 static void falling_curve(sf_model *m) {
-    m->foam.curve_stress[m->foam.curve_points - 1] = 0;
+    sf_foam_card_of(&m->material[0])->curve_stress[sf_foam_card_of(&m->material[0])->curve_points - 1] = 0;
 }
 static void no_curve(sf_model *m) {
-    m->foam.curve_ptr[m->foam.curve_count] -= 1;
+    sf_foam_card_of(&m->material[0])->curve_ptr[sf_foam_card_of(&m->material[0])->curve_count] -= 1;
 }
 static void curve_from_nowhere(sf_model *m) {
-    m->foam.curve_stress[0] = 1;
+    sf_foam_card_of(&m->material[0])->curve_stress[0] = 1;
 }
 static void curve_of_three_points(sf_model *m) {
-    m->foam.curve_points = m->foam.curve_ptr[1] = 3;
+    sf_foam_card_of(&m->material[0])->curve_points = sf_foam_card_of(&m->material[0])->curve_ptr[1] = 3;
+}
+static void material_out_of_range(sf_model *m) {
+    m->node_material[m->node_count - 1] = 1;
+}
+static void unknown_law(sf_model *m) {
+    static const sf_law law = {.name = "no_such_law", .curves = SIZE_MAX};
+    sf_error err = SF_ERROR_INIT;
+    sf_material *two = sf_alloc(&err, 2, sizeof *two, "materials");
+    assert_int_equal(err.status, SF_OK);
+    two[0] = m->material[0];
+    two[1].law = &law;
+    free(m->material);
+    m->material = two;
+    m->material_count = 2;
+}
+static void no_materials(sf_model *m) {
+    sf_material_free(&m->material[0]);
+    m->material_count = 0;
 }
 static void three_planes(sf_model *m) {
     m->symmetry_factor = 3;
@@ -247,7 +265,7 @@ static void cell_beyond_nodes(sf_model *m) {
     m->cell_node[m->cell_nnz - 1] = (int32_t)m->node_count;
 }
 static void no_hysteresis_unit(sf_model *m) {
-    m->foam.hysteresis_hu = 0;
+    sf_foam_card_of(&m->material[0])->hysteresis_hu = 0;
 }
 static void fast_missile(sf_model *m) {
     m->missile.speed = -4.5;
@@ -308,6 +326,9 @@ static void damaged_models_are_refused_with_what_is_wrong(void **state) {
         {no_curve, "no usable compression curve"},
         {curve_from_nowhere, "does not start at (0, 0)"},
         {curve_of_three_points, "fewer than 4 points"},
+        {material_out_of_range, "is of material 1, of 0 to 0"},
+        {unknown_law, "\"no_such_law\" is not a law that this program has"},
+        {no_materials, "/material/count: 0 is not between 1 and 256"},
         {three_planes, "symmetry factor is 3"},
         {held_in_no_direction, "has mask 0"},
         {frame_before_the_beginning, "frame time -0.001 s"},

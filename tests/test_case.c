@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: what a good one gives, and the sentence that each fault gets. */
+#include "core/foam_card.h"
 #include "program_fixture.h"
 
 #include "case/case.h"
@@ -108,13 +109,19 @@ static void good_case_is_in_si(void **state) {
               "output: { frame_interval = \"0.5 ms\"; times = [\"12.2 ms\", \"300 us\"];\n"
               "  fields = [\"displacement\", \"von_mises\"]; };\n",
               NULL, &c);
-    assert_true(fabs(c.foam.density - 35.0) < 1e-12);
-    assert_true(fabs(c.foam.modulus - 413600.0) < 1e-8);
-    assert_true(c.foam.hysteresis_hu == 0.01 && c.foam.hysteresis_shape == 2.0 && c.foam.damp == 0.35);
-    assert_true(fabs(c.foam.damp_length - 0.005) < 1e-16 && c.foam.maxwell_rate == 5000.0);
-    assert_true(fabs(c.foam.maxwell_modulus - 3.43e6) < 1e-8 && c.foam.kelvin_viscosity == 690.0);
-    assert_true(c.foam.tension_cutoff == 20000.0 && c.foam.densification_exponent == 3.0);
-    assert_true(c.foam.densification_start == 0.7 && c.foam.densification_limit == 1.0);
+    assert_true(fabs(sf_foam_card_of(&c.material)->density - 35.0) < 1e-12);
+    assert_true(fabs(sf_foam_card_of(&c.material)->modulus - 413600.0) < 1e-8);
+    assert_true(sf_foam_card_of(&c.material)->hysteresis_hu == 0.01 &&
+                sf_foam_card_of(&c.material)->hysteresis_shape == 2.0 &&
+                sf_foam_card_of(&c.material)->damp == 0.35);
+    assert_true(fabs(sf_foam_card_of(&c.material)->damp_length - 0.005) < 1e-16 &&
+                sf_foam_card_of(&c.material)->maxwell_rate == 5000.0);
+    assert_true(fabs(sf_foam_card_of(&c.material)->maxwell_modulus - 3.43e6) < 1e-8 &&
+                sf_foam_card_of(&c.material)->kelvin_viscosity == 690.0);
+    assert_true(sf_foam_card_of(&c.material)->tension_cutoff == 20000.0 &&
+                sf_foam_card_of(&c.material)->densification_exponent == 3.0);
+    assert_true(sf_foam_card_of(&c.material)->densification_start == 0.7 &&
+                sf_foam_card_of(&c.material)->densification_limit == 1.0);
     assert_true(fabs(c.missile_card.mass - 4.6) < 1e-14 && fabs(c.missile_card.speed - 4.5) < 1e-14);
     assert_true(fabs(c.missile_card.direction[1] - 0.6) < 1e-15 &&
                 fabs(c.missile_card.direction[2] + 0.8) < 1e-15);
@@ -133,9 +140,10 @@ static void good_case_is_in_si(void **state) {
     assert_true(fabs(c.frame_time[0] - 3e-4) < 1e-18 && fabs(c.frame_time[1] - 0.0122) < 1e-16);
     assert_int_equal(c.run.stop_after_rebound, 0);
     assert_int_equal(c.run.output_fields, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES);
-    assert_int_equal(c.foam.curve_count, 1);
-    assert_int_equal(c.foam.curve_points, 4);
-    assert_true(c.foam.curve_strain[2] == 0.5 && c.foam.curve_stress[2] == 100e3);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_count, 1);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
+    assert_true(sf_foam_card_of(&c.material)->curve_strain[2] == 0.5 &&
+                sf_foam_card_of(&c.material)->curve_stress[2] == 100e3);
     sf_case_free(&c);
 }
 
@@ -150,8 +158,11 @@ static void defaults_are_those_of_the_table(void **state) {
     assert_string_equal(c.symmetry_group[1], "symmetry_y");
     assert_string_equal(c.surface_group, "missile_surface");
     assert_true(c.support_ratio == 1.4 && c.run.stabilisation == 0.1 && c.run.step_safety == 0.95);
-    assert_true(c.foam.hysteresis_hu == 1.0 && c.foam.damp_length == 0.0 && c.foam.maxwell_modulus == 0.0);
-    assert_true(c.foam.tension_cutoff >= 1e30 && isfinite(c.foam.tension_cutoff));
+    assert_true(sf_foam_card_of(&c.material)->hysteresis_hu == 1.0 &&
+                sf_foam_card_of(&c.material)->damp_length == 0.0 &&
+                sf_foam_card_of(&c.material)->maxwell_modulus == 0.0);
+    assert_true(sf_foam_card_of(&c.material)->tension_cutoff >= 1e30 &&
+                isfinite(sf_foam_card_of(&c.material)->tension_cutoff));
     assert_true(c.missile_card.direction[2] == -1.0);
     assert_int_equal(c.run.output_fields, SF_FIELD_ALL);
     assert_int_equal(c.run.stop_after_rebound, 1);
@@ -205,7 +216,7 @@ static void set_overrides_every_kind_of_value(void **state) {
     assert_int_equal(c.run.stop_after_rebound, 0);
     assert_true(c.support_ratio == 1.5);
     assert_string_equal(c.fixed_group[1], "right");
-    assert_true(c.foam.densification_start == 0.6);
+    assert_true(sf_foam_card_of(&c.material)->densification_start == 0.6);
     assert_non_null(strstr(c.text, "# --set missile.velocity=5.2 m/s\n"));
     sf_case_free(&c);
 }
@@ -216,8 +227,8 @@ static void set_replaces_a_group_by_a_file(void **state) {
     char set[600], where[600];
     snprintf(set, sizeof set, "material=@%s", in_folder("materials/soft.cfg"));
     read_good(GOOD, set, &c);
-    assert_int_equal(c.foam.curve_points, 4);
-    assert_true(c.foam.curve_stress[3] == 0.9e6); /* inner.csv, beside soft.cfg */
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
+    assert_true(sf_foam_card_of(&c.material)->curve_stress[3] == 0.9e6); /* inner.csv, beside soft.cfg */
     assert_non_null(strstr(c.text, "#     curve = \"inner.csv\";\n"));
     sf_case_free(&c);
 
@@ -235,8 +246,9 @@ static void include_brings_its_own_folder_for_the_curve(void **state) {
     (void)state;
     sf_case c;
     read_good(GEOMETRY "material: {\n@include \"materials/soft.cfg\"\n};\n" MISSILE SOLVER, NULL, &c);
-    assert_int_equal(c.foam.curve_points, 4);
-    assert_true(fabs(c.foam.curve_strain[1] - 0.1) < 1e-16 && fabs(c.foam.curve_stress[3] - 0.9e6) < 1e-9);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
+    assert_true(fabs(sf_foam_card_of(&c.material)->curve_strain[1] - 0.1) < 1e-16 &&
+                fabs(sf_foam_card_of(&c.material)->curve_stress[3] - 0.9e6) < 1e-9);
     assert_non_null(strstr(c.text, "density = \"35 kg/m3\";\nE = "));
     assert_null(strstr(c.text, "@include"));
     sf_case_free(&c);
@@ -253,7 +265,7 @@ static void include_may_be_absolute(void **state) {
              in_folder("materials/soft.cfg"), MISSILE, SOLVER);
     sf_case c;
     read_good(text, NULL, &c);
-    assert_int_equal(c.foam.curve_points, 4);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
     sf_case_free(&c);
     assert_refused(text, "missile.mass=3", "--set missile.mass=3: ", NULL);
     snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\n%s%s", GEOMETRY,
@@ -275,13 +287,15 @@ static void curves_at_several_rates_ascend(void **state) {
         "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = (\n"
         "{ rate = \"0.01 1/s\"; file = \"foam.csv\"; }, { rate = \"100 1/s\"; file = \"fast.csv\"; } ); };\n",
         NULL, &c);
-    assert_int_equal(c.foam.curve_count, 2);
-    assert_int_equal(c.foam.curve_points, 8);
-    assert_int_equal(c.foam.curve_ptr[1], 4);
-    assert_int_equal(c.foam.curve_ptr[2], 8);
-    assert_true(c.foam.curve_rate[0] == 0.01 && c.foam.curve_rate[1] == 100.0);
-    assert_true(c.foam.curve_strain[7] == 0.7 && c.foam.curve_stress[7] == 1.5e6 &&
-                c.foam.curve_stress[3] == 9e5);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_count, 2);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 8);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_ptr[1], 4);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_ptr[2], 8);
+    assert_true(sf_foam_card_of(&c.material)->curve_rate[0] == 0.01 &&
+                sf_foam_card_of(&c.material)->curve_rate[1] == 100.0);
+    assert_true(sf_foam_card_of(&c.material)->curve_strain[7] == 0.7 &&
+                sf_foam_card_of(&c.material)->curve_stress[7] == 1.5e6 &&
+                sf_foam_card_of(&c.material)->curve_stress[3] == 9e5);
     sf_case_free(&c);
 }
 
@@ -289,8 +303,9 @@ static void h2_takes_limit_and_exponent(void **state) {
     (void)state;
     sf_case c;
     read_good(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; exponent = 2.5; }", &c);
-    assert_int_equal(c.densification_rule, SF_DENSIFICATION_H2);
-    assert_true(c.foam.densification_limit == 0.95 && c.foam.densification_exponent == 2.5);
+    assert_int_equal(sf_foam_card_of(&c.material)->densification_rule, SF_DENSIFICATION_H2);
+    assert_true(sf_foam_card_of(&c.material)->densification_limit == 0.95 &&
+                sf_foam_card_of(&c.material)->densification_exponent == 2.5);
     sf_case_free(&c);
 }
 
@@ -638,7 +653,9 @@ static void examples_are_the_drops_they_are_called(void **state) {
         }
         assert_int_equal(seen, 2);
         assert_true(c.missile_card.speed == drops[k].speed && c.missile_card.mass == 4.6);
-        assert_true(c.foam.density == 35.0 && c.foam.hysteresis_hu == 0.01 && c.foam.damp == 0.35);
+        assert_true(sf_foam_card_of(&c.material)->density == 35.0 &&
+                    sf_foam_card_of(&c.material)->hysteresis_hu == 0.01 &&
+                    sf_foam_card_of(&c.material)->damp == 0.35);
         sf_case_free(&c);
     }
 }

@@ -47,7 +47,7 @@ static void start_cube(fixture *f, double friction, int count, const double *tim
     c.symmetry_given = true;
     strcpy(c.symmetry_group[0], "plane_x");
     strcpy(c.symmetry_group[1], "plane_y");
-    c.foam.maxwell_modulus = 0;
+    sf_foam_card_of(&c.material)->maxwell_modulus = 0;
     c.missile_card.friction = friction;
     drive(&c, count, time, displacement);
     fixture_block_mesh(&block, &mesh);
@@ -64,7 +64,7 @@ static double stress_now(const fixture *f) {
 
 /* The law in uniaxial compression: `deepest` is the largest strain so far. */
 static double law(const fixture *f, const sf_curve *curve, double strain, double deepest) {
-    const sf_foam_card *foam = &f->model.foam;
+    const sf_foam_card *foam = sf_foam_card_of(&f->model.material[0]);
     double stress, slope, energy, unused, largest;
     sf_curve_evaluate(curve, strain, &stress, &slope, &energy);
     sf_curve_evaluate(curve, deepest, &unused, &slope, &largest);
@@ -90,7 +90,7 @@ static void stress_follows_the_law_when_loaded_released_and_loaded_again(void **
     sf_error err = SF_ERROR_INIT;
     start_cube(&f, 0.5, POINTS, time, displacement);
     sf_state *s = &f.state;
-    assert_int_equal(sf_curve_build(&f.model.foam, 0, &curve, &err), SF_OK);
+    assert_int_equal(sf_curve_build(sf_foam_card_of(&f.model.material[0]), 0, &curve, &err), SF_OK);
     double largest = law(&f, &curve, 0.8, 0.8), worst[3] = {0}, released = 0, work = 0;
     bool again = false;
     for (fixture_step(&f); s->time < time[END]; sf_step_advance(&f.model, s), fixture_step(&f)) {
@@ -124,7 +124,7 @@ static void a_release_returns_the_energy_of_the_law(void **state) {
     fixture f;
     start_cube(&f, 0, 3, time, displacement);
     sf_state *s = &f.state;
-    const sf_foam_card *foam = &f.model.foam;
+    const sf_foam_card *foam = sf_foam_card_of(&f.model.material[0]);
     double work = 0;
     for (fixture_step(&f); s->time < 0.2; sf_step_advance(&f.model, s), fixture_step(&f))
         work = fmax(work, s->ledger.external);

@@ -88,11 +88,11 @@ static void build(loss losses, const char *const *overrides, fixture *f) {
     sf_mesh mesh;
     sf_surface surface;
     fixture_case(&c, overrides);
-    double hu = c.foam.hysteresis_hu;
+    double hu = sf_foam_card_of(&c.material)->hysteresis_hu;
     if (losses != ALL_LOSSES)
         fixture_make_elastic(&c);
     if (losses == HYSTERESIS_ONLY)
-        c.foam.hysteresis_hu = hu;
+        sf_foam_card_of(&c.material)->hysteresis_hu = hu;
     fixture_geometry(&c, &mesh, &surface);
     fixture_build(&c, &mesh, &surface, f);
 }
@@ -242,7 +242,7 @@ static void elastic_pad_is_a_little_stiffer_than_uncoupled_columns(void **state)
     sf_error err = SF_ERROR_INIT;
     build(ELASTIC, (const char *const[]){FINE, OUTER, "missile.velocity=3.0 m/s", NULL}, &f);
     fixture_start(&f);
-    assert_int_equal(sf_curve_build(&f.model.foam, 0, &curve, &err), SF_OK);
+    assert_int_equal(sf_curve_build(sf_foam_card_of(&f.model.material[0]), 0, &curve, &err), SF_OK);
     const sf_model *m = &f.model;
     sf_state *s = &f.state;
     double ratio = INFINITY, next = 0.3;

@@ -232,7 +232,7 @@ static void stress_is_derivative_of_energy_while_loading(void **state) {
 /* Loads along `path`(s), s = 0 .. 1, and unloads back; work done and work returned (J m-3). */
 static void cycle(const sf_foam *foam, void (*path)(double s, double f[9]), double *done, double *returned) {
     enum { STEPS = 4000 };
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double old_p[9] = {0}, old_f[9];
     foam_reset(&batch);
     path(0, old_f);
@@ -294,14 +294,14 @@ static void unloading_follows_the_factor_and_reloading_retraces_it(void **state)
     (void)state;
     const double hu = 0.05, shape = 1.5;
     sf_foam foam;
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9], unloading[50];
     make_foam(&foam, hu, shape);
     foam_reset(&batch);
     foam_uniaxial(0.3, f);
     foam_step(&foam, 0, f, &batch);
     double peak = curve_energy(&foam, 0.7);
-    assert_relative(batch.peak[0], peak, 1e-10);
+    assert_relative(batch.history[SF_FOAM_PEAK][0], peak, 1e-10);
     for (int k = 0; k < 50; k++) {
         double strain = 0.69 * (49 - k) / 49;
         foam_uniaxial(1 - strain, f);
@@ -310,7 +310,7 @@ static void unloading_follows_the_factor_and_reloading_retraces_it(void **state)
         double factor = 1 - (1 - hu) * (1 - pow(curve_energy(&foam, strain) / peak, shape));
         assert_relative(batch.factor[0], factor, 1e-9);
         assert_close(unloading[k], -factor * curve_stress(&foam, strain), 1e-9 * curve_stress(&foam, strain));
-        assert_relative(batch.peak[0], peak, 1e-10);
+        assert_relative(batch.history[SF_FOAM_PEAK][0], peak, 1e-10);
     }
     for (int k = 49; k >= 0; k--) {
         foam_uniaxial(1 - 0.69 * (49 - k) / 49, f);
@@ -320,7 +320,7 @@ static void unloading_follows_the_factor_and_reloading_retraces_it(void **state)
     foam_uniaxial(0.25, f); /* beyond the old maximum: the curve again */
     foam_step(&foam, 0, f, &batch);
     assert_relative(batch.p[0][0], -curve_stress(&foam, 0.75), 1e-9);
-    assert_relative(batch.peak[0], curve_energy(&foam, 0.75), 1e-9);
+    assert_relative(batch.history[SF_FOAM_PEAK][0], curve_energy(&foam, 0.75), 1e-9);
     sf_foam_free(&foam);
 }
 
@@ -330,7 +330,7 @@ static void stored_and_lost_energy_is_the_work_done(void **state) {
     enum { STEPS = 3000 };
     const double turn[5] = {0, 0.7, 0.2, 1, 0};
     sf_foam foam;
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double old_p[9] = {0}, old_f[9], work = 0, stored = 0, lost = 0, old_lost = 0;
     make_foam(&foam, 0.1, 1.7);
     foam_reset(&batch);
@@ -345,14 +345,14 @@ static void stored_and_lost_energy_is_the_work_done(void **state) {
         foam_get(batch.p, 0, p);
         for (int i = 0; i < 9; i++)
             work += 0.5 * (p[i] + old_p[i]) * (f[i] - old_f[i]);
-        sf_foam_energies(&foam, batch.energy[0], batch.peak[0], &stored, &lost);
+        sf_foam_energies(&foam, batch.energy[0], batch.history[SF_FOAM_PEAK][0], &stored, &lost);
         assert_close(stored + lost, work, 2e-6 * peak);
         assert_true(lost >= old_lost && stored >= 0);
         old_lost = lost;
         memcpy(old_p, p, sizeof p);
         memcpy(old_f, f, sizeof f);
     }
-    assert_relative(batch.peak[0], peak, 1e-12);
+    assert_relative(batch.history[SF_FOAM_PEAK][0], peak, 1e-12);
     assert_close(stored, 0, 1e-9 * peak);
     assert_relative(lost / peak, (1 - 0.1) * 1.7 / 2.7, 1e-12);
     sf_foam_energies(&foam, 0, 0, &stored, &lost); /* never loaded */
@@ -390,15 +390,15 @@ static void tension_has_the_modulus_up_to_the_cutoff(void **state) {
 /* Random F; history of twice its energy where `unloading`. Compares the largest eigenvalue of the numerical
  * tangent. */
 static void assert_tangent_bounds(const sf_foam *foam, uint64_t *seed, bool unloading) {
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9], tangent[81];
     point_deformation(seed, 0.12, 1.3, f);
     double peak = unloading ? point_random(seed, 1.05, 10) * foam_elastic(foam, f, 0).energy : 0;
     foam_reset(&batch);
     foam_step(foam, 0, f, &batch);
-    batch.peak[0] = peak;
+    batch.history[SF_FOAM_PEAK][0] = peak;
     foam_tangent(foam, 0, &batch, tangent);
-    sf_foam_batch after = batch;
+    sf_law_batch after = batch;
     sf_foam_update(foam, 0, &after);
     foam_assert_bounds(&after, tangent);
     if (!unloading) /* nothing is lost in the bound: the largest of slopes, differences and sums is an

@@ -25,7 +25,7 @@ static void make_family(sf_foam *foam) {
 /* Uniaxial compression at a constant rate to a strain of 0.6: nominal stress, compression positive, against
  * the slowest curve. */
 static double stress_ratio(const sf_foam *foam, double rate) {
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9], stress, slope, energy, dt = 1e-4 / rate;
     foam_reset(&batch);
     for (int k = 1; k <= 6000; k++) {
@@ -33,7 +33,7 @@ static double stress_ratio(const sf_foam *foam, double rate) {
         foam_step(foam, dt, f, &batch);
     }
     sf_curve_evaluate(&foam->curve[0], 0.6, &stress, &slope, &energy);
-    assert_relative(batch.rate[0], rate, 2e-4);
+    assert_relative(batch.history[SF_FOAM_RATE][0], rate, 2e-4);
     return -batch.p[0][0] / stress;
 }
 
@@ -56,7 +56,7 @@ static void sustained_rate_gives_the_curve_of_that_rate(void **state) {
 static void overstress_fades_after_a_stop(void **state) {
     (void)state;
     sf_foam foam;
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9], stress, slope, energy, tau = 1e-4;
     make_family(&foam);
     foam_reset(&batch);
@@ -64,7 +64,7 @@ static void overstress_fades_after_a_stop(void **state) {
         foam_uniaxial(1 - 1e-4 * k, f);
         foam_step(&foam, 1e-6, f, &batch); /* 100 s-1 */
     }
-    double start = batch.rate[0];
+    double start = batch.history[SF_FOAM_RATE][0];
     sf_curve_evaluate(&foam.curve[0], 0.5, &stress, &slope, &energy);
     for (int k = 1; k <= 60; k++) {
         foam_step(&foam, 1e-5, f, &batch);
@@ -72,7 +72,7 @@ static void overstress_fades_after_a_stop(void **state) {
         double ratio = rate > 30  ? 1.4 + 0.5 * log(rate / 30) / log(200.0 / 30)
                        : rate > 1 ? 1 + 0.4 * log(rate) / log(30)
                                   : 1;
-        assert_relative(batch.rate[0], rate, 1e-9);
+        assert_relative(batch.history[SF_FOAM_RATE][0], rate, 1e-9);
         assert_relative(-batch.p[0][0] / stress, ratio, 1e-9);
         assert_close(batch.work[0], 0, 0);
     }
@@ -83,7 +83,7 @@ static void overstress_fades_after_a_stop(void **state) {
 static void overstress_work_closes_the_balance(void **state) {
     (void)state;
     sf_foam foam;
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9], viscous = 0, total = 0, old = 0, dt = 1e-6;
     make_family(&foam);
     foam_reset(&batch);
@@ -105,7 +105,7 @@ static void extension_has_no_overstress(void **state) {
     sf_foam foam;
     make_family(&foam);
     for (int compressed = 0; compressed < 2; compressed++) {
-        sf_foam_batch batch;
+        sf_law_batch batch;
         double f[9], start = compressed ? 0.5 : 1;
         foam_reset(&batch);
         foam_uniaxial(start, f);
@@ -113,7 +113,7 @@ static void extension_has_no_overstress(void **state) {
         for (int k = 1; k <= 1000; k++) {
             foam_uniaxial(start + 1e-4 * k, f);
             foam_step(&foam, 1e-6, f, &batch);
-            assert_close(batch.rate[0], 0, 0);
+            assert_close(batch.history[SF_FOAM_RATE][0], 0, 0);
             assert_close(batch.work[0], 0, 0);
         }
         foam_point elastic = foam_elastic(&foam, f, 0);
@@ -130,7 +130,7 @@ static void tangent_bounds_shear_between_fast_and_resting_directions(void **stat
     make_family(&foam);
     foam.modulus = 1e4;
     for (double strain = 0.05; strain < 0.15; strain += 0.02) {
-        sf_foam_batch batch;
+        sf_law_batch batch;
         double old[9], f[9], tangent[81], dt = 1e-6;
         foam_reset(&batch);
         foam_uniaxial(1 - strain, f);
@@ -139,8 +139,8 @@ static void tangent_bounds_shear_between_fast_and_resting_directions(void **stat
         old[0] += 1000 * dt;
         foam_set(batch.f_old, 0, old);
         foam_set(batch.f, 0, f);
-        batch.rate[0] = 1000;
-        sf_foam_batch after = batch;
+        batch.history[SF_FOAM_RATE][0] = 1000;
+        sf_law_batch after = batch;
         sf_foam_update(&foam, dt, &after);
         foam_tangent(&foam, dt, &batch, tangent);
         double stress, slope, energy, largest = point_largest_eigenvalue(9, tangent);

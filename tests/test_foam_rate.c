@@ -38,11 +38,11 @@ static void green_strain(const double a[6], double t, double f[9]) {
 }
 
 /* P - P(elastic) of lane 0 against F S with S = factor x A. */
-static void assert_extra_stress(const sf_foam *foam, sf_foam_batch *batch, const double f[9],
+static void assert_extra_stress(const sf_foam *foam, sf_law_batch *batch, const double f[9],
                                 const double a[6], double factor) {
     const double s[9] = {a[0], a[3], a[5], a[3], a[1], a[4], a[5], a[4], a[2]};
     double p[9], expected[9];
-    foam_point elastic = foam_elastic(foam, f, batch->peak[0]);
+    foam_point elastic = foam_elastic(foam, f, batch->history[SF_FOAM_PEAK][0]);
     foam_get(batch->p, 0, p);
     point_product(f, s, expected);
     for (int k = 0; k < 9; k++)
@@ -58,7 +58,7 @@ static void maxwell_branch_follows_closed_form_and_relaxes(void **state) {
     const double steps[3] = {1e-5, 1e-4, 2e-3};
     for (int k = 0; k < 3; k++) {
         sf_foam foam;
-        sf_foam_batch batch;
+        sf_law_batch batch;
         double f[9], t = 0, ed = 3.4e6, beta = 1500;
         make_foam(&foam, ed, beta, 0, 0);
         foam_reset(&batch);
@@ -68,7 +68,7 @@ static void maxwell_branch_follows_closed_form_and_relaxes(void **state) {
             foam_step(&foam, steps[k], f, &batch);
             double gain = ed / beta * -expm1(-beta * t);
             for (int i = 0; i < 6; i++)
-                assert_close(batch.maxwell[i][0], gain * DIRECTION[i], 1e-9 * gain * 40);
+                assert_close(batch.history[SF_FOAM_MAXWELL + i][0], gain * DIRECTION[i], 1e-9 * gain * 40);
             assert_extra_stress(&foam, &batch, f, DIRECTION, gain);
         }
         double gain = ed / beta * -expm1(-beta * t), rest = 0;
@@ -92,7 +92,7 @@ static double square(const double a[6]) {
 static void viscous_work_follows_closed_form(void **state) {
     (void)state;
     sf_foam foam;
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9], work = 0, ed = 3.4e6, beta = 1500, eta = 70, dt = 2e-6;
     make_foam(&foam, ed, beta, eta, 0);
     foam_reset(&batch);
@@ -109,7 +109,7 @@ static void viscous_work_follows_closed_form(void **state) {
 static void kelvin_stress_is_viscosity_times_rate(void **state) {
     (void)state;
     sf_foam foam;
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9];
     make_foam(&foam, 0, 0, 690, 0);
     foam_reset(&batch);
@@ -126,7 +126,7 @@ static void kelvin_stress_is_viscosity_times_rate(void **state) {
 static void no_time_no_viscous_stress(void **state) {
     (void)state;
     sf_foam foam;
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9], p[9];
     make_foam(&foam, 3e6, 5000, 690, 0.35);
     foam_reset(&batch);
@@ -147,7 +147,7 @@ static void no_time_no_viscous_stress(void **state) {
 /* Stress of DAMP alone at f, coming from `old` within dt. */
 static void damp_stress(const sf_foam *foam, double dt, const double old[9], const double f[9], double length,
                         double p[9], double *work) {
-    sf_foam_batch batch;
+    sf_law_batch batch;
     foam_reset(&batch);
     foam_set(batch.f, 0, f);
     foam_set(batch.f_old, 0, old);
@@ -297,7 +297,7 @@ static double numerical_viscosity(const sf_foam *foam, const double f[9], double
     for (int column = 0; column < 9; column++) {
         double p[2][9];
         for (int side = 0; side < 2; side++) {
-            sf_foam_batch batch;
+            sf_law_batch batch;
             double old[9];
             memcpy(old, f, sizeof old);
             old[column] -= side ? h : -h;
@@ -347,16 +347,23 @@ static void tangent_bounds_maxwell_too(void **state) {
 /* ---- lanes ---- */
 
 /* Every output of lane l, as one list. */
-static void outputs(const sf_foam_batch *b, int l, double out[32]) {
+static void outputs(const sf_law_batch *b, int l, double out[32]) {
     int n = 0;
     for (int k = 0; k < 9; k++)
         out[n++] = b->p[k][l];
     for (int k = 0; k < 6; k++)
-        out[n++] = b->maxwell[k][l];
+        out[n++] = b->history[SF_FOAM_MAXWELL + k][l];
     for (int k = 0; k < 3; k++)
         out[n++] = b->stretch[k][l];
-    const double rest[] = {b->peak[l],      b->rate[l],    b->jacobian[l],  b->energy[l], b->factor[l],
-                           b->stiffness[l], b->tangent[l], b->viscosity[l], b->work[l]};
+    const double rest[] = {b->history[SF_FOAM_PEAK][l],
+                           b->history[SF_FOAM_RATE][l],
+                           b->jacobian[l],
+                           b->energy[l],
+                           b->factor[l],
+                           b->stiffness[l],
+                           b->tangent[l],
+                           b->viscosity[l],
+                           b->work[l]};
     for (size_t k = 0; k < sizeof rest / sizeof rest[0]; k++)
         out[n++] = rest[k];
     while (n < 32)
@@ -379,7 +386,7 @@ static void lanes_are_independent(void **state) {
     card.card.hysteresis_hu = 0.01;
     foam_build(&card, &foam);
     for (int trial = 0; trial < 100; trial++) {
-        sf_foam_batch mixed;
+        sf_law_batch mixed;
         foam_reset(&mixed);
         for (int l = 0; l < SF_LANES; l++) {
             double f[9];
@@ -388,17 +395,17 @@ static void lanes_are_independent(void **state) {
             for (int k = 0; k < 9; k++)
                 mixed.f_old[k][l] = f[k] + point_random(&seed, -1e-3, 1e-3);
             mixed.length[l] = point_random(&seed, 1e-3, 1e-2);
-            mixed.peak[l] = point_random(&seed, 0, 1e6);
-            mixed.rate[l] = point_random(&seed, 0, 100);
+            mixed.history[SF_FOAM_PEAK][l] = point_random(&seed, 0, 1e6);
+            mixed.history[SF_FOAM_RATE][l] = point_random(&seed, 0, 100);
             for (int k = 0; k < 6; k++)
-                mixed.maxwell[k][l] = point_random(&seed, -1e5, 1e5);
+                mixed.history[SF_FOAM_MAXWELL + k][l] = point_random(&seed, -1e5, 1e5);
         }
         if (trial % 2)
             mixed.f[4][trial % SF_LANES] = NAN;
-        sf_foam_batch before = mixed;
+        sf_law_batch before = mixed;
         sf_foam_update(&foam, 1e-5, &mixed);
         for (int l = 0; l < SF_LANES; l++) {
-            sf_foam_batch alone;
+            sf_law_batch alone;
             double together[32], single[32];
             if (trial % 2 && l == trial % SF_LANES) {
                 assert_true(isnan(mixed.p[4][l]));
@@ -411,10 +418,10 @@ static void lanes_are_independent(void **state) {
                 alone.f_old[k][to] = before.f_old[k][l];
             }
             for (int k = 0; k < 6; k++)
-                alone.maxwell[k][to] = before.maxwell[k][l];
+                alone.history[SF_FOAM_MAXWELL + k][to] = before.history[SF_FOAM_MAXWELL + k][l];
             alone.length[to] = before.length[l];
-            alone.peak[to] = before.peak[l];
-            alone.rate[to] = before.rate[l];
+            alone.history[SF_FOAM_PEAK][to] = before.history[SF_FOAM_PEAK][l];
+            alone.history[SF_FOAM_RATE][to] = before.history[SF_FOAM_RATE][l];
             sf_foam_update(&foam, 1e-5, &alone);
             outputs(&mixed, l, together);
             outputs(&alone, to, single);

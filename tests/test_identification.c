@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit compression: what it refuses, its spline, its model against the solver's law and against its
  * own derivatives, and a fit from the files of tests to a material that softfall-pre reads. */
+#include "solver/material/foam.h"
 #include "fit/compression/fit.h"
 #include "fit/compression/output.h"
 #include "fit/material_point.h"
@@ -345,14 +346,15 @@ static void maxwell_stress_is_that_of_the_solver(void **state) {
     card.densification_exponent = 1;
     for (double rate = 0.01; rate < 20; rate *= 10) {
         sf_foam foam;
+        const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
         sf_error err = SF_ERROR_INIT;
         card.maxwell_modulus = 0;
         assert_int_equal(sf_foam_build(&card, &foam, &err), SF_OK);
-        sf_material_point_drive(&foam, rate, 1e-4, N, strain, without);
+        sf_material_point_drive(&law, rate, 1e-4, N, strain, without);
         sf_foam_free(&foam);
         card.maxwell_modulus = 5e4;
         assert_int_equal(sf_foam_build(&card, &foam, &err), SF_OK);
-        sf_material_point_drive(&foam, rate, 1e-4, N, strain, with);
+        sf_material_point_drive(&law, rate, 1e-4, N, strain, with);
         sf_foam_free(&foam);
         for (int i = 0; i < N; i++)
             assert_close(5e4 * sf_compression_maxwell(0.7, rate, 0.8, strain[i], i > 4), with[i] - without[i],
@@ -365,6 +367,7 @@ static void maxwell_stress_is_that_of_the_solver(void **state) {
 static void check_card(const sf_compression_fit *fit) {
     sf_foam_card card;
     sf_foam foam;
+    const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
     sf_error err = SF_ERROR_INIT;
     const sf_compression_data *d = &fit->data;
     double *stress = calloc((size_t)d->count, sizeof *stress);
@@ -372,7 +375,7 @@ static void check_card(const sf_compression_fit *fit) {
     assert_int_equal(sf_foam_build(&card, &foam, &err), SF_OK);
     for (int k = 0, first = 0; k < d->config->test_count; first += d->config->test[k++].count) {
         const sf_compression_test *t = &d->config->test[k];
-        sf_material_point_drive(&foam, t->rate, 5e-4, t->count, &d->strain[first], &stress[first]);
+        sf_material_point_drive(&law, t->rate, 5e-4, t->count, &d->strain[first], &stress[first]);
         for (int i = first; i < first + t->count; i++)
             assert_close(stress[i], fit->stress[i], 0.005 * fit->stress[i] + 20);
     }
@@ -479,15 +482,16 @@ static void written_material_is_the_card_of_the_fit(void **state) {
                                           "solver: { end_time = \"40 ms\"; };\n");
     if (sf_case_read(path, 1, overrides, NULL, &c, &err) != SF_OK)
         fail_msg("%s", err.text);
-    assert_int_equal(c.foam.curve_count, card.curve_count);
-    assert_int_equal(c.foam.curve_points, card.curve_points);
-    assert_relative(c.foam.modulus, card.modulus, 1e-10);
-    assert_relative(c.foam.hysteresis_hu, card.hysteresis_hu, 1e-10);
-    assert_relative(c.foam.hysteresis_shape, card.hysteresis_shape, 1e-10);
-    assert_relative(c.foam.densification_start, card.densification_start, 1e-10);
-    assert_relative(c.foam.densification_exponent, card.densification_exponent, 1e-10);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_count, card.curve_count);
+    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, card.curve_points);
+    assert_relative(sf_foam_card_of(&c.material)->modulus, card.modulus, 1e-10);
+    assert_relative(sf_foam_card_of(&c.material)->hysteresis_hu, card.hysteresis_hu, 1e-10);
+    assert_relative(sf_foam_card_of(&c.material)->hysteresis_shape, card.hysteresis_shape, 1e-10);
+    assert_relative(sf_foam_card_of(&c.material)->densification_start, card.densification_start, 1e-10);
+    assert_relative(sf_foam_card_of(&c.material)->densification_exponent, card.densification_exponent, 1e-10);
     for (int64_t k = 0; k < card.curve_points; k++)
-        assert_close(c.foam.curve_stress[k], card.curve_stress[k], 1e-9 * card.curve_stress[k]);
+        assert_close(sf_foam_card_of(&c.material)->curve_stress[k], card.curve_stress[k],
+                     1e-9 * card.curve_stress[k]);
     sf_case_free(&c);
     sf_compression_card_free(&card);
     sf_compression_fit_free(&fit);

@@ -39,7 +39,7 @@ static void random_stretches(uint64_t *seed, int trial, int l, bool special, dou
         x[2] = 1 + point_random(seed, -2e-6, 2e-6);
 }
 
-static void random_batch(uint64_t *seed, int trial, bool special, sf_foam_batch *b) {
+static void random_batch(uint64_t *seed, int trial, bool special, sf_law_batch *b) {
     foam_reset(b);
     for (int l = 0; l < SF_LANES; l++) {
         double x[3], left[9], right[9], diagonal[9] = {0}, product[9], f[9];
@@ -54,14 +54,14 @@ static void random_batch(uint64_t *seed, int trial, bool special, sf_foam_batch 
         for (int k = 0; k < 9; k++)
             b->f_old[k][l] = b->f[k][l] + point_random(seed, -1e-3, 1e-3);
         for (int k = 0; k < 6; k++)
-            b->maxwell[k][l] = point_random(seed, -1e5, 1e5);
+            b->history[SF_FOAM_MAXWELL + k][l] = point_random(seed, -1e5, 1e5);
         b->length[l] = point_random(seed, 1e-3, 1e-2);
-        b->peak[l] = (trial + l) % 3 == 0 ? 0 : point_random(seed, 0, 2e5);
-        b->rate[l] = point_random(seed, 0, 120);
+        b->history[SF_FOAM_PEAK][l] = (trial + l) % 3 == 0 ? 0 : point_random(seed, 0, 2e5);
+        b->history[SF_FOAM_RATE][l] = point_random(seed, 0, 120);
     }
 }
 
-static void count_visits(const sf_foam *foam, const sf_foam_batch *b, visits *v) {
+static void count_visits(const sf_foam *foam, const sf_law_batch *b, visits *v) {
     for (int l = 0; l < SF_LANES; l++) {
         double x = b->stretch[0][l], y = b->stretch[1][l], z = b->stretch[2][l];
         double longest = fmax(x, fmax(y, z)), shortest = fmin(x, fmin(y, z));
@@ -87,14 +87,14 @@ static void compare(const char *name, int rows, double a[][SF_LANES], double b[]
     }
 }
 
-static void compare_batches(sf_foam_batch *a, sf_foam_batch *b) {
+static void compare_batches(sf_law_batch *a, sf_law_batch *b) {
     compare("P", 9, a->p, b->p, 1e-11);
-    compare("S of the Maxwell branch", 6, a->maxwell, b->maxwell, 1e-12);
+    compare("S of the Maxwell branch", 6, &a->history[SF_FOAM_MAXWELL], &b->history[SF_FOAM_MAXWELL], 1e-12);
     compare("stretch", 3, a->stretch, b->stretch, 1e-13);
     compare("det F", 1, &a->jacobian, &b->jacobian, 1e-12);
     compare("W", 1, &a->energy, &b->energy, 1e-11);
-    compare("largest W", 1, &a->peak, &b->peak, 1e-11);
-    compare("rate", 1, &a->rate, &b->rate, 1e-11);
+    compare("largest W", 1, &a->history[SF_FOAM_PEAK], &b->history[SF_FOAM_PEAK], 1e-11);
+    compare("rate", 1, &a->history[SF_FOAM_RATE], &b->history[SF_FOAM_RATE], 1e-11);
     compare("hysteresis factor", 1, &a->factor, &b->factor, 1e-11);
     compare("stiffness", 1, &a->stiffness, &b->stiffness, 1e-11);
     compare("recoverable energy", 1, &a->stored, &b->stored, 1e-11);
@@ -113,7 +113,7 @@ static void compare_law(point_card *card, double dt, uint64_t seed) {
     bool special = card->card.curve_count == 1;
     foam_build(card, &foam);
     for (int trial = 0; trial < TRIALS; trial++) {
-        sf_foam_batch kernel, plain;
+        sf_law_batch kernel, plain;
         random_batch(&seed, trial, special, &kernel);
         plain = kernel;
         sf_foam_update(&foam, dt, &kernel);

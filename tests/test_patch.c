@@ -172,7 +172,7 @@ static void rigid_rotation_and_translation_cost_nothing(void **state) {
     for (int k = 0; k < MODELS; k++) {
         const sf_model *m = &f[k].model;
         const sf_state *s = &f[k].state;
-        double h = smallest_spacing(m), modulus = m->foam.modulus, energy = 0;
+        double h = smallest_spacing(m), modulus = sf_foam_card_of(&m->material[0])->modulus, energy = 0;
         fixture_start(&f[k]);
         fixture_set_affine(&f[k], gradient, SHIFT);
         fixture_forces(&f[k]);
@@ -234,11 +234,12 @@ static double stored_energy(fixture *f) {
 static void elastic_forces_are_the_gradient_of_the_stored_energy(void **state) {
     fixture *f = &((fixture *)*state)[BLOCK];
     sf_model *m = &f->model;
-    sf_foam_card card = m->foam;
+    sf_foam_card card = *sf_foam_card_of(&m->material[0]);
     double coefficient = m->run.stabilisation;
     uint64_t seed = 11;
-    m->foam.hysteresis_hu = 1;
-    m->foam.damp = m->foam.maxwell_modulus = m->run.stabilisation = 0;
+    sf_foam_card_of(&m->material[0])->hysteresis_hu = 1;
+    sf_foam_card_of(&m->material[0])->damp = sf_foam_card_of(&m->material[0])->maxwell_modulus =
+        m->run.stabilisation = 0;
     fixture_start(f);
     sf_state *s = &f->state;
     fixture_set_affine(f, GRADIENT, STILL); /* away from the kink of the curve's slope at zero strain */
@@ -259,7 +260,7 @@ static void elastic_forces_are_the_gradient_of_the_stored_energy(void **state) {
         assert_close(-(high - low) / (2 * h) / scale, force[q] / scale, 2e-6);
     }
     free(force);
-    m->foam = card;
+    *sf_foam_card_of(&m->material[0]) = card;
     m->run.stabilisation = coefficient;
 }
 

@@ -399,7 +399,7 @@ static void bad_command_lines_are_refused(void **state) {
         {"--reference x.csv --window 5", "\"5\" is not a window"},
         {"--reference x.csv --regions 5-1", "not a list of regions"},
         {"--reference x.csv --shift soon", "not a time in ms"},
-        {"--reference /nonexistent/x.csv", "cannot read the reference /nonexistent/x.csv"},
+        {"--reference /nonexistent/x.csv", "the reference /nonexistent/x.csv cannot be read"},
         {"second.h5", "one results file"},
         {"--unknown", "unrecognized option"},
     };

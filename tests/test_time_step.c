@@ -245,7 +245,7 @@ static void chosen_step_is_stable_for_the_full_tangent(void **state) {
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         fixture f;
         start_block(&f, cases[k].linear, 0.1);
-        f.model.foam.hysteresis_hu = cases[k].hu;
+        sf_foam_card_of(&f.model.material[0])->hysteresis_hu = cases[k].hu;
         fixture_start(&f);
         deform(&f, cases[k].before);
         deform(&f, cases[k].now);

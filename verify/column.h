@@ -6,7 +6,7 @@
 #define SF_VERIFY_COLUMN_H
 
 #include "core/error.h"
-#include "core/model.h"
+#include "core/foam_card.h"
 #include "post/signal.h"
 
 typedef struct sf_column {

@@ -39,7 +39,7 @@ void sf_mms_gradient(const sf_mms_field *field, const double x[3], double f[9]) 
 
 void sf_mms_stress(const sf_mms_field *field, const sf_foam *foam, const double x[3], double p[9],
                    double stretch[3]) {
-    sf_foam_batch batch;
+    sf_law_batch batch;
     double f[9];
     memset(&batch, 0, sizeof batch);
     sf_mms_gradient(field, x, f);

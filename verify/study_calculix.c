@@ -58,7 +58,7 @@ static double table_error(const sf_indentation *in, sf_error *err) {
     sf_curve curve = {0};
     snprintf(path, sizeof path, "%s/case.cfg", in->folder);
     if (sf_case_read(path, 0, NULL, NULL, &c, err) == SF_OK &&
-        sf_curve_build(&c.foam, 0, &curve, err) == SF_OK)
+        sf_curve_build(sf_foam_card_of(&c.material), 0, &curve, err) == SF_OK)
         for (int k = 0; k <= 910; k++) {
             double strain = 0.01 + 1e-3 * k + 3e-4, stress, slope, energy;
             sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);

@@ -90,7 +90,7 @@ static void hertz_depths(sf_study *s, double spacing) {
     FILE *data = sf_study_file(s, "hertz.txt");
     double worst = 0, unbalance = 0;
     build_halfspace(spacing, &f);
-    double radius = f.model.missile.sphere_radius, modulus = f.model.foam.modulus;
+    double radius = f.model.missile.sphere_radius, modulus = sf_foam_card_of(&f.model.material[0])->modulus;
     sf_study_text(s,
                   "Spacing %.2f mm, %lld nodes:\n\n| depth, mm | contact radius / spacing | force, N | "
                   "closed form, N | ratio |\n|---|---|---|---|---|\n",
@@ -133,8 +133,8 @@ static void hertz_study(sf_study *s) {
         double base;
         build_halfspace(spacing[k], &f);
         double radius = f.model.missile.sphere_radius, force = indent(&f, 1e-4 / radius, &base);
-        ratio[k] =
-            force / hertz(f.model.foam.modulus, radius, f.model.thickness, f.state.missile.displacement);
+        ratio[k] = force / hertz(sf_foam_card_of(&f.model.material[0])->modulus, radius, f.model.thickness,
+                                 f.state.missile.displacement);
         error[k] = fabs(ratio[k] - 1);
         sf_study_text(s, "| %.3f | %.1f | %.4f |\n", spacing[k], 10 / spacing[k], ratio[k]);
         fixture_free(&f);
@@ -165,12 +165,12 @@ static void build_column(const sf_column *column, const fixture_block *block, fi
     fixture_case(&c, NULL);
     fixture_make_elastic(&c);
     fixture_hold(&c, (const char *const[]){"base", NULL});
-    sf_formula_table(&c.foam, 1, &still, &one);
-    c.foam.density = column->foam->density;
-    c.foam.hysteresis_hu = column->foam->hysteresis_hu;
-    c.foam.hysteresis_shape = column->foam->hysteresis_shape;
-    c.foam.maxwell_modulus = column->foam->maxwell_modulus;
-    c.foam.maxwell_rate = column->foam->maxwell_rate;
+    sf_formula_table(sf_foam_card_of(&c.material), 1, &still, &one);
+    sf_foam_card_of(&c.material)->density = column->foam->density;
+    sf_foam_card_of(&c.material)->hysteresis_hu = column->foam->hysteresis_hu;
+    sf_foam_card_of(&c.material)->hysteresis_shape = column->foam->hysteresis_shape;
+    sf_foam_card_of(&c.material)->maxwell_modulus = column->foam->maxwell_modulus;
+    sf_foam_card_of(&c.material)->maxwell_rate = column->foam->maxwell_rate;
     c.missile_card.mass = column->mass;
     c.missile_card.speed = column->speed;
     c.missile_card.gravity = column->gravity;

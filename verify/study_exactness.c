@@ -163,8 +163,9 @@ static double measure_rigid(fixture *f) {
     fixture_set_affine(f, r, SHIFT);
     fixture_forces(f);
     for (int64_t i = 0; i < m->node_count; i++) {
-        double unit = m->foam.modulus * m->spacing[i] * m->spacing[i];
-        worst = fmax(worst, largest(&f->state.stress[9 * i], 9) / (m->volume[i] * m->foam.modulus));
+        double unit = sf_foam_card_of(&m->material[0])->modulus * m->spacing[i] * m->spacing[i];
+        worst = fmax(worst, largest(&f->state.stress[9 * i], 9) /
+                                (m->volume[i] * sf_foam_card_of(&m->material[0])->modulus));
         worst = fmax(worst, largest(&f->state.force[3 * i], 3) / unit);
     }
     return worst;

@@ -2,6 +2,7 @@
 /* A synthetic laboratory: compression tests made with hidden parameters by the solver's own foam law, with
  * scatter, go through the identification of softfall-fit compression. It must choose the law that made them,
  * and its intervals must hold the truth as often as they say. */
+#include "solver/material/foam.h"
 #include "fit/compression/fit.h"
 #include "fit/material_point.h"
 #include "study.h"
@@ -79,6 +80,7 @@ static void fill_card(const truth *t, sf_foam_card *card) {
 static sf_status open_laboratory(const truth *t, laboratory *lab, sf_error *err) {
     sf_foam_card card;
     sf_foam foam;
+    const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
     *lab = (laboratory){.config = {.name = "synthetic",
                                    .density = 35,
                                    .modulus_range = 0.02,
@@ -105,7 +107,7 @@ static sf_status open_laboratory(const truth *t, laboratory *lab, sf_error *err)
             test->strain[i] = TURN * (i + 1) / LOADING;
         for (int i = 0; i < UNLOADING; i++)
             test->strain[LOADING + i] = TURN * (UNLOADING - 1 - i) / UNLOADING;
-        sf_material_point_drive(&foam, RATE[k], 2e-4, count, test->strain, lab->clean[k]);
+        sf_material_point_drive(&law, RATE[k], 2e-4, count, test->strain, lab->clean[k]);
         test->largest_stress = lab->clean[k][LOADING - 1];
     }
     sf_foam_free(&foam);

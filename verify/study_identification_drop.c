@@ -3,6 +3,7 @@
  * noise, identified by space mapping, and the intervals counted. The "simulation" is a stiffer and thinner
  * set of columns than the surrogate, so that the correction has to work; hundreds of drops then cost seconds.
  * The whole chain with three-dimensional drops is in tests/test_fit_drop.c. */
+#include "solver/material/foam.h"
 #include "study.h"
 
 #include "fit/column.h"
@@ -46,6 +47,7 @@ static sf_status respond(const laboratory *lab, const double *u, int first, int 
     double value[SF_PARAMETER_COUNT];
     sf_foam_card card;
     sf_foam foam;
+    const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
     sf_foam_form_start(&lab->form, value);
     value[SF_PARAMETER_BETA1] = 5000;
     for (int k = 0; k < UNKNOWNS; k++)
@@ -58,7 +60,7 @@ static sf_status respond(const laboratory *lab, const double *u, int first, int 
             sf_series curve = {0};
             sf_hic hic = {0};
             double peak = 0;
-            if (sf_columns_drop(&c, &foam, &curve, err) == SF_OK)
+            if (sf_columns_drop(&c, &law, &curve, err) == SF_OK)
                 sf_hic_evaluate(&curve, INFINITY, &hic, err);
             for (int64_t k = 0; k < curve.count; k++)
                 peak = fmax(peak, curve.value[k]);

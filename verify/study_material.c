@@ -63,15 +63,15 @@ static void build_cube(const sf_foam_card *card, int curves, const double *rates
     fixture_hold(&c, (const char *const[]){NULL});
     c.sliding_count = 1;
     snprintf(c.sliding_group[0], SF_CASE_NAME_SIZE, "base");
-    sf_formula_table(&c.foam, curves, rates, factors);
-    c.foam.hysteresis_hu = card->hysteresis_hu;
-    c.foam.hysteresis_shape = card->hysteresis_shape;
-    c.foam.maxwell_modulus = card->maxwell_modulus;
-    c.foam.maxwell_rate = card->maxwell_rate;
-    c.foam.kelvin_viscosity = card->kelvin_viscosity;
-    c.foam.damp = card->damp;
-    c.foam.damp_length = card->damp_length;
-    c.foam.rate_filter_time = card->rate_filter_time;
+    sf_formula_table(sf_foam_card_of(&c.material), curves, rates, factors);
+    sf_foam_card_of(&c.material)->hysteresis_hu = card->hysteresis_hu;
+    sf_foam_card_of(&c.material)->hysteresis_shape = card->hysteresis_shape;
+    sf_foam_card_of(&c.material)->maxwell_modulus = card->maxwell_modulus;
+    sf_foam_card_of(&c.material)->maxwell_rate = card->maxwell_rate;
+    sf_foam_card_of(&c.material)->kelvin_viscosity = card->kelvin_viscosity;
+    sf_foam_card_of(&c.material)->damp = card->damp;
+    sf_foam_card_of(&c.material)->damp_length = card->damp_length;
+    sf_foam_card_of(&c.material)->rate_filter_time = card->rate_filter_time;
     c.missile_card.mass = 1e6;
     c.missile_card.speed = rate * SIDE;
     c.missile_card.gravity = 0;
@@ -153,7 +153,8 @@ static outcome press(fixture *f, const pressing *program, stress_law *law, FILE 
         p.time = s->time;
         p.strain = 1 - s->f[8];
         p.largest_strain = fmax(p.largest_strain, p.strain);
-        double expected = law(&f->model.foam, &p, memory), stress = s->missile.force[2] / (SIDE * SIDE);
+        double expected = law(sf_foam_card_of(&f->model.material[0]), &p, memory),
+               stress = s->missile.force[2] / (SIDE * SIDE);
         compare(f, expected, p.size, &o);
         follow(&second, p.leg, p.strain, stress, &o);
         *(p.velocity < 0 ? &o.work_in : &o.work_out) += 0.5 * (stress + old) * fabs(p.strain - old_strain);
@@ -319,7 +320,8 @@ static void rates_and_tension(sf_study *s) {
     const pressing pull = {100, 3, {-0.3, 0.4, -0.1}};
     card.tension_cutoff = 30e3;
     build_cube(&card, 1, &STILL, &ONE, pull.rate, &f);
-    f.model.foam.tension_cutoff = f.operators.foam.cutoff = card.tension_cutoff;
+    sf_foam_card_of(&f.model.material[0])->tension_cutoff = ((sf_foam *)f.operators.law[0].numbers)->cutoff =
+        card.tension_cutoff;
     outcome o = press(&f, &pull, in_tension, NULL);
     check_outcome(s, &o, "tension to 30 %, cut-off 30 kPa at 7.3 %");
     fixture_free(&f);

@@ -72,7 +72,7 @@ static void load(const fixture *f, const sf_mms_field *field, enum rule rule, do
     memset(force, 0, 3 * (size_t)m->node_count * sizeof *force);
     for (int64_t l = 0; l < m->node_count; l++) {
         double b[3];
-        sf_mms_body_force(field, &f->operators.foam, &m->position[3 * l], b);
+        sf_mms_body_force(field, f->operators.law[0].numbers, &m->position[3 * l], b);
         if (rule == LUMPED) {
             for (int c = 0; c < 3; c++)
                 force[3 * l + c] = m->volume[l] * b[c];
@@ -221,7 +221,7 @@ static void check_field(sf_study *study) {
     double smallest = INFINITY, largest = 0, nearest = INFINITY;
     fixture_case(&c, NULL);
     fixture_make_elastic(&c);
-    if (sf_foam_build(&c.foam, &foam, &err) != SF_OK) {
+    if (sf_foam_build(sf_foam_card_of(&c.material), &foam, &err) != SF_OK) {
         sf_study_fail(study, &err);
         sf_case_free(&c);
         return;

@@ -41,10 +41,10 @@ static void build(int cloud, int material, fixture *f) {
     fixture_case(&c, (const char *const[]){"geometry.parameters.fine_spacing=25.0",
                                            "geometry.parameters.outer_spacing=50.0", NULL});
     if (material < MAXWELL)
-        c.foam.maxwell_modulus = 0;
-    c.foam.kelvin_viscosity = material == VISCOUS ? 20 : 0;
+        sf_foam_card_of(&c.material)->maxwell_modulus = 0;
+    sf_foam_card_of(&c.material)->kelvin_viscosity = material == VISCOUS ? 20 : 0;
     if (material < VISCOUS)
-        c.foam.damp = 0;
+        sf_foam_card_of(&c.material)->damp = 0;
     c.run.step_limit = c.run.step_safety = 1;
     if (cloud == PAD) {
         fixture_geometry(&c, &mesh, &surface);
@@ -91,7 +91,7 @@ static void deform(fixture *f, int deformation) {
 typedef struct probe {
     fixture *f;
     size_t size; /* 3 n */
-    double *d, *gradient, *peak, *maxwell, *stiffness;
+    double *d, *gradient, *history, *stiffness;
 } probe;
 
 static double *copy(const double *from, size_t count) {
@@ -100,8 +100,8 @@ static double *copy(const double *from, size_t count) {
     return to;
 }
 
-static size_t maxwell_size(const fixture *f) {
-    return 6 * SF_LANES * (size_t)sf_state_rows(&f->model, 'm');
+static size_t history_size(const fixture *f) {
+    return SF_LANES * (size_t)sf_state_rows(&f->model, 'h');
 }
 
 /* Domains on the loading curve stay on it: a largest W of zero is exceeded by whatever comes. */
@@ -112,15 +112,15 @@ static probe probe_begin(fixture *f) {
                3 * n,
                copy(s->d, 3 * n),
                copy(s->f, 9 * n),
-               copy(s->peak, blocks * SF_LANES),
-               copy(s->maxwell, maxwell_size(f)),
+               copy(s->history, history_size(f)),
                copy(s->stiffness, n)};
     for (size_t block = 0; block < blocks; block++) {
-        sf_foam_batch b;
+        sf_law_batch b;
+        double *peak = &p.history[(block * (size_t)s->history_rows + SF_FOAM_PEAK) * SF_LANES];
         sf_domain_law(&f->model, &f->operators, s, (int64_t)block, &b);
         for (int l = 0; l < SF_LANES; l++)
-            if (b.energy[l] >= p.peak[block * SF_LANES + (size_t)l])
-                p.peak[block * SF_LANES + (size_t)l] = 0;
+            if (b.energy[l] >= peak[l])
+                peak[l] = 0;
     }
     return p;
 }
@@ -128,17 +128,15 @@ static probe probe_begin(fixture *f) {
 static void probe_end(probe *p) {
     free(p->d);
     free(p->gradient);
-    free(p->peak);
-    free(p->maxwell);
+    free(p->history);
     free(p->stiffness);
 }
 
 static void restore(const probe *p) {
     sf_state *s = &p->f->state;
-    size_t n = p->size / 3, blocks = (n + SF_LANES - 1) / SF_LANES;
+    size_t n = p->size / 3;
     memcpy(s->f, p->gradient, 9 * n * sizeof *s->f);
-    memcpy(s->peak, p->peak, blocks * SF_LANES * sizeof *s->peak);
-    memcpy(s->maxwell, p->maxwell, maxwell_size(p->f) * sizeof *s->maxwell);
+    memcpy(s->history, p->history, history_size(p->f) * sizeof *s->history);
 }
 
 /* Forces at the state's d after a step of dt from the kept state; the pairs keep their stiffness. */
@@ -184,7 +182,7 @@ static double differentiate(const probe *p, double dt, gsl_matrix *k) {
 
 /* Stiffness and viscosity matrices: with the viscous terms off, and what they add. */
 static double assemble(const probe *p, gsl_matrix *k, gsl_matrix *c) {
-    sf_foam *foam = &p->f->operators.foam;
+    sf_foam *foam = p->f->operators.law[0].numbers;
     double damp = foam->damp, kelvin = foam->kelvin;
     foam->damp = foam->kelvin = 0;
     double skew = differentiate(p, INSTANT, k);
@@ -419,11 +417,10 @@ static void linear_block(sf_study *s) {
 static double limit_of(const fixture *drop, fixture *twin, gsl_matrix *k, gsl_matrix *c) {
     const sf_state *from = &drop->state;
     sf_state *to = &twin->state;
-    size_t n = (size_t)drop->model.node_count, lanes = (n + SF_LANES - 1) / SF_LANES * SF_LANES;
+    size_t n = (size_t)drop->model.node_count;
     memcpy(to->d, from->d, 3 * n * sizeof *to->d);
     memcpy(to->f, from->f, 9 * n * sizeof *to->f);
-    memcpy(to->peak, from->peak, lanes * sizeof *to->peak);
-    memcpy(to->maxwell, from->maxwell, maxwell_size(twin) * sizeof *to->maxwell);
+    memcpy(to->history, from->history, history_size(twin) * sizeof *to->history);
     memcpy(to->stiffness, from->stiffness, n * sizeof *to->stiffness);
     probe p = probe_begin(twin);
     assemble(&p, k, c);
@@ -442,7 +439,7 @@ static void small_drop(sf_study *s) {
     build(PAD, VISCOUS, &f);
     build(PAD, VISCOUS, &twin);
     sf_state *st = &f.state;
-    f.operators.foam.kelvin = twin.operators.foam.kelvin = 0;
+    ((sf_foam *)f.operators.law[0].numbers)->kelvin = ((sf_foam *)twin.operators.law[0].numbers)->kelvin = 0;
     gsl_matrix *k = gsl_matrix_alloc(3 * (size_t)f.model.node_count, 3 * (size_t)f.model.node_count);
     gsl_matrix *c = gsl_matrix_alloc(k->size1, k->size1);
     while (st->time < 20e-3 && sf_step_evaluate(&f.model, &f.operators, st, &err) == SF_OK) {

@@ -53,7 +53,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .volume = m->volume,
                       .symmetry_factor = m->symmetry_factor,
                       .thickness = m->thickness,
-                      .density = m->foam.density,
+                      .density = sf_material_density(&m->material[0]),
                       .missile_mass = m->missile.mass,
                       .missile_speed = m->missile.speed,
                       .driven = sf_missile_is_driven(m),

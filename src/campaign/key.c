@@ -36,13 +36,9 @@ static uint64_t hash_values(uint64_t hash, const char *values) {
 }
 
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
-    const sf_foam_card *foam = &c->foam;
-    size_t points = (size_t)foam->curve_points * sizeof *foam->curve_strain,
-           curves = (size_t)foam->curve_count * sizeof *foam->curve_rate, motion = sf_case_motion_bytes(c);
+    size_t motion = sf_case_motion_bytes(c);
     *hash = hash_values(SF_HASH_START, c->parameters);
-    *hash = sf_hash_bytes(*hash, foam->curve_strain, points);
-    *hash = sf_hash_bytes(*hash, foam->curve_stress, points);
-    *hash = sf_hash_bytes(*hash, foam->curve_rate, curves);
+    *hash = sf_material_hash(*hash, &c->material);
     *hash = sf_hash_bytes(*hash, c->motion_time, motion);
     *hash = sf_hash_bytes(*hash, c->motion_displacement, motion);
     if (hash_file(hash, c->pad.path, err) != SF_OK ||

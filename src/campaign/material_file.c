@@ -8,8 +8,6 @@
 
 enum { PATH_SIZE = PATH_MAX };
 
-static const double NO_CUTOFF = 1e29; /* Pa; the case's "none" is beyond it */
-
 /* Every line of the text as a comment. */
 static void put_comment(FILE *file, const char *text) {
     while (*text) {
@@ -19,8 +17,8 @@ static void put_comment(FILE *file, const char *text) {
     }
 }
 
-static void curve_name(const char *name, const sf_foam_card *foam, int64_t index, char *out) {
-    if (foam->curve_count == 1)
+static void curve_name(const char *name, const sf_law_curves *curves, int64_t index, char *out) {
+    if (curves->curve_count == 1)
         snprintf(out, PATH_SIZE, "%s.csv", name);
     else
         snprintf(out, PATH_SIZE, "%s-%lld.csv", name, (long long)index + 1);
@@ -42,71 +40,91 @@ static FILE *open_file(const char *folder, const char *name, char *path, sf_erro
     return file;
 }
 
-static sf_status write_curve(const char *folder, const char *name, const sf_foam_card *foam, int64_t index,
+static sf_status write_curve(const char *folder, const char *name, const sf_law_curves *curves, int64_t index,
                              const sf_material_text *text, sf_error *err) {
     char file_name[PATH_SIZE], path[PATH_SIZE];
-    curve_name(name, foam, index, file_name);
+    curve_name(name, curves, index, file_name);
     FILE *file = open_file(folder, file_name, path, err);
     if (!file)
         return err->status;
     put_comment(file, text->title);
     fputs("# Engineering strain and nominal stress, positive in compression", file);
-    if (foam->curve_count > 1)
-        fprintf(file, ", at %.6g per second", foam->curve_rate[index]);
+    if (curves->curve_count > 1)
+        fprintf(file, ", at %.6g per second", curves->curve_rate[index]);
     fputs(".\nstrain,stress_kPa\n", file);
-    for (int64_t k = foam->curve_ptr[index]; k < foam->curve_ptr[index + 1]; k++)
-        fprintf(file, "%.12g,%.12g\n", foam->curve_strain[k], 1e-3 * foam->curve_stress[k]);
+    for (int64_t k = curves->curve_ptr[index]; k < curves->curve_ptr[index + 1]; k++)
+        fprintf(file, "%.12g,%.12g\n", curves->curve_strain[k], 1e-3 * curves->curve_stress[k]);
     return close_file(file, path, err);
 }
 
-static void put_curves(FILE *file, const char *name, const sf_foam_card *foam) {
+static void put_curves(FILE *file, const char *name, const sf_law_curves *curves) {
     char curve[PATH_SIZE];
-    if (foam->curve_count == 1) {
-        curve_name(name, foam, 0, curve);
+    if (curves->curve_count == 1) {
+        curve_name(name, curves, 0, curve);
         fprintf(file, "curve = \"%s\";\n", curve);
         return;
     }
     fputs("curves = (\n", file);
-    for (int64_t k = 0; k < foam->curve_count; k++) {
-        curve_name(name, foam, k, curve);
-        fprintf(file, "    { rate = \"%.12g 1/s\"; file = \"%s\"; }%s\n", foam->curve_rate[k], curve,
-                k + 1 < foam->curve_count ? "," : "");
+    for (int64_t k = 0; k < curves->curve_count; k++) {
+        curve_name(name, curves, k, curve);
+        fprintf(file, "    { rate = \"%.12g 1/s\"; file = \"%s\"; }%s\n", curves->curve_rate[k], curve,
+                k + 1 < curves->curve_count ? "," : "");
     }
-    fprintf(file, ");\nrate_filter_time = \"%.12g ms\";\n", 1e3 * foam->rate_filter_time);
+    fputs(");\n", file);
 }
 
-static void put_densification(FILE *file, const sf_foam_card *foam) {
-    int second_rule = foam->densification_limit < 1;
-    fprintf(file, "densification = { rule = \"%s\"; start = %.12g; exponent = %.12g; ",
-            second_rule ? "H2" : "H1", foam->densification_start, foam->densification_exponent);
-    if (second_rule)
-        fprintf(file, "limit = %.12g; ", foam->densification_limit);
-    fputs("};\n", file);
+static void put_choice(FILE *file, const sf_parameter *p, int64_t index) {
+    const char *word = p->words;
+    while (index-- > 0 && strchr(word, '|'))
+        word = strchr(word, '|') + 1;
+    fprintf(file, "%s = \"%.*s\";", p->key, (int)strcspn(word, "|"), word);
 }
 
-static void put_card(FILE *file, const char *name, const sf_foam_card *foam) {
-    fprintf(file, "density = \"%.12g kg/m3\";\n", foam->density);
-    fprintf(file, "E = \"%.12g MPa\";\n", 1e-6 * foam->modulus);
-    put_curves(file, name, foam);
-    put_densification(file, foam);
-    fprintf(file, "HU = %.12g;\nSHAPE = %.12g;\nDAMP = %.12g;\n", foam->hysteresis_hu, foam->hysteresis_shape,
-            foam->damp);
-    if (foam->damp_length > 0)
-        fprintf(file, "damp_length = \"%.12g mm\";\n", 1e3 * foam->damp_length);
-    if (foam->maxwell_modulus > 0)
-        fprintf(file, "ED = \"%.12g MPa\";\nBETA1 = \"%.12g 1/s\";\n", 1e-6 * foam->maxwell_modulus,
-                foam->maxwell_rate);
-    if (foam->kelvin_viscosity > 0)
-        fprintf(file, "eta = \"%.12g Pa s\";\n", foam->kelvin_viscosity);
-    if (foam->tension_cutoff < NO_CUTOFF)
-        fprintf(file, "tension_cutoff = \"%.12g kPa\";\n", 1e-3 * foam->tension_cutoff);
+static void put_value(FILE *file, const sf_parameter *p, double value) {
+    bool quantity = p->kind == SF_PARAMETER_QUANTITY;
+    if (quantity && p->words && value == p->word_value)
+        fprintf(file, "%s = \"%s\";", p->key, p->words);
+    else if (quantity)
+        fprintf(file, "%s = \"%.12g %s\";", p->key, p->unit ? value / p->unit_size : value,
+                p->unit ? p->unit : sf_quantity_unit(p->quantity));
+    else
+        fprintf(file, "%s = %.12g;", p->key, value);
 }
 
-sf_status sf_material_write(const char *folder, const char *name, const sf_foam_card *foam,
+/* One key of a group per line, those of a sub-group on one. */
+static void put_card(FILE *file, const char *name, const sf_material *m) {
+    const char *open = "material";
+    fprintf(file, "law = \"%s\";\n", m->law->name);
+    for (int k = 0; k < m->law->parameter_count; k++) {
+        const sf_parameter *p = &m->law->parameter[k];
+        const void *at = (const char *)m->card + p->offset;
+        const char *sub = strchr(p->group, '.');
+        if (p->kind == SF_PARAMETER_CURVES || !sf_parameter_acts(p, m->card))
+            continue;
+        if (strcmp(open, p->group) != 0) {
+            fputs(strchr(open, '.') ? "};\n" : "", file);
+            if (sub)
+                fprintf(file, "%s = { ", sub + 1);
+            open = p->group;
+        }
+        if (p->kind == SF_PARAMETER_CURVE)
+            put_curves(file, name, sf_material_curves(m));
+        else if (p->kind == SF_PARAMETER_CHOICE)
+            put_choice(file, p, *(const int64_t *)at);
+        else
+            put_value(file, p, *(const double *)at);
+        if (p->kind != SF_PARAMETER_CURVE)
+            fputs(sub ? " " : "\n", file);
+    }
+    fputs(strchr(open, '.') ? "};\n" : "", file);
+}
+
+sf_status sf_material_write(const char *folder, const char *name, const sf_material *material,
                             const sf_material_text *text, sf_error *err) {
     char file_name[PATH_SIZE], path[PATH_SIZE];
-    for (int64_t k = 0; k < foam->curve_count; k++)
-        if (write_curve(folder, name, foam, k, text, err) != SF_OK)
+    const sf_law_curves *curves = sf_material_curves(material);
+    for (int64_t k = 0; curves && k < curves->curve_count; k++)
+        if (write_curve(folder, name, curves, k, text, err) != SF_OK)
             return err->status;
     snprintf(file_name, sizeof file_name, "%s.cfg", name);
     FILE *file = open_file(folder, file_name, path, err);
@@ -118,6 +136,6 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_foam_
             "# For a case: the group  material: { @include \"%s.cfg\" }  or  softfall-pre --set "
             "material=@%s.cfg\n",
             name, name);
-    put_card(file, name, foam);
+    put_card(file, name, material);
     return close_file(file, path, err);
 }

@@ -6,7 +6,7 @@
 #ifndef SF_CAMPAIGN_MATERIAL_FILE_H
 #define SF_CAMPAIGN_MATERIAL_FILE_H
 
-#include "core/model.h"
+#include "core/material.h"
 
 typedef struct sf_material_text {
     const char *title;      /* first line of both files: what the material is */
@@ -15,7 +15,7 @@ typedef struct sf_material_text {
 
 /* Writes <folder>/<name>.cfg, and <name>.csv or, for several curves, <name>-1.csv and so on; files that are
  * there are replaced. Numbers are written so that reading them gives the card back to 12 digits. */
-sf_status sf_material_write(const char *folder, const char *name, const sf_foam_card *foam,
+sf_status sf_material_write(const char *folder, const char *name, const sf_material *material,
                             const sf_material_text *text, sf_error *err);
 
 #endif

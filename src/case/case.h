@@ -9,8 +9,6 @@
 #include "core/sink.h"
 #include <stdio.h>
 
-enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
-
 enum {
     SF_CASE_NAME_SIZE = 128,
     SF_CASE_MAX_GROUPS = 16,
@@ -51,10 +49,9 @@ typedef struct sf_case {
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
     int shape_rule;               /* 0 "auto": sphere if the surface is one, 1 "sphere", 2 "surface" */
-    int densification_rule;       /* SF_DENSIFICATION_*; its numbers are in `foam` */
     double support_ratio;         /* R/h */
     double condition_limit;       /* of the moment matrix */
-    sf_foam_card foam;            /* curve arrays owned by the case until moved into a model */
+    sf_material material;         /* owned by the case until moved into a model */
     sf_missile_card missile_card; /* sphere_* are left zero: they come from the geometry */
     int64_t motion_count;         /* points of the missile's prescribed motion; 0 = it is free */
     double *motion_time;          /* [motion_count] s; owned until moved into a model, like the next */

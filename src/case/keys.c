@@ -2,6 +2,7 @@
 #include "case/keys.h"
 
 #include "core/motion.h"
+#include <assert.h>
 #include <string.h>
 
 #define AT(member) .offset = offsetof(sf_case, member)
@@ -11,9 +12,6 @@
 #define QUOTED(constant, name, ...) "\"" #name "\""
 #define FIELD_WORDS SF_FRAME_FIELD_LIST(WORD, "|")
 #define ALL_FIELDS "[" SF_FRAME_FIELD_LIST(QUOTED, ", ") "]"
-
-/* A tensile strength that no foam reaches: finite, so that it can be stored and compared. */
-#define NO_CUTOFF 1e30
 
 /* The bounds are those of sf_model_check, so that the sentence about a value names its place in the case. */
 /* clang-format off */
@@ -40,44 +38,8 @@ static const sf_key keys[] = {
     {"pad", "symmetry", SF_KEY_NAMES, "[\"symmetry_x\", \"symmetry_y\"]", AT(symmetry_group),
      "physical surfaces that are symmetry planes; those of the default may be absent from the geometry",
      .count_offset = offsetof(sf_case, symmetry_count)},
-    /* material */
-    {"material", "density", SF_KEY_QUANTITY, NULL, AT(foam.density),
-     "of the undeformed foam", .quantity = SF_DENSITY, .low = 1e-3, .high = 1e5},
-    {"material", "E", SF_KEY_QUANTITY, NULL, AT(foam.modulus),
-     "modulus in tension, and the least stiffness of the stabilisation", .quantity = SF_PRESSURE, .low = 1.0, .high = 1e12},
-    {"material", "curve", SF_KEY_CURVE, "", AT(foam),
-     "compression curve, a CSV file (see below); relative to the file that names it"},
-    {"material", "curves", SF_KEY_CURVES, "", AT(foam),
-     "instead of `curve`: curves at several strain rates, ascending: ( { rate = \"0.0017 1/s\"; file = \"slow.csv\"; }, ... )"},
-    {"material", "HU", SF_KEY_NUMBER, "1.0", AT(foam.hysteresis_hu),
-     "hysteretic unloading factor; 1 = no hysteresis", .low = 1e-6, .high = 1.0},
-    {"material", "SHAPE", SF_KEY_NUMBER, "1.0", AT(foam.hysteresis_shape),
-     "shape of unloading", .low = 1e-3, .high = 100.0},
-    {"material", "DAMP", SF_KEY_NUMBER, "0.0", AT(foam.damp),
-     "viscous coefficient: stress DAMP x density x wave speed x length x strain rate", .high = 10.0},
-    {"material", "damp_length", SF_KEY_QUANTITY, "\"spacing\"", AT(foam.damp_length),
-     "the length in DAMP: \"spacing\" (of each node) or a fixed length", .quantity = SF_LENGTH, POSITIVE, .high = 1e3,
-     .words = "spacing", .word_value = 0.0},
-    {"material", "ED", SF_KEY_QUANTITY, "\"0 Pa\"", AT(foam.maxwell_modulus),
-     "modulus of the Maxwell branch; 0 = none", .quantity = SF_PRESSURE, .high = 1e12},
-    {"material", "BETA1", SF_KEY_QUANTITY, "\"5000 1/s\"", AT(foam.maxwell_rate),
-     "decay rate of the Maxwell branch; must be given when ED is", .quantity = SF_RATE, .low = 1e-6, .high = 1e12},
-    {"material", "eta", SF_KEY_QUANTITY, "\"0 Pa s\"", AT(foam.kelvin_viscosity),
-     "Kelvin viscosity; bounds the time step", .quantity = SF_VISCOSITY, .high = 1e9},
-    {"material", "tension_cutoff", SF_KEY_QUANTITY, "\"none\"", AT(foam.tension_cutoff),
-     "largest tensile nominal stress, or \"none\"", .quantity = SF_PRESSURE, POSITIVE, .high = 1e12,
-     .words = "none", .word_value = NO_CUTOFF},
-    {"material", "rate_filter_time", SF_KEY_QUANTITY, "\"0.1 ms\"", AT(foam.rate_filter_time),
-     "time constant of the strain rate that chooses among `curves`", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},
-    {"material.densification", "rule", SF_KEY_CHOICE, "\"H1\"", AT(densification_rule),
-     "law beyond the table: H1: A + B/(1 - strain)^n; H2: A + B/(limit - strain)^m; value and slope continuous",
-     .words = "H1|H2"},
-    {"material.densification", "start", SF_KEY_NUMBER, "0.0", AT(foam.densification_start),
-     "strain from which the law replaces the table; 0 = the table's end", .high = 0.999},
-    {"material.densification", "exponent", SF_KEY_NUMBER, "0.0", AT(foam.densification_exponent),
-     "n of H1 (0 = the one that makes A vanish) or m of H2 (required)", .high = 100.0},
-    {"material.densification", "limit", SF_KEY_NUMBER, "1.0", AT(foam.densification_limit),
-     "strain at which the stress of H2 becomes infinite (required); 1 for H1", .low = 0.01, .high = 1.0},
+    /* material: the law; its parameters follow (solver/material) */
+    {"material", "law", SF_KEY_LAW, "", AT(material.law), "material law; its parameters follow"},
     /* missile */
     {"missile", "mass", SF_KEY_QUANTITY, "", AT(missile_card.mass),
      "of the whole missile, also in a quarter model; required without `motion`", .quantity = SF_MASS, .low = 1e-9, .high = 1e9},
@@ -127,17 +89,42 @@ static const sf_key keys[] = {
 };
 /* clang-format on */
 
-_Static_assert(sizeof keys / sizeof *keys <= SF_KEY_MAX, "sf_case_reader.given is too short");
-
-const sf_key *sf_case_keys(size_t *count) {
-    *count = sizeof keys / sizeof *keys;
-    return keys;
+static sf_key key_of(const sf_parameter *p) {
+    static const sf_key_kind kind[] = {[SF_PARAMETER_NUMBER] = SF_KEY_NUMBER,
+                                       [SF_PARAMETER_QUANTITY] = SF_KEY_QUANTITY,
+                                       [SF_PARAMETER_CHOICE] = SF_KEY_CHOICE,
+                                       [SF_PARAMETER_CURVE] = SF_KEY_CURVE,
+                                       [SF_PARAMETER_CURVES] = SF_KEY_CURVES};
+    return (sf_key){.group = p->group,
+                    .name = p->key,
+                    .kind = kind[p->kind],
+                    .fallback = p->fallback,
+                    .offset = p->offset,
+                    .in_card = true,
+                    .description = p->meaning,
+                    .quantity = p->quantity,
+                    .low = p->low,
+                    .high = p->high,
+                    .low_open = p->low_open,
+                    .words = p->words,
+                    .word_value = p->word_value};
 }
 
-const sf_key *sf_case_find_key(const char *group, const char *name) {
-    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
-        if (strcmp(keys[k].group, group) == 0 && strcmp(keys[k].name, name) == 0)
-            return &keys[k];
+void sf_case_list_keys(const sf_law *law, sf_key_list *out) {
+    out->count = 0;
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+        out->key[out->count++] = keys[k];
+        for (int p = 0; keys[k].kind == SF_KEY_LAW && p < law->parameter_count; p++) {
+            assert(out->count + sizeof keys / sizeof *keys - k < SF_KEY_MAX);
+            out->key[out->count++] = key_of(&law->parameter[p]);
+        }
+    }
+}
+
+const sf_key *sf_case_find_key(const sf_key_list *list, const char *group, const char *name) {
+    for (size_t k = 0; k < list->count; k++)
+        if (strcmp(list->key[k].group, group) == 0 && strcmp(list->key[k].name, name) == 0)
+            return &list->key[k];
     return NULL;
 }
 
@@ -154,24 +141,25 @@ static size_t next_component(const char *outer, const char *inner, const char **
     return strcspn(inner + skip, ".");
 }
 
-bool sf_case_is_group(const char *group) {
+bool sf_case_is_group(const sf_key_list *list, const char *group) {
     size_t length = strlen(group);
-    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
-        if (strncmp(keys[k].group, group, length) == 0 &&
-            (keys[k].group[length] == '\0' || keys[k].group[length] == '.'))
+    for (size_t k = 0; k < list->count; k++)
+        if (strncmp(list->key[k].group, group, length) == 0 &&
+            (list->key[k].group[length] == '\0' || list->key[k].group[length] == '.'))
             return true;
     return false;
 }
 
 /* Calls `visit` once for each key and sub-group directly in `group`. */
-static void visit_names(const char *group, void (*visit)(void *, const char *, size_t), void *data) {
+static void visit_names(const sf_key_list *list, const char *group,
+                        void (*visit)(void *, const char *, size_t), void *data) {
     const char *last = NULL;
     size_t last_length = 0;
-    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
-        const char *name = keys[k].name;
+    for (size_t k = 0; k < list->count; k++) {
+        const char *name = list->key[k].name;
         size_t length = strlen(name);
-        if (strcmp(keys[k].group, group) != 0)
-            length = next_component(group, keys[k].group, &name);
+        if (strcmp(list->key[k].group, group) != 0)
+            length = next_component(group, list->key[k].group, &name);
         if (length == 0 || (last && length == last_length && strncmp(last, name, length) == 0))
             continue;
         visit(data, name, length);
@@ -193,10 +181,10 @@ static void add_name(void *data, const char *name, size_t length) {
                                    list->used ? ", " : "", (int)length, name);
 }
 
-void sf_case_list_names(const char *group, char *out, size_t size) {
+void sf_case_list_names(const sf_key_list *keys_of, const char *group, char *out, size_t size) {
     text_list list = {out, size, 0};
     out[0] = '\0';
-    visit_names(group, add_name, &list);
+    visit_names(keys_of, group, add_name, &list);
 }
 
 enum { NEAR_MAX = 40, NEAR_EDITS = 2 };
@@ -236,9 +224,10 @@ static void compare_name(void *data, const char *name, size_t length) {
         *best = (nearest){best->wanted, name, length, distance};
 }
 
-const char *sf_case_near_name(const char *group, const char *name, char *out, size_t size) {
+const char *sf_case_near_name(const sf_key_list *list, const char *group, const char *name, char *out,
+                              size_t size) {
     nearest best = {name, NULL, 0, NEAR_EDITS + 1};
-    visit_names(group, compare_name, &best);
+    visit_names(list, group, compare_name, &best);
     if (!best.name)
         return NULL;
     snprintf(out, size, "%.*s", (int)best.length, best.name);

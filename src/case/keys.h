@@ -2,7 +2,8 @@
 /* The table of the case file's keys. Internal to src/case.
  *
  * One row per key drives reading, checking, the list of unknown keys, the used-parameters listing, `--keys`
- * and docs/case.md. Defaults are texts in libconfig syntax and pass through the same reader as given values.
+ * and docs/case.md. The rows of a material are those of its law (core/law.h). Defaults are texts in libconfig
+ * syntax and pass through the same reader as given values.
  */
 #ifndef SF_CASE_KEYS_H
 #define SF_CASE_KEYS_H
@@ -26,7 +27,8 @@ typedef enum sf_key_kind {
     SF_KEY_VECTOR,     /* [0.0, 0.0, -1.0]: double[3] */
     SF_KEY_PATH,       /* "file": char *, relative to the file that holds the key; must be readable */
     SF_KEY_PARAMETERS, /* { side = 400.0; }: sf_geo_source */
-    SF_KEY_CURVE,      /* "curve.csv": the foam card's curve arrays */
+    SF_KEY_LAW,        /* the name of a law: sf_case.material */
+    SF_KEY_CURVE,      /* "curve.csv": the card's curves */
     SF_KEY_MOTION,     /* "motion.csv": the motion arrays */
     SF_KEY_CURVES,     /* ( { rate = "1 1/s"; file = "curve.csv"; }, ... ): likewise */
 } sf_key_kind;
@@ -36,7 +38,7 @@ typedef struct sf_key {
     const char *name;
     sf_key_kind kind;
     const char *fallback;    /* default in libconfig syntax; NULL: required; "": may be absent */
-    size_t offset;           /* in sf_case */
+    size_t offset;           /* in sf_case, or in the card of its material if in_card */
     const char *description; /* one phrase */
     sf_quantity quantity;    /* SF_KEY_QUANTITY */
     double low, high;        /* bounds in SI, inclusive; high 0 = none */
@@ -44,18 +46,26 @@ typedef struct sf_key {
     const char *words;       /* see sf_key_kind; NULL = none */
     double word_value;
     size_t count_offset; /* SF_KEY_NAMES, SF_KEY_TIMES */
+    bool in_card;        /* a parameter of the law */
 } sf_key;
 
-enum { SF_KEY_MAX = 64 };
+enum { SF_KEY_MAX = 128 };
 
-const sf_key *sf_case_keys(size_t *count);
+typedef struct sf_key_list {
+    sf_key key[SF_KEY_MAX];
+    size_t count;
+} sf_key_list;
+
+/* The keys of a case with this law. */
+void sf_case_list_keys(const sf_law *law, sf_key_list *list);
 /* The row of group.name; NULL if there is none. */
-const sf_key *sf_case_find_key(const char *group, const char *name);
+const sf_key *sf_case_find_key(const sf_key_list *list, const char *group, const char *name);
 /* True if `group` is, or begins, the group of some key. */
-bool sf_case_is_group(const char *group);
+bool sf_case_is_group(const sf_key_list *list, const char *group);
 /* Writes "name, name, ..." of the keys and sub-groups of a group ("" = the groups). */
-void sf_case_list_names(const char *group, char *out, size_t size);
+void sf_case_list_names(const sf_key_list *list, const char *group, char *out, size_t size);
 /* The existing name nearest to `name` within two edits; NULL if none is near. */
-const char *sf_case_near_name(const char *group, const char *name, char *out, size_t size);
+const char *sf_case_near_name(const sf_key_list *list, const char *group, const char *name, char *out,
+                              size_t size);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The keys material.curve and material.curves: compression curves into the foam card. */
+/* The keys material.curve and material.curves: compression curves into the card. */
 #include "case/material.h"
 
 #include "case/curve.h"
@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Appends a curve to the card's lists. */
-static sf_status add_curve(sf_foam_card *foam, double rate, const sf_case_curve *curve, sf_error *err) {
-    size_t curves = (size_t)foam->curve_count, points = (size_t)foam->curve_points,
+static sf_status add_curve(sf_law_curves *card, double rate, const sf_case_curve *curve, sf_error *err) {
+    size_t curves = (size_t)card->curve_count, points = (size_t)card->curve_points,
            more = (size_t)curve->count;
     double *rates = sf_alloc(err, curves + 1, sizeof *rates, "curve rates");
     int64_t *ptr = sf_alloc(err, curves + 2, sizeof *ptr, "curve list");
@@ -23,25 +23,25 @@ static sf_status add_curve(sf_foam_card *foam, double rate, const sf_case_curve 
         return err->status;
     }
     if (curves > 0) {
-        memcpy(rates, foam->curve_rate, curves * sizeof *rates);
-        memcpy(ptr, foam->curve_ptr, (curves + 1) * sizeof *ptr);
-        memcpy(strain, foam->curve_strain, points * sizeof *strain);
-        memcpy(stress, foam->curve_stress, points * sizeof *stress);
-        free(foam->curve_rate);
-        free(foam->curve_ptr);
-        free(foam->curve_strain);
-        free(foam->curve_stress);
+        memcpy(rates, card->curve_rate, curves * sizeof *rates);
+        memcpy(ptr, card->curve_ptr, (curves + 1) * sizeof *ptr);
+        memcpy(strain, card->curve_strain, points * sizeof *strain);
+        memcpy(stress, card->curve_stress, points * sizeof *stress);
+        free(card->curve_rate);
+        free(card->curve_ptr);
+        free(card->curve_strain);
+        free(card->curve_stress);
     }
     memcpy(strain + points, curve->strain, more * sizeof *strain);
     memcpy(stress + points, curve->stress, more * sizeof *stress);
     rates[curves] = rate;
     ptr[curves + 1] = (int64_t)(points + more);
-    foam->curve_rate = rates;
-    foam->curve_ptr = ptr;
-    foam->curve_strain = strain;
-    foam->curve_stress = stress;
-    foam->curve_count++;
-    foam->curve_points += curve->count;
+    card->curve_rate = rates;
+    card->curve_ptr = ptr;
+    card->curve_strain = strain;
+    card->curve_stress = stress;
+    card->curve_count++;
+    card->curve_points += curve->count;
     return SF_OK;
 }
 
@@ -64,7 +64,7 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
         if (curve.extended)
             sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
                          path, curve.strain[1]);
-        status = add_curve(&reader->out->foam, rate, &curve, err);
+        status = add_curve(sf_material_curves(&reader->out->material), rate, &curve, err);
     }
     sf_case_curve_free(&curve);
     free(path);
@@ -74,7 +74,7 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
 /* One { rate = "..."; file = "..."; } of material.curves. */
 static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    const sf_foam_card *foam = &reader->out->foam;
+    const sf_law_curves *card = sf_material_curves(&reader->out->material);
     const config_setting_t *rate =
         config_setting_is_group(entry) ? config_setting_get_member(entry, "rate") : NULL;
     const config_setting_t *file =
@@ -94,7 +94,7 @@ static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entr
     if (sf_units_parse(reader->units, text, SF_RATE, &value, &inner) != SF_OK)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: material.curves: %s", sf_case_where(reader, rate, where),
                        inner.text);
-    double last = foam->curve_count > 0 ? foam->curve_rate[foam->curve_count - 1] : 0.0;
+    double last = card->curve_count > 0 ? card->curve_rate[card->curve_count - 1] : 0.0;
     if (!(value > last))
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: material.curves: the rate %g s-1 is not above %g s-1 before it; rates must be "
@@ -103,15 +103,15 @@ static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entr
     return read_file(reader, file, value, err);
 }
 
-static void describe(const sf_foam_card *foam, char *detail, size_t size) {
-    snprintf(detail, size, "%lld point%s, strain to %g", (long long)foam->curve_points,
-             foam->curve_points == 1 ? "" : "s", foam->curve_strain[foam->curve_points - 1]);
+static void describe(const sf_law_curves *card, char *detail, size_t size) {
+    snprintf(detail, size, "%lld point%s, strain to %g", (long long)card->curve_points,
+             card->curve_points == 1 ? "" : "s", card->curve_strain[card->curve_points - 1]);
 }
 
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    if (reader->out->foam.curve_count > 0)
+    if (sf_material_curves(&reader->out->material)->curve_count > 0)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: material has both curve and curves; only one of them may be given",
                        sf_case_where(reader, setting, where));
@@ -128,6 +128,6 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
             if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), err) != SF_OK)
                 return err->status;
     }
-    describe(&reader->out->foam, detail, size);
+    describe(sf_material_curves(&reader->out->material), detail, size);
     return SF_OK;
 }

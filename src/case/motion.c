@@ -91,7 +91,8 @@ sf_status sf_case_check_motion(const sf_case_reader *reader, sf_error *err) {
     if (c->motion_count == 0) {
         for (int k = 0; k < 2; k++)
             if (!sf_case_is_given(reader, "missile", replaced[k]))
-                return sf_case_missing_key(reader, sf_case_find_key("missile", replaced[k]), err);
+                return sf_case_missing_key(reader, sf_case_find_key(&reader->keys, "missile", replaced[k]),
+                                           err);
         return SF_OK;
     }
     for (int k = 0; k < 3; k++) {

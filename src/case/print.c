@@ -2,6 +2,7 @@
 #include "case/print.h"
 
 #include "case/keys.h"
+#include "solver/material/law.h"
 #include <stdbool.h>
 #include <string.h>
 
@@ -70,6 +71,11 @@ static void print_kind(FILE *file, const sf_key *key) {
         [SF_KEY_MOTION] = "file",
         [SF_KEY_CURVES] = "list of { rate; file; }",
     };
+    if (key->kind == SF_KEY_LAW) {
+        for (int k = 0; sf_law_get(k); k++)
+            fprintf(file, "%s%s", k ? ", " : "", sf_law_get(k)->name);
+        return;
+    }
     if (key->kind == SF_KEY_CHOICE || key->kind == SF_KEY_FIELDS) {
         fputs(key->kind == SF_KEY_FIELDS ? "array of " : "", file);
         for (const char *w = key->words; *w; w++)
@@ -92,27 +98,42 @@ static void print_kind(FILE *file, const sf_key *key) {
                 key->kind == SF_KEY_QUANTITY ? sf_quantity_unit(key->quantity) : "");
 }
 
-void sf_case_print_keys(FILE *file) {
-    size_t count;
-    const sf_key *keys = sf_case_keys(&count);
+static void print_row(FILE *file, const sf_key *key) {
+    fprintf(file, "| `%s` | ", key->name);
+    print_kind(file, key);
+    if (!key->fallback)
+        fputs(" | required", file);
+    else if (key->kind == SF_KEY_LAW)
+        fprintf(file, " | `\"%s\"`", sf_law_get(0)->name);
+    else if (!*key->fallback)
+        fputs(" | absent", file);
+    else if (key->kind == SF_KEY_FIELDS)
+        fputs(" | all", file);
+    else
+        fprintf(file, " | `%s`", key->fallback);
+    fprintf(file, " | %s |\n", key->description);
+}
+
+/* `law`: of a law that is not the default, only what it adds; else NULL. */
+static void print_list(FILE *file, const sf_key_list *list, const char *law) {
     const char *group = "";
-    for (size_t k = 0; k < count; k++) {
-        const sf_key *key = &keys[k];
+    for (size_t k = 0; k < list->count; k++) {
+        const sf_key *key = &list->key[k];
+        if (law && !key->in_card)
+            continue;
         if (strcmp(group, key->group) != 0) {
             group = key->group;
-            fprintf(file, "%s### %s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
-                    k ? "\n" : "", group);
+            fprintf(file, "%s### %s%s%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
+                    k ? "\n" : "", group, law ? " of law " : "", law ? law : "");
         }
-        fprintf(file, "| `%s` | ", key->name);
-        print_kind(file, key);
-        if (!key->fallback)
-            fputs(" | required", file);
-        else if (!*key->fallback)
-            fputs(" | absent", file);
-        else if (key->kind == SF_KEY_FIELDS)
-            fputs(" | all", file);
-        else
-            fprintf(file, " | `%s`", key->fallback);
-        fprintf(file, " | %s |\n", key->description);
+        print_row(file, key);
+    }
+}
+
+void sf_case_print_keys(FILE *file) {
+    sf_key_list list;
+    for (int k = 0; sf_law_get(k); k++) {
+        sf_case_list_keys(sf_law_get(k), &list);
+        print_list(file, &list, k ? sf_law_get(k)->name : NULL);
     }
 }

@@ -10,6 +10,7 @@
 #include "case/value.h"
 
 #include "core/mat3.h"
+#include "solver/material/law.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +21,8 @@ static sf_status unknown_name(const sf_case_reader *reader, const config_setting
                               const char *group, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE], names[400], near[64];
     const char *name = config_setting_name(setting);
-    sf_case_list_names(group, names, sizeof names);
-    const char *hint = sf_case_near_name(group, name, near, sizeof near);
+    sf_case_list_names(&reader->keys, group, names, sizeof names);
+    const char *hint = sf_case_near_name(&reader->keys, group, name, near, sizeof near);
     char meant[96] = "";
     if (hint)
         snprintf(meant, sizeof meant, " (did you mean \"%s\"?)", hint);
@@ -42,9 +43,9 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
         const char *name = config_setting_name(item);
         char inner[SF_CASE_GROUP_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
-        if (sf_case_find_key(group, name))
+        if (sf_case_find_key(&reader->keys, group, name))
             continue;
-        if (length >= (int)sizeof inner || !sf_case_is_group(inner))
+        if (length >= (int)sizeof inner || !sf_case_is_group(&reader->keys, inner))
             return unknown_name(reader, item, group, err);
         if (!config_setting_is_group(item)) {
             char where[SF_CASE_WHERE_SIZE];
@@ -94,14 +95,14 @@ static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_erro
 }
 
 static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
-    size_t count;
-    const sf_key *keys = sf_case_keys(&count);
-    for (size_t k = 0; k < count; k++) {
-        const sf_key *key = &keys[k];
+    for (size_t k = 0; k < reader->keys.count; k++) {
+        const sf_key *key = &reader->keys.key[k];
         const config_setting_t *group = config_lookup(&reader->config, key->group);
         const config_setting_t *setting = group ? config_setting_get_member(group, key->name) : NULL;
         char detail[128] = "-";
         reader->given[k] = setting != NULL;
+        if (key->kind == SF_KEY_LAW)
+            snprintf(detail, sizeof detail, "%s", reader->out->material.law->name);
         if (setting) {
             if (sf_case_read_value(reader, key, setting, detail, sizeof detail, err) != SF_OK)
                 return err->status;
@@ -117,45 +118,20 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status check_densification(const sf_case_reader *reader, sf_error *err) {
+static bool key_is_given(const void *reader, const char *group, const char *key) {
+    return sf_case_is_given(reader, group, key);
+}
+
+/* The law's rules. */
+static sf_status check_material(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    const sf_foam_card *foam = &c->foam;
-    double end = 1.0; /* the law takes over from every curve, so the shortest table bounds it */
-    double largest = 0.0;
-    for (int64_t k = 0; k < foam->curve_count; k++) {
-        end = fmin(end, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
-        largest = fmax(largest, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
-    }
-    if (foam->densification_start > end)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: material.densification.start: %g lies beyond the end of the compression table (%g)",
-            sf_case_where_is(reader, "material.densification.start", where), foam->densification_start, end);
-    if (c->densification_rule == SF_DENSIFICATION_H1) {
-        if (foam->densification_limit != 1.0)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: material.densification.limit: %g belongs to rule H2; the limit of H1 is 1",
-                           sf_case_where_is(reader, "material.densification.limit", where),
-                           foam->densification_limit);
+    const sf_material *m = &reader->out->material;
+    const sf_given given = {key_is_given, reader};
+    const char *place = "material";
+    sf_error inner = SF_ERROR_INIT;
+    if (!m->law->check_keys || m->law->check_keys(m->card, &given, &place, &inner) == SF_OK)
         return SF_OK;
-    }
-    static const char *const needed[] = {"limit", "exponent"};
-    for (int i = 0; i < 2; i++)
-        if (!sf_case_is_given(reader, "material.densification", needed[i]))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: material.densification.%s is missing: rule H2 needs it",
-                           sf_case_where_is(reader, "material.densification", where), needed[i]);
-    if (!(foam->densification_exponent > 0.0))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: material.densification.exponent: rule H2 needs one above 0",
-                       sf_case_where_is(reader, "material.densification.exponent", where));
-    double start = foam->densification_start > 0.0 ? foam->densification_start : largest;
-    if (foam->densification_limit <= start)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: material.densification.limit: %g is not above the strain %g at which the law starts",
-            sf_case_where_is(reader, "material.densification.limit", where), foam->densification_limit,
-            start);
-    return SF_OK;
+    return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), inner.text);
 }
 
 static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
@@ -218,17 +194,8 @@ static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
 static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
-    if (c->foam.curve_count == 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: material.curve is missing: the compression curve's CSV file (or curves: several of them)",
-            sf_case_where_is(reader, "material", where));
-    if (sf_case_is_given(reader, "material", "ED") && c->foam.maxwell_modulus > 0.0 &&
-        !sf_case_is_given(reader, "material", "BETA1"))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for "
-                       "example BETA1 = \"5000 1/s\"",
-                       sf_case_where_is(reader, "material.ED", where));
+    if (check_material(reader, err) != SF_OK)
+        return err->status;
     if (!c->missile.path && c->missile.parameter_count > 0)
         return SF_FAIL(
             err, SF_ERR_INPUT,
@@ -238,7 +205,7 @@ static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
                        sf_case_where_is(reader, "pad.fixed", where));
-    if (check_densification(reader, err) != SF_OK || check_direction(reader, err) != SF_OK)
+    if (check_direction(reader, err) != SF_OK)
         return err->status;
     return sf_case_check_motion(reader, err);
 }
@@ -268,6 +235,24 @@ static sf_status check_complete(const sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
+/* The law, on which the other keys of the material depend, and its card. */
+static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
+    const config_setting_t *setting = config_lookup(&reader->config, "material.law");
+    const char *name = setting ? config_setting_get_string(setting) : NULL;
+    const sf_law *law = setting ? (name ? sf_law_find(name) : NULL) : sf_law_get(0);
+    if (!law) {
+        char where[SF_CASE_WHERE_SIZE], known[256] = "";
+        size_t used = 0;
+        for (int k = 0; sf_law_get(k) && used < sizeof known; k++)
+            used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", k ? ", " : "",
+                                     sf_law_get(k)->name);
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: material.law: \"%.80s\" is none of: %s",
+                       sf_case_where(reader, setting, where), name ? name : "", known);
+    }
+    sf_case_list_keys(law, &reader->keys);
+    return sf_material_create(law, &reader->out->material, err);
+}
+
 static sf_status parse_text(sf_case_reader *reader, int count, const char *const *overrides, sf_error *err) {
     config_t *config = &reader->config;
     if (!config_read_string(config, reader->out->text)) {
@@ -278,6 +263,8 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
     for (int i = 0; i < count; i++)
         if (sf_case_override(config, overrides[i], err) != SF_OK)
             return err->status;
+    if (choose_law(reader, err) != SF_OK)
+        return err->status;
     return check_names(reader, config_root_setting(config), "", err);
 }
 
@@ -320,10 +307,7 @@ void sf_case_free(sf_case *c) {
     free(c->parameters);
     free(c->pad.path);
     free(c->missile.path);
-    free(c->foam.curve_rate);
-    free(c->foam.curve_ptr);
-    free(c->foam.curve_strain);
-    free(c->foam.curve_stress);
+    sf_material_free(&c->material);
     free(c->motion_time);
     free(c->motion_displacement);
     memset(c, 0, sizeof *c);

@@ -40,9 +40,7 @@ char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *sett
 }
 
 bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name) {
-    size_t count;
-    const sf_key *keys = sf_case_keys(&count);
-    return reader->given[sf_case_find_key(group, name) - keys];
+    return reader->given[sf_case_find_key(&reader->keys, group, name) - reader->keys.key];
 }
 
 const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out) {

@@ -19,7 +19,8 @@ typedef struct sf_case_reader {
     sf_case *out;
     config_t config;
     sf_case_source source;  /* of the settings without a hook */
-    bool given[SF_KEY_MAX]; /* per row of the table */
+    sf_key_list keys;       /* of the case's law */
+    bool given[SF_KEY_MAX]; /* per row of `keys` */
     const sf_sink *sink;    /* borrowed */
     FILE *listing;          /* the parameters text under construction */
 } sf_case_reader;

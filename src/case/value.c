@@ -81,9 +81,14 @@ static sf_status check_bounds(const sf_case_reader *reader, const sf_key *key,
                    *unit ? " " : "", unit, upper);
 }
 
+/* Where the key's value goes. */
+static void *place_of(const sf_case_reader *reader, const sf_key *key) {
+    return (key->in_card ? (char *)reader->out->material.card : (char *)reader->out) + key->offset;
+}
+
 static sf_status read_quantity(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                                char *detail, size_t size, sf_error *err) {
-    double *value = (double *)((char *)reader->out + key->offset);
+    double *value = place_of(reader, key);
     const char *unit = sf_quantity_unit(key->quantity);
     const char *text = config_setting_get_string(setting);
     if (!text)
@@ -123,7 +128,7 @@ static sf_status read_unit(sf_case_reader *reader, const sf_key *key, const conf
 
 static sf_status read_number(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                              char *detail, size_t size, sf_error *err) {
-    double *value = (double *)((char *)reader->out + key->offset);
+    double *value = place_of(reader, key);
     if (!config_setting_is_number(setting))
         return FAIL_AT(reader, key, setting, err, "the value is %s; expected a plain number without a unit",
                        type_phrase(setting));
@@ -229,9 +234,15 @@ static sf_status find_word(sf_case_reader *reader, const sf_key *key, const conf
 
 static sf_status read_choice(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                              char *detail, size_t size, sf_error *err) {
-    int *value = (int *)((char *)reader->out + key->offset);
+    int index = 0;
     snprintf(detail, size, "-");
-    return find_word(reader, key, setting, value, err);
+    if (find_word(reader, key, setting, &index, err) != SF_OK)
+        return err->status;
+    if (key->in_card)
+        *(int64_t *)place_of(reader, key) = index;
+    else
+        *(int *)place_of(reader, key) = index;
+    return SF_OK;
 }
 
 static sf_status read_fields(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
@@ -376,6 +387,8 @@ sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const co
         return read_parameters(reader, key, setting, detail, size, err);
     case SF_KEY_MOTION:
         return sf_case_read_motion(reader, setting, detail, size, err);
+    case SF_KEY_LAW: /* taken before all others */
+        return SF_OK;
     case SF_KEY_CURVE:
     case SF_KEY_CURVES:
         return sf_case_read_curves(reader, setting, detail, size, err);

@@ -22,13 +22,6 @@ typedef struct setting {
     double table_end;
 } setting;
 
-static double find_table_end(const sf_foam_card *foam) {
-    double end = 1;
-    for (int64_t k = 0; k < foam->curve_count; k++)
-        end = fmin(end, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
-    return foam->densification_start > 0 ? fmin(end, foam->densification_start) : end;
-}
-
 static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *err) {
     sf_case c;
     char *material = NULL;
@@ -43,7 +36,8 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
     for (int k = 0; k < o->override_count; k++)
         list[count++] = o->overrides[k];
     if (sf_case_read(o->case_path, count, list, &sink, &c, err) == SF_OK) {
-        *out = (setting){c.missile_card.speed, c.missile_card.mass, find_table_end(&c.foam)};
+        *out =
+            (setting){c.missile_card.speed, c.missile_card.mass, c.material.law->data_end(c.material.card)};
         if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_FAIL(err, SF_ERR_INPUT,
                     "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");

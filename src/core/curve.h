@@ -11,8 +11,8 @@
 #define SF_CORE_CURVE_H
 
 #include "core/error.h"
+#include "core/foam_card.h"
 #include "core/lanes.h"
-#include "core/model.h"
 
 enum { SF_CURVE_INTERVALS = 1024 };
 

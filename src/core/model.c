@@ -26,6 +26,7 @@ static const sf_model_field fields[] = {
     ARRAY(mass, F64, node_count, 0, 1, "/cloud/mass", "kg", "lumped mass"),
     ARRAY(spacing, F64, node_count, 0, 1, "/cloud/spacing", "m", "nodal spacing h"),
     ARRAY(support, F64, node_count, 0, 1, "/cloud/support", "m", "kernel radius R"),
+    ARRAY(node_material, U8, node_count, 0, 1, "/cloud/material", "1", "number of the material, ascending"),
     SCALAR(domain_nnz, I64, "/domain/count", "1", "number of (domain, node) pairs"),
     ARRAY(domain_ptr, I64, node_count, 1, 1, "/domain/ptr", "1", "row starts of the smoothed gradient"),
     ARRAY(domain_node, I32, domain_nnz, 0, 1, "/domain/node", "1", "node J of each entry"),
@@ -67,29 +68,7 @@ static const sf_model_field fields[] = {
     ARRAY(frame_time, F64, frame_time_count, 0, 1, "/run/frame_time", "s", "times of further frames"),
     SCALAR(symmetry_factor, I64, "/model/symmetry_factor", "1", "modelled parts that make the whole"),
     SCALAR(thickness, F64, "/model/thickness", "m", "pad thickness"),
-    SCALAR(foam.density, F64, "/foam/density", "kg m-3", "density of the undeformed foam"),
-    SCALAR(foam.modulus, F64, "/foam/modulus", "Pa", "E"),
-    SCALAR(foam.hysteresis_hu, F64, "/foam/hu", "1", "HU"),
-    SCALAR(foam.hysteresis_shape, F64, "/foam/shape", "1", "SHAPE"),
-    SCALAR(foam.damp, F64, "/foam/damp", "1", "DAMP"),
-    SCALAR(foam.damp_length, F64, "/foam/damp_length", "m", "length of DAMP, 0: nodal spacing"),
-    SCALAR(foam.maxwell_modulus, F64, "/foam/maxwell_modulus", "Pa", "ED"),
-    SCALAR(foam.maxwell_rate, F64, "/foam/maxwell_rate", "s-1", "BETA1"),
-    SCALAR(foam.kelvin_viscosity, F64, "/foam/kelvin_viscosity", "Pa s", "eta"),
-    SCALAR(foam.tension_cutoff, F64, "/foam/tension_cutoff", "Pa", "largest tensile nominal stress"),
-    SCALAR(foam.densification_start, F64, "/foam/densification_start", "1", "strain, 0: end of the table"),
-    SCALAR(foam.densification_limit, F64, "/foam/densification_limit", "1", "strain of infinite stress"),
-    SCALAR(foam.densification_exponent, F64, "/foam/densification_exponent", "1",
-           "exponent, 0: by continuity"),
-    SCALAR(foam.rate_filter_time, F64, "/foam/rate_filter_time", "s",
-           "time constant of the strain-rate filter"),
-    SCALAR(foam.curve_count, I64, "/foam/curve_count", "1", "number of compression curves"),
-    SCALAR(foam.curve_points, I64, "/foam/curve_points", "1", "number of points of all curves"),
-    ARRAY(foam.curve_rate, F64, foam.curve_count, 0, 1, "/foam/curve_rate", "s-1",
-          "strain rate of each curve"),
-    ARRAY(foam.curve_ptr, I64, foam.curve_count, 1, 1, "/foam/curve_ptr", "1", "start of each curve"),
-    ARRAY(foam.curve_strain, F64, foam.curve_points, 0, 1, "/foam/curve_strain", "1", "engineering strain"),
-    ARRAY(foam.curve_stress, F64, foam.curve_points, 0, 1, "/foam/curve_stress", "Pa", "engineering stress"),
+    SCALAR(material_count, I64, "/material/count", "1", "number of materials"),
     SCALAR(missile.mass, F64, "/missile/mass", "kg", "mass of the whole missile"),
     SCALAR(missile.speed, F64, "/missile/speed", "m s-1", "speed at t = 0"),
     SCALAR(missile.direction[0], F64, "/missile/direction_x", "1", "direction of motion, x"),
@@ -135,7 +114,21 @@ bool sf_missile_card_is_vertical(const sf_missile_card *card) {
     return card->direction[2] <= -1 + 1e-9;
 }
 
+sf_status sf_model_take_material(sf_model *model, sf_material *material, sf_error *err) {
+    model->node_material = sf_alloc(err, (unsigned long)model->node_count, 1, "materials of the nodes");
+    model->material = sf_alloc(err, 1, sizeof *model->material, "materials");
+    if (err->status != SF_OK)
+        return err->status;
+    model->material_count = 1;
+    model->material[0] = *material;
+    *material = (sf_material){0};
+    return SF_OK;
+}
+
 void sf_model_free(sf_model *model) {
+    for (int64_t k = 0; model->material && k < model->material_count; k++)
+        sf_material_free(&model->material[k]);
+    free(model->material);
     for (size_t k = 0; k < sizeof fields / sizeof fields[0]; k++)
         if (fields[k].rows_offset != SIZE_MAX)
             free(*(void **)((char *)model + fields[k].offset));

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/frame_field.h"
+#include "core/material.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -29,32 +30,7 @@ enum {
     SF_SHAPE_SURFACE = 1
 }; /* contact with an exact sphere cap, or with the triangles */
 
-/* The foam card (docs/theory.md, section "Foam"). Compression curves: `curve_count` of them, in ascending
- * strain rate; points of curve k are [curve_ptr[k], curve_ptr[k+1]). Strain and stress are engineering,
- * positive in compression. */
-typedef struct sf_foam_card {
-    double density;          /* kg m-3, of the undeformed foam */
-    double modulus;          /* Pa, E: tension, and the least stiffness of the stabilisation */
-    double hysteresis_hu;    /* -, HU, 0 < HU <= 1; 1 = no hysteresis */
-    double hysteresis_shape; /* -, SHAPE > 0 */
-    double damp;             /* -, DAMP >= 0 */
-    double damp_length;      /* m, L of DAMP; 0 = the spacing of each node */
-    double maxwell_modulus;  /* Pa, ED >= 0; 0 = no Maxwell branch */
-    double maxwell_rate;     /* s-1, BETA1 > 0 */
-    double kelvin_viscosity; /* Pa s, eta >= 0 */
-    double tension_cutoff;   /* Pa, largest tensile nominal stress; huge = none */
-    /* -, strain from which the densification law replaces the table; 0 = its end */
-    double densification_start;
-    double densification_limit;    /* -, strain eps_L at which the stress becomes infinite; 1 for rule H1 */
-    double densification_exponent; /* -, exponent; 0 = the one that makes the additive constant vanish */
-    double rate_filter_time;       /* s, time constant of the strain-rate filter when curve_count > 1 */
-    int64_t curve_count;
-    int64_t curve_points;
-    double *curve_rate;   /* [curve_count] s-1 */
-    int64_t *curve_ptr;   /* [curve_count + 1] */
-    double *curve_strain; /* [curve_points] - */
-    double *curve_stress; /* [curve_points] Pa */
-} sf_foam_card;
+enum { SF_MATERIAL_MAX = 256 };
 
 typedef struct sf_missile_card {
     double mass;             /* kg, of the whole missile, whatever the symmetry; 0 with a prescribed motion */
@@ -82,13 +58,14 @@ typedef struct sf_run_options {
 } sf_run_options;
 
 typedef struct sf_model {
-    /* Cloud: nodes of the background mesh in a locality-preserving order. */
+    /* Cloud: nodes of the background mesh, those of a material together, in a locality-preserving order. */
     int64_t node_count;
-    double *position; /* [node_count][3] m, X */
-    double *volume;   /* [node_count] m3, V of the smoothing domain */
-    double *mass;     /* [node_count] kg, rho V */
-    double *spacing;  /* [node_count] m, h */
-    double *support;  /* [node_count] m, R */
+    double *position;       /* [node_count][3] m, X */
+    double *volume;         /* [node_count] m3, V of the smoothing domain */
+    double *mass;           /* [node_count] kg, rho V */
+    double *spacing;        /* [node_count] m, h */
+    double *support;        /* [node_count] m, R */
+    uint8_t *node_material; /* [node_count] index in `material`, ascending */
 
     /* Smoothed gradient: B_J^I for the nodes J that the domain of node I sees (theory eq. 4). Rows hold node
      * I itself, and are sorted by node. */
@@ -141,7 +118,8 @@ typedef struct sf_model {
 
     int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness;        /* m, of the pad along z */
-    sf_foam_card foam;
+    int64_t material_count;  /* 1 to SF_MATERIAL_MAX */
+    sf_material *material;   /* [material_count] owned */
     sf_missile_card missile;
     sf_run_options run;
 } sf_model;
@@ -158,6 +136,14 @@ bool sf_missile_is_driven(const sf_model *model);
 double sf_missile_card_depth(const sf_missile_card *card, double displacement);
 /* Does the missile move straight down? */
 bool sf_missile_card_is_vertical(const sf_missile_card *card);
+
+/* The material of a node; borrowed. */
+static inline const sf_material *sf_model_material(const sf_model *model, int64_t node) {
+    return &model->material[model->node_material[node]];
+}
+
+/* A model of this one material: moves it into the list, and gives it to every node. node_count is known. */
+sf_status sf_model_take_material(sf_model *model, sf_material *material, sf_error *err);
 
 /* Releases every array and zeroes the model. Safe on a zeroed model. */
 void sf_model_free(sf_model *model);
@@ -179,7 +165,8 @@ void sf_model_drop_edges(sf_model *model);
  * otherwise records SF_ERR_MODEL with the first violation. Everything that reads a model.h5 calls it. */
 sf_status sf_model_check(const sf_model *model, sf_error *err);
 
-/* One array or scalar of the model. The table drives reading, writing, checking and release. */
+/* One array or scalar of the model, but for its materials. The table drives reading, writing, checking and
+ * release. */
 typedef enum sf_model_type { SF_MODEL_F64, SF_MODEL_I32, SF_MODEL_I64, SF_MODEL_U8 } sf_model_type;
 typedef struct sf_model_field {
     size_t offset;      /* of the member in sf_model: a pointer (arrays) or the value itself (scalars) */

@@ -59,24 +59,21 @@ static sf_status check_bound(const char *name, double value, double low, double 
     return SF_OK;
 }
 
-static sf_status check_curves(const sf_foam_card *foam, sf_error *err) {
-    if (foam->curve_count < 1 || foam->curve_ptr[0] != 0 ||
-        foam->curve_ptr[foam->curve_count] != foam->curve_points)
-        return SF_FAIL(err, SF_ERR_MODEL, "the foam has no usable compression curve");
-    for (int64_t c = 0; c < foam->curve_count; c++) {
-        int64_t first = foam->curve_ptr[c], last = foam->curve_ptr[c + 1];
-        if (first < 0 || last < first || last > foam->curve_points || last - first < 4)
-            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld has fewer than 4 points", (long long)c);
-        if (c > 0 && foam->curve_rate[c] <= foam->curve_rate[c - 1])
-            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld: rates must ascend", (long long)c);
-        if (foam->curve_strain[first] != 0 || foam->curve_stress[first] != 0)
-            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not start at (0, 0)",
-                           (long long)c);
-        for (int64_t k = first + 1; k < last; k++)
-            if (foam->curve_strain[k] <= foam->curve_strain[k - 1] ||
-                foam->curve_stress[k] < foam->curve_stress[k - 1] || foam->curve_strain[k] >= 1)
-                return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not rise at strain %g",
-                               (long long)c, foam->curve_strain[k]);
+static sf_status check_materials(const sf_model *m, sf_error *err) {
+    if (m->material_count < 1 || m->material_count > SF_MATERIAL_MAX)
+        return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld materials; 1 to %d are possible",
+                       (long long)m->material_count, SF_MATERIAL_MAX);
+    for (int64_t k = 0; k < m->material_count; k++)
+        if (sf_material_check(&m->material[k], k, err) != SF_OK)
+            return err->status;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        if (m->node_material[i] >= m->material_count)
+            return SF_FAIL(err, SF_ERR_MODEL, "node %lld is of material %d, of 0 to %lld", (long long)i,
+                           m->node_material[i], (long long)m->material_count - 1);
+        if (i > 0 && m->node_material[i] < m->node_material[i - 1])
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "node %lld is of material %d, after one of %d: they must ascend", (long long)i,
+                           m->node_material[i], m->node_material[i - 1]);
     }
     return SF_OK;
 }
@@ -107,20 +104,6 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         const char *name;
         double value, low, high;
     } bound[] = {
-        {"foam density (kg/m3)", m->foam.density, 1e-3, 1e5},
-        {"foam E (Pa)", m->foam.modulus, 1, 1e12},
-        {"foam HU", m->foam.hysteresis_hu, 1e-6, 1},
-        {"foam SHAPE", m->foam.hysteresis_shape, 1e-3, 100},
-        {"foam DAMP", m->foam.damp, 0, 10},
-        {"foam DAMP length (m)", m->foam.damp_length, 0, 1e3},
-        {"foam ED (Pa)", m->foam.maxwell_modulus, 0, 1e12},
-        {"foam BETA1 (1/s)", m->foam.maxwell_rate, m->foam.maxwell_modulus > 0 ? 1e-6 : 0, 1e12},
-        {"foam viscosity (Pa s)", m->foam.kelvin_viscosity, 0, 1e9},
-        {"foam tension cut-off (Pa)", m->foam.tension_cutoff, 0, 1e300},
-        {"densification start", m->foam.densification_start, 0, 0.999},
-        {"densification limit", m->foam.densification_limit, 0.01, 1},
-        {"densification exponent", m->foam.densification_exponent, 0, 100},
-        {"rate filter time (s)", m->foam.rate_filter_time, m->foam.curve_count > 1 ? 1e-9 : 0, 1e3},
         {"missile mass (kg)", m->missile.mass, driven ? 0 : 1e-9, driven ? 0 : 1e9},
         {"missile speed (m/s)", m->missile.speed, driven ? 0 : 1e-9, driven ? 0 : 200},
         {"missile friction", m->missile.friction, 0, 10},
@@ -150,7 +133,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "missile direction has length %g, expected 1", sqrt(length));
     if (check_motion(m, err) != SF_OK)
         return err->status;
-    return check_curves(&m->foam, err);
+    return check_materials(m, err);
 }
 
 static sf_status check_mesh(const sf_model *m, sf_error *err) {

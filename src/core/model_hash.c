@@ -22,5 +22,7 @@ uint64_t sf_model_hash(const sf_model *model) {
         if (data)
             hash = sf_hash(hash, data, (size_t)rows * (size_t)field[k].columns * item_size(field[k].type));
     }
+    for (int64_t k = 0; k < model->material_count; k++)
+        hash = sf_material_hash(hash, &model->material[k]);
     return hash;
 }

@@ -6,35 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- the law of a point ---- */
-
-double sf_uniaxial_advance(const sf_foam *foam, double dt, double strain, sf_uniaxial *point) {
-    double stress, slope, energy, rate_slope, stretch = 1 - strain, old = 1 - point->strain;
-    double green_rate = 0.5 * (stretch * stretch - old * old) / dt;
-    if (strain > 0) {
-        sf_curve_evaluate(&foam->curve[0], strain, &stress, &slope, &energy);
-    } else {
-        stress = fmax(foam->modulus * strain, -foam->cutoff);
-        energy = 0.5 * stress * stress / foam->modulus - stress * (stress / foam->modulus - strain);
-    }
-    if (energy >= point->peak) {
-        point->peak = energy;
-    } else {
-        double ratio = energy / point->peak;
-        stress *= 1 - (1 - foam->hu) * (1 - (foam->shape == 1 ? ratio : pow(ratio, foam->shape)));
-    }
-    if (foam->curve_count > 1) {
-        double fastest = fmax(0, -green_rate / stretch);
-        point->rate += -expm1(-dt / foam->filter_time) * (fastest - point->rate);
-        stress += sf_foam_overstress(foam, strain, point->rate, &slope, &rate_slope);
-    }
-    if (foam->maxwell > 0)
-        point->maxwell = exp(-foam->maxwell_rate * dt) * point->maxwell -
-                         foam->maxwell / foam->maxwell_rate * expm1(-foam->maxwell_rate * dt) * green_rate;
-    point->strain = strain;
-    return stress - stretch * (point->maxwell + foam->kelvin * green_rate);
-}
-
 /* ---- columns below the missile ---- */
 
 enum { PARTS = 4 }; /* a triangle is cut into PARTS^2, so that large ones spread over the gaps they have */
@@ -107,24 +78,26 @@ sf_status sf_columns_build(const sf_results *r, sf_columns *out, sf_error *err) 
 
 static const double STEP = 20e-6, LONGEST = 0.2; /* s */
 
-static double force(const sf_columns *columns, const sf_foam *foam, double indentation, sf_uniaxial *point) {
+static double force(const sf_columns *columns, const sf_material_law *law, double indentation,
+                    sf_uniaxial *point) {
     double sum = 0;
     for (int k = 0; k < columns->count && columns->gap[k] < indentation; k++) {
-        double stress =
-            sf_uniaxial_advance(foam, STEP, (indentation - columns->gap[k]) / columns->thickness, &point[k]);
+        double strain = (indentation - columns->gap[k]) / columns->thickness;
+        double stress = law->law->uniaxial(law->numbers, STEP, strain, &point[k]);
         sum += columns->area[k] * fmax(0, stress); /* the missile does not pull */
     }
     return sum;
 }
 
-sf_status sf_columns_drop(const sf_columns *columns, const sf_foam *foam, sf_series *curve, sf_error *err) {
+sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
+                          sf_error *err) {
     sf_uniaxial point[SF_COLUMNS] = {{0}};
     int64_t most = (int64_t)(LONGEST / STEP), count = 0;
     double depth = 0, speed = columns->speed;
     if (sf_series_create(most, curve, err) != SF_OK)
         return err->status;
     while (count < most) {
-        double f = force(columns, foam, depth, point);
+        double f = force(columns, law, depth, point);
         if (!isfinite(f)) {
             sf_series_free(curve);
             return SF_FAIL(err, SF_ERR_NUMERIC, "the foam of the columns collapsed at an indentation of %g m",

@@ -4,15 +4,14 @@
  *
  *     F(t) = sum_k A_k P(eps_k, history),   eps_k = (delta - g_k) / H,   m d2(delta)/dt2 = m g - F.
  *
- * P is the uniaxial nominal stress of the foam law: loading curve, hysteresis, Maxwell branch and Kelvin
- * viscosity. A three-dimensional pad is somewhat stiffer. It costs milliseconds: the surrogate of
- * identification. */
+ * P is the uniaxial nominal stress of the law (sf_law.uniaxial). A three-dimensional pad is somewhat stiffer.
+ * It costs milliseconds: the surrogate of identification. */
 #ifndef SF_FIT_COLUMN_H
 #define SF_FIT_COLUMN_H
 
 #include "post/results.h"
 #include "post/signal.h"
-#include "solver/material/foam.h"
+#include "solver/material/law.h"
 
 enum { SF_COLUMNS = 48 };
 
@@ -31,18 +30,7 @@ sf_status sf_columns_build(const sf_results *results, sf_columns *columns, sf_er
 
 /* Deceleration (s, g) from first contact until the missile has left the foam, at most 0.2 s, every 20 us.
  * `curve` is owned by the caller. Errors: the foam collapses. */
-sf_status sf_columns_drop(const sf_columns *columns, const sf_foam *foam, sf_series *curve, sf_error *err);
-
-/* State of one point under uniaxial compression with the lateral stretches held at 1. */
-typedef struct sf_uniaxial {
-    double strain;  /* -, engineering, compression positive */
-    double peak;    /* J m-3, largest W */
-    double maxwell; /* Pa, second Piola-Kirchhoff stress of the Maxwell branch */
-    double rate;    /* s-1, filtered rate of compression */
-} sf_uniaxial;
-
-/* Advances the point to `strain` over dt (s); returns the nominal stress (Pa), compression positive. The law
- * of solver/material/foam.h without DAMP. */
-double sf_uniaxial_advance(const sf_foam *foam, double dt, double strain, sf_uniaxial *point);
+sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
+                          sf_error *err);
 
 #endif

@@ -9,7 +9,7 @@
 #ifndef SF_FIT_GAS_CURVE_H
 #define SF_FIT_GAS_CURVE_H
 
-#include "core/model.h"
+#include "core/foam_card.h"
 
 typedef struct sf_gas_curve {
     double modulus;  /* Pa, E > p0 */

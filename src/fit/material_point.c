@@ -12,9 +12,9 @@ static void set_stretch(double f[9][SF_LANES], double stretch) {
     }
 }
 
-void sf_material_point_drive(const sf_foam *foam, double rate, double step, int count, const double *strain,
-                             double *stress) {
-    sf_foam_batch batch;
+void sf_material_point_drive(const sf_material_law *law, double rate, double step, int count,
+                             const double *strain, double *stress) {
+    sf_law_batch batch;
     double at = 0, last = 0;
     memset(&batch, 0, sizeof batch);
     set_stretch(batch.f, 1);
@@ -25,7 +25,7 @@ void sf_material_point_drive(const sf_foam *foam, double rate, double step, int 
             double next = from + (strain[i] - from) * k / steps;
             memcpy(batch.f_old, batch.f, sizeof batch.f);
             set_stretch(batch.f, 1 - next);
-            sf_foam_update(foam, fabs(next - at) / rate, &batch);
+            law->law->update(law->numbers, fabs(next - at) / rate, &batch);
             at = next;
             last = -batch.p[8][0];
         }

@@ -84,7 +84,7 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_bu
         sf_invariants_check(&report->invariants, err) != SF_OK)
         goto done;
     for (int64_t i = 0; i < n; i++)
-        m->mass[i] = c->foam.density * domains.volume[i];
+        m->mass[i] = sf_material_density(&c->material) * domains.volume[i];
     take_mesh(mesh, m, report);
     take_domains(&domains, &dual, m, report);
 done:
@@ -260,11 +260,8 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
         return err->status;
     m->frame_time_count = c->frame_time_count;
     memcpy(m->frame_time, c->frame_time, (size_t)c->frame_time_count * sizeof *m->frame_time);
-    m->foam = c->foam;
-    c->foam.curve_rate = NULL;
-    c->foam.curve_ptr = NULL;
-    c->foam.curve_strain = NULL;
-    c->foam.curve_stress = NULL;
+    if (sf_model_take_material(m, &c->material, err) != SF_OK)
+        return err->status;
     m->motion_count = c->motion_count;
     m->motion_time = c->motion_time;
     m->motion_displacement = c->motion_displacement;
@@ -274,23 +271,20 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     return check_depth(m, err);
 }
 
-/* The bound on the step at rest: the largest initial tangent of all curves plus the Maxwell branch. */
+/* The bound on the step at rest. */
 static sf_status first_step(const sf_model *m, double *step, sf_error *err) {
     double *c = sf_alloc(err, (unsigned long)m->node_count, sizeof *c, "stability constants");
     if (!c || sf_stability_constants(m, c, err) != SF_OK) {
         free(c);
         return err->status;
     }
-    double tangent = m->foam.modulus;
-    for (int64_t k = 0; k < m->foam.curve_count; k++) {
-        int64_t first = m->foam.curve_ptr[k];
-        tangent = fmax(tangent, m->foam.curve_stress[first + 1] / m->foam.curve_strain[first + 1]);
-    }
     *step = INFINITY;
     for (int64_t i = 0; i < m->node_count; i++) {
-        double length = m->foam.damp_length > 0 ? m->foam.damp_length : m->spacing[i];
-        double eta = m->foam.kelvin_viscosity + m->foam.damp * length * sqrt(m->foam.density * tangent);
-        *step = fmin(*step, sf_stability_step(c[i], tangent + m->foam.maxwell_modulus, eta));
+        const sf_material *material = sf_model_material(m, i);
+        double tangent, viscosity;
+        material->law->rest_bounds(material->card, sf_material_length(material, m->spacing[i]), &tangent,
+                                   &viscosity);
+        *step = fmin(*step, sf_stability_step(c[i], tangent, viscosity));
     }
     free(c);
     return SF_OK;

@@ -47,12 +47,24 @@ static void print_motion(FILE *out, const sf_model *m) {
             "missile", (long long)range.points, 1e3 * range.end_time, 1e3 * range.displacement, range.speed);
 }
 
+/* m3, of the nodes of material k; of a model with one material that of the mesh itself. */
+static double volume_of(const sf_model *m, const sf_build_report *r, int64_t k) {
+    double volume = 0;
+    if (m->material_count == 1)
+        return r->mesh_volume;
+    for (int64_t i = 0; i < m->node_count; i++)
+        volume += m->node_material[i] == k ? m->volume[i] : 0;
+    return volume;
+}
+
 static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r) {
-    double mass = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
+    double mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
     for (int64_t i = 0; i < m->node_count; i++)
         mass += m->mass[i];
+    for (int64_t k = 0; k < m->material_count; k++)
+        parts += sf_material_density(&m->material[k]) * volume_of(m, r, k);
     fprintf(out, "%-26s%.6f kg modelled; density x volume = %.6f kg (difference %.1e)\n", "pad mass", mass,
-            m->foam.density * volume, mass / (m->foam.density * volume) - 1);
+            parts, mass / parts - 1);
     fprintf(out, "%-26s%.1f x %.6g cm3, thickness %.4g mm\n", "pad volume", whole, 1e6 * volume,
             1e3 * m->thickness);
     if (sf_missile_is_driven(m))

@@ -5,11 +5,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+static sf_status build_laws(const sf_model *m, sf_operators *op, sf_error *err) {
+    op->law = sf_alloc(err, (unsigned long)m->material_count, sizeof *op->law, "laws");
+    for (; op->law && op->law_count < m->material_count; op->law_count++)
+        if (sf_material_law_build(&m->material[op->law_count], &op->law[op->law_count], err) != SF_OK)
+            break;
+    return err->status;
+}
+
 /* `owned`: the model too, if it may lose what is no longer needed as soon as that is so; else NULL. */
 static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_error *err) {
     memset(op, 0, sizeof *op);
     op->stability = sf_alloc(err, (unsigned long)m->node_count, sizeof *op->stability, "stability constants");
-    if (err->status != SF_OK || sf_foam_build(&m->foam, &op->foam, err) != SF_OK ||
+    if (err->status != SF_OK || build_laws(m, op, err) != SF_OK ||
         sf_stability_constants(m, op->stability, err) != SF_OK || sf_halo_build(m, &op->halo, err) != SF_OK)
         return err->status;
     if (owned)
@@ -37,7 +45,9 @@ sf_status sf_operators_take(sf_model *m, sf_operators *op, sf_error *err) {
 }
 
 void sf_operators_free(sf_operators *op) {
-    sf_foam_free(&op->foam);
+    for (int64_t k = 0; k < op->law_count; k++)
+        sf_material_law_free(&op->law[k]);
+    free(op->law);
     sf_halo_free(&op->halo);
     sf_constraint_free(&op->constraint);
     sf_contact_gram_free(&op->gram);

@@ -7,14 +7,15 @@
 #include "core/model.h"
 #include "solver/constraint/constraint.h"
 #include "solver/contact/contact_gram.h"
-#include "solver/material/foam.h"
+#include "solver/material/law.h"
 #include "solver/field/halo.h"
 #include "solver/contact/missile_surface.h"
 #include "solver/field/pairs.h"
 
 typedef struct sf_operators {
-    sf_foam foam;
-    double *stability; /* [n] m kg-1, core/stability.h */
+    int64_t law_count;
+    sf_material_law *law; /* [law_count] of the model's materials */
+    double *stability;    /* [n] m kg-1, core/stability.h */
 
     sf_halo halo; /* what groups of domains see */
 

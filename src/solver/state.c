@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/state.h"
 
-#include "core/curve.h"
 #include "core/motion.h"
 #include <math.h>
 #include <stdlib.h>
@@ -21,9 +20,7 @@ static const sf_state_array arrays[] = {
     KEPT(reaction, 'n', 3),
     KEPT(f, 'n', 9),
     KEPT(stress, 'n', 9),
-    KEPT(maxwell, 'm', 6 * SF_LANES),
-    KEPT(peak, 'b', SF_LANES),
-    KEPT(rate, 'r', SF_LANES),
+    KEPT(history, 'h', SF_LANES),
     KEPT(stiffness, 'n', 1),
     KEPT(tangent, 'n', 1),
     KEPT(pair_sum, 'n', 1),
@@ -49,17 +46,23 @@ const sf_state_array *sf_state_arrays(size_t *count) {
     return arrays;
 }
 
+/* Rows of history of a block, whatever its material. */
+static int history_rows(const sf_model *model) {
+    int most = 0;
+    for (int64_t k = 0; k < model->material_count; k++) {
+        int rows = sf_material_history_rows(&model->material[k]);
+        most = rows > most ? rows : most;
+    }
+    return most;
+}
+
 int64_t sf_state_rows(const sf_model *model, char rows) {
     int64_t blocks = (model->node_count + SF_LANES - 1) / SF_LANES;
     switch (rows) {
     case 'n':
         return model->node_count;
-    case 'b':
-        return blocks;
-    case 'm':
-        return model->foam.maxwell_modulus > 0 ? blocks : 0;
-    case 'r':
-        return model->foam.curve_count > 1 ? blocks : 0;
+    case 'h':
+        return blocks * history_rows(model);
     case 'c':
         return model->contact_count;
     default:
@@ -76,17 +79,21 @@ static void start_free(const sf_model *m, sf_state *s) {
  * top speed, and to a part of the energy of a pad that is compressed evenly as far as the motion goes. */
 static sf_status start_driven(const sf_model *m, sf_state *s, sf_error *err) {
     const sf_motion_range motion = sf_motion_measure(m);
-    double mass = 0, depth = fmax(0, sf_missile_card_depth(&m->missile, motion.displacement)), stress, slope,
-           energy;
-    sf_curve curve;
-    if (sf_curve_build(&m->foam, 0, &curve, err) != SF_OK)
-        return err->status;
+    double mass = 0, work = 0, depth = fmax(0, sf_missile_card_depth(&m->missile, motion.displacement));
     for (int64_t i = 0; i < m->node_count; i++)
         mass += m->mass[i];
-    sf_curve_evaluate(&curve, fmin(depth / m->thickness, curve.start), &stress, &slope, &energy);
-    sf_curve_free(&curve);
-    s->ledger.reference =
-        0.5 * mass * motion.speed * motion.speed + LEAST_WORK * energy * mass / m->foam.density;
+    for (int64_t k = 0; k < m->material_count; k++) {
+        double part = 0;
+        sf_material_law law;
+        if (sf_material_law_build(&m->material[k], &law, err) != SF_OK)
+            return err->status;
+        for (int64_t i = 0; i < m->node_count; i++)
+            part += m->node_material[i] == k ? m->mass[i] : 0;
+        work += LEAST_WORK * law.law->energy(law.numbers, depth / m->thickness) * part /
+                sf_material_density(&m->material[k]);
+        sf_material_law_free(&law);
+    }
+    s->ledger.reference = 0.5 * mass * motion.speed * motion.speed + work;
     s->ledger.momentum_reference = mass * motion.speed;
     return SF_OK;
 }
@@ -102,9 +109,10 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
         return err->status;
     }
     s->chunk_count = sf_state_rows(model, 'k');
+    s->history_rows = history_rows(model);
     for (int64_t i = 0; i < model->node_count; i++) {
         s->f[9 * i] = s->f[9 * i + 4] = s->f[9 * i + 8] = 1;
-        s->pair_stiffness[i] = model->foam.modulus;
+        s->pair_stiffness[i] = sf_material_rest_modulus(sf_model_material(model, i));
     }
     for (int64_t c = 0; c < model->contact_count; c++)
         memcpy(&s->contact_position[3 * c], &model->position[3 * (int64_t)model->contact_node[c]],

@@ -9,7 +9,7 @@
 #include "core/model.h"
 #include "core/numbers.h"
 #include "solver/missile.h"
-#include "solver/material/foam.h"
+#include "solver/material/law.h"
 #include "solver/stopwatch.h"
 #include <stddef.h>
 
@@ -93,11 +93,11 @@ typedef struct sf_state {
     double *reaction; /* [n][3] N, constraint reactions (G^T lambda) of the last step */
 
     /* Smoothing domains. */
-    double *f;         /* [n][9] F */
-    double *stress;    /* [n][9] J, V P plus the stabilisation's couple */
-    double *maxwell;   /* [blocks][6][SF_LANES] Pa; none without ED */
-    double *peak;      /* [blocks][SF_LANES] J m-3 */
-    double *rate;      /* [blocks][SF_LANES] s-1; none with one curve */
+    double *f;       /* [n][9] F */
+    double *stress;  /* [n][9] J, V P plus the stabilisation's couple */
+    double *history; /* [blocks][history_rows][SF_LANES] SI, what the laws declare and the cards need
+                        (solver/material/law.h) */
+    int64_t history_rows;
     double *stiffness; /* [n] Pa */
     double *tangent;   /* [n] Pa, effective: a + 2 eta / dt of the last step */
 
@@ -107,7 +107,7 @@ typedef struct sf_state {
 
     /* Power iteration (time_step.h). */
     double *mode;       /* [n] its vector */
-    float *directional; /* [n][6] Pa, tangent by direction (foam.h), when sf_time_step_due */
+    float *directional; /* [n][6] Pa, tangent by direction (law.h), when sf_time_step_due */
 
     /* Contact points. */
     double *contact_position; /* [contacts][3] m, physical, now */
@@ -134,8 +134,7 @@ typedef struct sf_state {
 typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
-    char rows; /* n nodes, b blocks of lanes, m the same with a Maxwell branch, r with curves by rate, c
-                  contact points, k chunks */
+    char rows; /* n nodes, h rows of history of all blocks of lanes, c contact points, k chunks */
     int bytes; /* of a row; doubles if it has a name */
 } sf_state_array;
 

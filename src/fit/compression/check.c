@@ -2,6 +2,7 @@
 #include "fit/compression/check.h"
 
 #include "fit/material_point.h"
+#include "solver/material/foam.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -32,20 +33,21 @@ static void compare_data(const sf_compression_fit *fit, sf_compression_check *ch
 static sf_status compare_card(const sf_compression_fit *fit, const sf_foam_card *card,
                               sf_compression_check *check, sf_error *err) {
     const sf_compression_data *d = &fit->data;
-    sf_foam foam;
-    if (sf_foam_build(card, &foam, err) != SF_OK)
+    const sf_material material = sf_foam_material(card);
+    sf_material_law law;
+    if (sf_material_law_build(&material, &law, err) != SF_OK)
         return err->status;
     double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
     for (int k = 0, first = 0; stress && k < d->config->test_count; k++) {
         const sf_compression_test *t = &d->config->test[k];
-        sf_material_point_drive(&foam, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
+        sf_material_point_drive(&law, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
         for (int i = first; i < first + t->count; i++)
             check->card_percent =
                 fmax(check->card_percent, 100 * fabs(stress[i] - fit->stress[i]) / counted(fit, i));
         first += t->count;
     }
     free(stress);
-    sf_foam_free(&foam);
+    sf_material_law_free(&law);
     return err->status;
 }
 

@@ -5,6 +5,7 @@
 #include "campaign/runner.h"
 #include "fit/material_point.h"
 #include "post/results.h"
+#include "solver/material/foam.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -82,15 +83,16 @@ static sf_status compare(const sf_foam_card *card, double rate, double turn, sf_
     double strain[2 * SF_CUBE_BLOCKS + 1], stress[2 * SF_CUBE_BLOCKS + 1], largest = 0;
     int loading = test->count < SF_CUBE_BLOCKS ? test->count : SF_CUBE_BLOCKS;
     sf_foam_card point = *card;
-    sf_foam foam;
+    const sf_material material = sf_foam_material(&point);
+    sf_material_law law;
     point.damp = 0;
-    if (sf_foam_build(&point, &foam, err) != SF_OK)
+    if (sf_material_law_build(&material, &law, err) != SF_OK)
         return err->status;
     memcpy(strain, test->strain, (size_t)loading * sizeof *strain);
     strain[loading] = turn;
     memcpy(&strain[loading + 1], &test->strain[loading], (size_t)(test->count - loading) * sizeof *strain);
-    sf_material_point_drive(&foam, rate, POINT_STEP, test->count + 1, strain, stress);
-    sf_foam_free(&foam);
+    sf_material_point_drive(&law, rate, POINT_STEP, test->count + 1, strain, stress);
+    sf_material_law_free(&law);
     for (int i = 0; i < test->count; i++) {
         test->point[i] = stress[i < loading ? i : i + 1];
         largest = fmax(largest, test->point[i]);
@@ -127,6 +129,7 @@ static sf_status simulate(const sf_compression_fit *fit, const sf_foam_card *car
         moved[TEXT + 32];
     *test = (sf_cube_test){.speed_up = SIMULATED_RATE / lab->rate};
     const sf_foam_card fast = quicken(card, test->speed_up, rates);
+    const sf_material quick = sf_foam_material(&fast);
     if (!realpath(folder, real))
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be found: %s", folder, strerror(errno));
     snprintf(name, sizeof name, "test-%d", index + 1);
@@ -148,7 +151,7 @@ static sf_status simulate(const sf_compression_fit *fit, const sf_foam_card *car
     }
     sf_runner_result result;
     if (write_motion(motion, lab->largest_strain * c->side, turn_time, err) != SF_OK ||
-        sf_material_write(real, name, &fast, &text, err) != SF_OK ||
+        sf_material_write(real, name, &quick, &text, err) != SF_OK ||
         sf_runner_run(&runner, &drop, &result, err) != SF_OK)
         return err->status;
     test->energy_error = result.energy_error;

@@ -398,6 +398,9 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
                        .maxwell_modulus = maxwell ? e[SF_ESTIMATE_ED].value : 0,
                        .maxwell_rate = maxwell ? e[SF_ESTIMATE_BETA1].value : 5000,
                        .tension_cutoff = 1e30,
+                       .densification_rule = e[SF_ESTIMATE_LIMIT].present && e[SF_ESTIMATE_LIMIT].value < 1
+                                                 ? SF_DENSIFICATION_H2
+                                                 : SF_DENSIFICATION_H1,
                        .densification_start = fit->data.start,
                        .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
                        .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value,

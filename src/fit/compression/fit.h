@@ -4,7 +4,7 @@
 #ifndef SF_FIT_COMPRESSION_FIT_H
 #define SF_FIT_COMPRESSION_FIT_H
 
-#include "core/model.h"
+#include "core/foam_card.h"
 #include "fit/compression/model.h"
 #include <gsl/gsl_vector.h>
 

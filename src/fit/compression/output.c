@@ -8,6 +8,7 @@
 #include "fit/compression/plot.h"
 #include "fit/compression/report.h"
 #include "io/folder.h"
+#include "solver/material/foam.h"
 
 #include <limits.h>
 #include <math.h>
@@ -70,7 +71,8 @@ static sf_status write_material(const sf_staging *output, const sf_compression_f
     if (!text)
         return err->status;
     const sf_material_text comments = {fit->data.config->name, text};
-    sf_material_write(output->aside, "material", card, &comments, err);
+    const sf_material material = sf_foam_material(card);
+    sf_material_write(output->aside, "material", &material, &comments, err);
     free(text);
     return err->status;
 }

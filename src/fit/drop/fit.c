@@ -4,6 +4,7 @@
 #include "campaign/material_file.h"
 #include "post/compare.h"
 #include "post/injury.h"
+#include "solver/material/foam.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -84,8 +85,9 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
 /* Drops `first` to `last` - 1 by columns of this foam; `u` has the speeds, NULL: as given. */
 static sf_status columns_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
                                  const double *u, double *y, sf_error *err) {
-    sf_foam foam = {0};
-    if (sf_foam_build(card, &foam, err) != SF_OK)
+    const sf_material material = sf_foam_material(card);
+    sf_material_law law;
+    if (sf_material_law_build(&material, &law, err) != SF_OK)
         return err->status;
     for (int d = first; d < last && err->status == SF_OK; d++) {
         sf_series curve = {0};
@@ -93,7 +95,7 @@ static sf_status columns_respond(const sf_drop_fit *fit, int first, int last, co
         sf_columns columns = fit->columns[d];
         if (u && fit->speed[d] >= 0)
             columns.speed *= exp(u[fit->speed[d]]);
-        if (sf_columns_drop(&columns, &foam, &curve, err) == SF_OK &&
+        if (sf_columns_drop(&columns, &law, &curve, err) == SF_OK &&
             sf_hic_evaluate(&curve, INFINITY, &hic, err) == SF_OK) {
             double peak = 0;
             for (int64_t k = 0; k < curve.count; k++)
@@ -102,7 +104,7 @@ static sf_status columns_respond(const sf_drop_fit *fit, int first, int last, co
         }
         sf_series_free(&curve);
     }
-    sf_foam_free(&foam);
+    sf_material_law_free(&law);
     return err->status;
 }
 
@@ -161,7 +163,8 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
     if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
         return err->status;
-    sf_material_write(fit->folder, name, &card, &text, err);
+    const sf_material material = sf_foam_material(&card);
+    sf_material_write(fit->folder, name, &material, &text, err);
     sf_foam_card_free(&card);
     for (int d = first; d < last && err->status == SF_OK; d++)
         simulate_drop(fit, d, path, y, err);

@@ -6,6 +6,7 @@
 #include "post/compare.h"
 #include "post/reference.h"
 #include "case/case.h"
+#include "solver/material/foam.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -142,11 +143,17 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
         if (sf_case_read(in->drop[k].case_path, 1, overrides, &sink, &c, err) != SF_OK)
             return err->status;
-        if (k == 0) {
-            in->form.base = c.foam;
-            c.foam = (sf_foam_card){0};
+        if (c.material.law != &sf_low_density_foam)
+            SF_FAIL(err, SF_ERR_INPUT,
+                    "%s is of the law %s; the parameters that drops identify are those of %s",
+                    in->material_path, c.material.law->name, sf_low_density_foam.name);
+        else if (k == 0) {
+            in->form.base = *sf_foam_card_of(&c.material); /* with its curves */
+            sf_foam_card_of(&c.material)->curves = (sf_law_curves){0};
         }
         sf_case_free(&c);
+        if (err->status != SF_OK)
+            return err->status;
     }
     in->form.gas = strcmp(form, "gas") == 0;
     sf_foam_form_start(&in->form, in->start);

@@ -111,6 +111,7 @@ sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARA
                                     .factor = value[SF_PARAMETER_B],
                                     .exponent = value[SF_PARAMETER_M]};
         card->densification_start = 0; /* at the table's end, rule H1 */
+        card->densification_rule = SF_DENSIFICATION_H1;
         card->densification_limit = 1;
         card->densification_exponent = 0;
         if (!(curve.pressure < curve.modulus && curve.exponent > 1))

@@ -3,7 +3,7 @@
 #ifndef SF_FIT_DROP_PARAMETERS_H
 #define SF_FIT_DROP_PARAMETERS_H
 
-#include "core/model.h"
+#include "core/foam_card.h"
 #include "core/units.h"
 #include <stdbool.h>
 

@@ -41,11 +41,12 @@ static SF_KERNEL void gather_group(const sf_model *m, const sf_halo *h, int64_t 
 /* Lanes first .. first + count - 1 of a batch from the state and the gathered coefficients `d`; spare lanes
  * are an undeformed point. */
 static void load_batch(const sf_model *m, const sf_operators *op, const sf_state *s, const sf_vec *d,
-                       int64_t block, int count, sf_foam_batch *b) {
+                       int64_t block, int count, sf_law_batch *b) {
     int64_t first = block * SF_LANES;
     for (int l = 0; l < SF_LANES; l++) {
         static const double rest[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
         const double *old = l < count ? &s->f[9 * (first + l)] : rest;
+        double fixed = l < count ? op->law[m->node_material[first + l]].length : 1;
         sf_vec g[3] = {{0}, {0}, {0}};
         if (l < count)
             displacement_gradient(m, &op->halo, d, first + l, g);
@@ -54,17 +55,47 @@ static void load_batch(const sf_model *m, const sf_operators *op, const sf_state
                 b->f[3 * r + c][l] = (r == c) + g[c][r];
         for (int k = 0; k < 9; k++)
             b->f_old[k][l] = old[k];
-        b->length[l] = l >= count ? 1 : m->foam.damp_length > 0 ? m->foam.damp_length : m->spacing[first + l];
+        b->length[l] = fixed > 0 ? fixed : m->spacing[first + l];
     }
-    if (op->foam.maxwell > 0)
-        memcpy(b->maxwell, &s->maxwell[block * 6 * SF_LANES], sizeof b->maxwell);
-    else
-        memset(b->maxwell, 0, sizeof b->maxwell);
-    memcpy(b->peak, &s->peak[block * SF_LANES], sizeof b->peak);
-    if (op->foam.curve_count > 1)
-        memcpy(b->rate, &s->rate[block * SF_LANES], sizeof b->rate);
-    else
-        memset(b->rate, 0, sizeof b->rate);
+}
+
+/* The lanes of `part` that are of material k, into the batch and their history; spare lanes count as the last
+ * material's. */
+static void take_lanes(const sf_material_law *law, const uint8_t *material, int count, int k,
+                       const sf_law_batch *part, double *history, sf_law_batch *b) {
+    static const size_t row = SF_LANES * sizeof(double), end = offsetof(sf_law_batch, directions);
+    for (int l = 0; l < SF_LANES; l++) {
+        if (material[l < count ? l : count - 1] != k)
+            continue;
+        for (size_t at = (size_t)l * sizeof(double); at < end; at += row)
+            memcpy((char *)b + at, (const char *)part + at, sizeof(double));
+        for (int r = 0; r < law->rows && history; r++)
+            history[SF_LANES * r + l] = part->history[law->row[r]][l];
+    }
+}
+
+/* Updates the batch of a block with the laws of its nodes' materials, and their history at `from` into `to`
+ * (NULL: not stored; may be `from`). Nodes are ordered by material: nearly every block has one. A block at a
+ * border is updated once for each of its materials. */
+static void update_laws(const sf_model *m, const sf_operators *op, double dt, int64_t block, int count,
+                        const double *from, double *to, sf_law_batch *b) {
+    const uint8_t *material = &m->node_material[block * SF_LANES];
+    int first = material[0], last = material[count - 1];
+    if (first == last) {
+        const sf_material_law *law = &op->law[first];
+        sf_material_load_history(law, from, b);
+        law->law->update(law->numbers, dt, b);
+        if (to)
+            sf_material_store_history(law, b, to);
+        return;
+    }
+    const sf_law_batch start = *b;
+    for (int k = first; k <= last; k++) {
+        sf_law_batch part = start;
+        sf_material_load_history(&op->law[k], from, &part);
+        op->law[k].law->update(op->law[k].numbers, dt, &part);
+        take_lanes(&op->law[k], material, count, k, &part, to, b);
+    }
 }
 
 /* Sums and extremes of a chunk, lane by lane, so that one batch does not wait for the one before. */
@@ -81,7 +112,7 @@ typedef struct lane_weights {
 } lane_weights;
 
 /* Bounds of the time step (core/stability.h) and effective tangents. */
-static void bound_steps(const lane_weights *w, double tightness, double dt_old, const sf_foam_batch *b,
+static void bound_steps(const lane_weights *w, double tightness, double dt_old, const sf_law_batch *b,
                         double tangent[SF_LANES], lane_sums *sum) {
     double inverse = dt_old > 0 ? 2 / dt_old : 0;
     for (int l = 0; l < SF_LANES; l++)
@@ -99,7 +130,7 @@ static void bound_steps(const lane_weights *w, double tightness, double dt_old, 
         sum->load[l] = sf_larger(w->stability[l] * tangent[l], sum->load[l]);
 }
 
-static void add_batch(const lane_weights *w, double block, const sf_foam_batch *b, lane_sums *sum) {
+static void add_batch(const lane_weights *w, double block, const sf_law_batch *b, lane_sums *sum) {
 #pragma omp simd
     for (int l = 0; l < SF_LANES; l++) {
         double v = w->volume[l], shorter = sf_smaller(b->stretch[0][l], sum->shortest[l]);
@@ -134,7 +165,7 @@ static void merge_lanes(const lane_sums *lane, int64_t first, sf_partial *sum) {
 }
 
 static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, int64_t block, int count,
-                        const sf_foam_batch *b, lane_sums *sum) {
+                        const sf_law_batch *b, lane_sums *sum) {
     int64_t first = block * SF_LANES;
     double tangent[SF_LANES];
     lane_weights w = {{0}, {0}};
@@ -142,11 +173,6 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
     memcpy(w.stability, &op->stability[first], (size_t)count * sizeof *w.stability);
     bound_steps(&w, s->tightness, s->dt_old, b, tangent, sum);
     add_batch(&w, (double)(block % (SF_CHUNK / SF_LANES)), b, sum);
-    if (op->foam.maxwell > 0)
-        memcpy(&s->maxwell[block * 6 * SF_LANES], b->maxwell, sizeof b->maxwell);
-    memcpy(&s->peak[block * SF_LANES], b->peak, sizeof b->peak);
-    if (op->foam.curve_count > 1)
-        memcpy(&s->rate[block * SF_LANES], b->rate, sizeof b->rate);
     memcpy(&s->stiffness[first], b->stiffness, (size_t)count * sizeof *b->stiffness);
     memcpy(&s->tangent[first], tangent, (size_t)count * sizeof *tangent);
     for (int l = 0; l < count; l++) {
@@ -168,12 +194,13 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
         sum.jacobian[l] = sum.shortest[l] = INFINITY;
     for (int64_t block = chunk * (SF_CHUNK / SF_LANES);
          block < (chunk + 1) * (SF_CHUNK / SF_LANES) && block * SF_LANES < m->node_count; block++) {
-        sf_foam_batch batch;
+        sf_law_batch batch;
         int64_t left = m->node_count - block * SF_LANES;
         int count = left < SF_LANES ? (int)left : SF_LANES;
         batch.directions = sf_time_step_due(s);
         load_batch(m, op, s, d, block, count, &batch);
-        sf_foam_update(&op->foam, s->dt_old, &batch);
+        double *history = &s->history[block * s->history_rows * SF_LANES];
+        update_laws(m, op, s->dt_old, block, count, history, history, &batch);
         for (int l = count; l < SF_LANES; l++) /* nor is it short */
             batch.jacobian[l] = batch.stretch[0][l] = batch.stretch[1][l] = batch.stretch[2][l] = INFINITY;
         store_batch(m, op, s, block, count, &batch, &sum);
@@ -182,16 +209,17 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
 }
 
 void sf_domain_law(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t block,
-                   sf_foam_batch *b) {
+                   sf_law_batch *b) {
+    int64_t left = m->node_count - block * SF_LANES;
     memset(b, 0, sizeof *b);
-    memcpy(b->peak, &s->peak[block * SF_LANES], sizeof b->peak);
     for (int l = 0; l < SF_LANES; l++) {
         int64_t i = block * SF_LANES + l;
         for (int k = 0; k < 9; k++)
             b->f[k][l] = b->f_old[k][l] = i < m->node_count ? s->f[9 * i + k] : k % 4 == 0;
         b->length[l] = 1;
     }
-    sf_foam_update(&op->foam, 0, b);
+    update_laws(m, op, 0, block, left < SF_LANES ? (int)left : SF_LANES,
+                &s->history[block * s->history_rows * SF_LANES], NULL, b);
 }
 
 void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Kinematics and stress of every smoothing domain: F = I + sum d_J B_J^T, foam law, V P (theory eq. 7,
+/* Kinematics and stress of every smoothing domain: F = I + sum d_J B_J^T, material law, V P (theory eq. 7,
  * section "Foam"). Writes f, stress, history, energy, stiffness, tangent, and the domains' partial sums. */
 #ifndef SF_SOLVER_FIELD_DOMAIN_STRESS_H
 #define SF_SOLVER_FIELD_DOMAIN_STRESS_H
@@ -11,9 +11,9 @@
  * must call it and share the work; it ends with a barrier. */
 void sf_domain_stress(const sf_model *model, const sf_operators *operators, sf_state *state);
 
-/* The foam law once more, at rest, at the F and the largest W of a block of SF_LANES domains: stretches, W
+/* The law once more, at rest, at the F and the largest W of a block of SF_LANES domains: stretches, W
  * and hysteresis factor. */
 void sf_domain_law(const sf_model *model, const sf_operators *operators, const sf_state *state, int64_t block,
-                   sf_foam_batch *batch);
+                   sf_law_batch *batch);
 
 #endif

@@ -104,7 +104,7 @@ double sf_foam_overstress(const sf_foam *foam, double strain, double rate, doubl
 /* Adds the rate overstress of lane l to the principal second Piola-Kirchhoff stress s; returns a bound on its
  * tangent: slopes, the shear moduli between directions, and what a change of the filtered rate does to all
  * three. */
-static double add_overstress(const sf_foam *foam, double dt, sf_foam_batch *b, int l, double v[9][SF_LANES],
+static double add_overstress(const sf_foam *foam, double dt, sf_law_batch *b, int l, double v[9][SF_LANES],
                              const double rate_of_e[6], double s[3]) {
     double bound = 0, rates = 0, fastest = 0, shortest = INFINITY, extra[3];
     for (int i = 0; i < 3; i++) {
@@ -117,10 +117,11 @@ static double add_overstress(const sf_foam *foam, double dt, sf_foam_batch *b, i
             fastest = fmax(0, -quadratic / shortest);
         }
     }
-    b->rate[l] += -expm1(-dt / foam->filter_time) * (fastest - b->rate[l]);
+    b->history[SF_FOAM_RATE][l] += -expm1(-dt / foam->filter_time) * (fastest - b->history[SF_FOAM_RATE][l]);
     for (int i = 0; i < 3; i++) {
         double slope, rate_slope;
-        extra[i] = sf_foam_overstress(foam, 1 - b->stretch[i][l], b->rate[l], &slope, &rate_slope);
+        extra[i] =
+            sf_foam_overstress(foam, 1 - b->stretch[i][l], b->history[SF_FOAM_RATE][l], &slope, &rate_slope);
         s[i] -= extra[i] / b->stretch[i][l];
         bound = fmax(bound, slope);
         rates += rate_slope * rate_slope;
@@ -145,7 +146,7 @@ static void right_cauchy_green(double f[9][SF_LANES], double c[6][SF_LANES]) {
 }
 
 /* a = J F^-T, row-major; returns J in b->jacobian. */
-static void cofactor(sf_foam_batch *b, double a[9][SF_LANES]) {
+static void cofactor(sf_law_batch *b, double a[9][SF_LANES]) {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
@@ -173,7 +174,7 @@ static void compose(const double value[3][SF_LANES], double v[9][SF_LANES], doub
 }
 
 /* Viscosity of DAMP (theory eq. 21), Pa s. */
-static void damp_viscosity(const sf_foam *foam, const sf_foam_batch *b, double eta[SF_LANES]) {
+static void damp_viscosity(const sf_foam *foam, const sf_law_batch *b, double eta[SF_LANES]) {
     double damp = foam->damp, density = foam->density;
 #pragma omp simd
     for (int l = 0; l < SF_LANES; l++)
@@ -182,30 +183,58 @@ static void damp_viscosity(const sf_foam *foam, const sf_foam_batch *b, double e
 
 /* Hysteresis (theory eq. 14 to 16) at W of the batch: its factor and `softening`, its derivative by W, the
  * new largest W, and the energies. */
-static void hysteresis(const sf_foam *foam, sf_foam_batch *b, double softening[SF_LANES]) {
+static void hysteresis(const sf_foam *foam, sf_law_batch *b, double softening[SF_LANES]) {
     double hu = foam->hu, shape = foam->shape, power[SF_LANES];
     double kept = (1 - hu) / (1 + shape);
 #pragma omp simd
     for (int l = 0; l < SF_LANES; l++)
-        power[l] = b->energy[l] < b->peak[l] ? b->energy[l] / b->peak[l] : 1;
+        power[l] =
+            b->energy[l] < b->history[SF_FOAM_PEAK][l] ? b->energy[l] / b->history[SF_FOAM_PEAK][l] : 1;
     for (int l = 0; l < SF_LANES && shape != 1; l++)
         if (power[l] != 1)
             power[l] = pow(power[l], shape);
 #pragma omp simd
     for (int l = 0; l < SF_LANES; l++) {
         double w = b->energy[l], ratio = (1 - hu) * shape * power[l] / w;
-        bool unloaded = w < b->peak[l];
+        bool unloaded = w < b->history[SF_FOAM_PEAK][l];
         b->factor[l] = unloaded ? 1 - (1 - hu) * (1 - power[l]) : 1;
         softening[l] = unloaded && w > 0 ? ratio : 0;
-        b->peak[l] = unloaded ? b->peak[l] : w;
+        b->history[SF_FOAM_PEAK][l] = unloaded ? b->history[SF_FOAM_PEAK][l] : w;
         b->stored[l] = w * (hu + kept * power[l]);
-        b->lost[l] = b->peak[l] * kept * shape;
+        b->lost[l] = b->history[SF_FOAM_PEAK][l] * kept * shape;
     }
+}
+
+double sf_foam_uniaxial(const sf_foam *foam, double dt, double strain, sf_uniaxial *point) {
+    double stress, slope, energy, rate_slope, stretch = 1 - strain, old = 1 - point->strain;
+    double *peak = &point->history[SF_FOAM_PEAK], *rate = &point->history[SF_FOAM_RATE],
+           *maxwell = &point->history[SF_FOAM_MAXWELL];
+    double green_rate = 0.5 * (stretch * stretch - old * old) / dt;
+    if (strain > 0) {
+        sf_curve_evaluate(&foam->curve[0], strain, &stress, &slope, &energy);
+    } else {
+        stress = fmax(foam->modulus * strain, -foam->cutoff);
+        energy = 0.5 * stress * stress / foam->modulus - stress * (stress / foam->modulus - strain);
+    }
+    if (energy >= *peak)
+        *peak = energy;
+    else
+        stress *= sf_foam_unloading(foam->hu, foam->shape, energy / *peak);
+    if (foam->curve_count > 1) {
+        double fastest = fmax(0, -green_rate / stretch);
+        *rate += -expm1(-dt / foam->filter_time) * (fastest - *rate);
+        stress += sf_foam_overstress(foam, strain, *rate, &slope, &rate_slope);
+    }
+    if (foam->maxwell > 0)
+        *maxwell = exp(-foam->maxwell_rate * dt) * *maxwell -
+                   foam->maxwell / foam->maxwell_rate * expm1(-foam->maxwell_rate * dt) * green_rate;
+    point->strain = strain;
+    return stress - stretch * (*maxwell + foam->kelvin * green_rate);
 }
 
 /* Adds the rate overstress of every lane to the principal stresses `part`, books its work and says what it
  * adds to the bounds. */
-static void rate_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double v[9][SF_LANES],
+static void rate_stress(const sf_foam *foam, double dt, sf_law_batch *b, double v[9][SF_LANES],
                         double rate_of_e[6][SF_LANES], double part[3][SF_LANES], double extra[SF_LANES]) {
     for (int l = 0; l < SF_LANES; l++) {
         double e[6], s[3];
@@ -227,7 +256,7 @@ static void rate_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double
 
 /* Elastic part of every lane: second Piola-Kirchhoff stress into s [6][lane], with energies and bounds; `eta`
  * is the viscosity of DAMP. */
-static void elastic_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double c[6][SF_LANES],
+static void elastic_stress(const sf_foam *foam, double dt, sf_law_batch *b, double c[6][SF_LANES],
                            double rate_of_e[6][SF_LANES], double s[6][SF_LANES], double eta[SF_LANES]) {
     double v[9][SF_LANES], eigen[6][SF_LANES], part[3][SF_LANES], softening[SF_LANES], extra[SF_LANES] = {0};
     double rest = rest_stiffness(foam);
@@ -274,14 +303,15 @@ static void elastic_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
 
 /* Maxwell branch and Kelvin viscosity on the Green strain, added to s, and their work; closes the bounds. The
  * Maxwell stress is integrated exactly for a constant rate over the step. */
-static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, double rate_of_e[6][SF_LANES],
+static void viscous_stress(const sf_foam *foam, double dt, sf_law_batch *b, double rate_of_e[6][SF_LANES],
                            double s[6][SF_LANES]) {
     double decay = exp(-foam->maxwell_rate * dt);
     double gain =
         foam->maxwell > 0 ? foam->maxwell / foam->maxwell_rate * -expm1(-foam->maxwell_rate * dt) : 0;
     double norm[SF_LANES] = {0}, work[SF_LANES] = {0};
     for (int k = 0; k < 6; k++) {
-        double *restrict m = b->maxwell[k], *restrict out = s[k], *restrict rate = rate_of_e[k];
+        double *restrict m = b->history[SF_FOAM_MAXWELL + k], *restrict out = s[k],
+                         *restrict rate = rate_of_e[k];
         double twice = k < 3 ? 1 : 2;
 #pragma omp simd
         for (int l = 0; l < SF_LANES; l++) {
@@ -311,7 +341,7 @@ static void viscous_stress(const sf_foam *foam, double dt, sf_foam_batch *b, dou
 }
 
 /* DAMP: sigma = DAMP rho c L D with everything current (theory eq. 21), added to p, and its work. */
-static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF_LANES], sf_foam_batch *b) {
+static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF_LANES], sf_law_batch *b) {
     double inverse = 1 / dt, rate[9][SF_LANES], jd[9][SF_LANES];
     for (int k = 0; k < 9; k++)
 #pragma omp simd
@@ -339,7 +369,7 @@ static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF
             }
 }
 
-SF_KERNEL void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *b) {
+SF_KERNEL void sf_foam_update(const sf_foam *foam, double dt, sf_law_batch *b) {
     double c[6][SF_LANES], old[6][SF_LANES], rate_of_e[6][SF_LANES] = {{0}}, s[6][SF_LANES], a[9][SF_LANES],
                                              eta[SF_LANES];
     right_cauchy_green(b->f, c);

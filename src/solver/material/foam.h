@@ -9,7 +9,8 @@
 #include "core/curve.h"
 #include "core/error.h"
 #include "core/lanes.h"
-#include "core/model.h"
+#include "solver/material/law.h"
+#include <math.h>
 
 typedef struct sf_foam {
     double density;      /* kg m-3 */
@@ -26,41 +27,34 @@ typedef struct sf_foam {
     sf_curve *curve;    /* [curve_count] owned */
 } sf_foam;
 
+/* The foam's entry in the table of laws (low_density_foam.c). */
+extern const sf_law sf_low_density_foam;
+
+/* A material of this card, which it borrows: not for sf_material_free. */
+static inline sf_material sf_foam_material(const sf_foam_card *card) {
+    return (sf_material){&sf_low_density_foam, (void *)(uintptr_t)card};
+}
+
 sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err);
 void sf_foam_free(sf_foam *foam);
 
-typedef struct sf_foam_batch {
-    /* in */
-    double f[9][SF_LANES];     /* deformation gradient at the end of the step */
-    double f_old[9][SF_LANES]; /* at its start */
-    double length[SF_LANES];   /* m, L of DAMP */
-    bool directions;           /* fill `directional`? Only the power iteration needs it */
-    /* history, in and out */
-    double maxwell[6][SF_LANES]; /* Pa, second Piola-Kirchhoff stress of the Maxwell branch */
-    double peak[SF_LANES];       /* J m-3, largest W so far */
-    double rate[SF_LANES];       /* s-1, filtered rate of compression */
-    /* out */
-    double p[9][SF_LANES];       /* Pa, first Piola-Kirchhoff stress */
-    double stretch[3][SF_LANES]; /* -, principal stretches, unsorted */
-    double jacobian[SF_LANES];   /* - */
-    double energy[SF_LANES];     /* J m-3, W of the loading curve */
-    double factor[SF_LANES];     /* -, hysteresis factor */
-    double stiffness[SF_LANES];  /* Pa, largest slope of the loading curve in the principal directions, at
-                                    least E and  its first slope: directions across the load are at rest, on
-                                    either side by rounding */
-    double direction_tangent[3][SF_LANES];   /* Pa, bounds on the tangent dP/dF by principal direction
-                                                (foam_tangent.h) */
-    double direction_viscosity[3][SF_LANES]; /* Pa s, the same on dP/d(rate of F) */
-    double tangent[SF_LANES];                /* Pa, the largest of them: bound on the tangent */
-    double viscosity[SF_LANES];              /* Pa s */
-    double directional[6][SF_LANES];         /* Pa, A with dF : dP <= trace(dF A dF^T), of a + 2 eta / dt, if
-                                                `directions` */
-    double work[SF_LANES];                   /* J m-3, viscous work of the step */
-    double stored[SF_LANES], lost[SF_LANES]; /* J m-3, recoverable energy; energy lost to hysteresis */
-} sf_foam_batch;
+/* Rows of sf_law_batch.history. */
+enum {
+    SF_FOAM_PEAK = 0,    /* J m-3, largest W so far */
+    SF_FOAM_RATE = 1,    /* s-1, filtered rate of compression */
+    SF_FOAM_MAXWELL = 2, /* [6] Pa, second Piola-Kirchhoff stress of the Maxwell branch */
+};
 
 /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
-void sf_foam_update(const sf_foam *foam, double dt, sf_foam_batch *batch);
+void sf_foam_update(const sf_foam *foam, double dt, sf_law_batch *batch);
+
+/* sf_law.uniaxial: the law of a point under uniaxial compression, without DAMP. */
+double sf_foam_uniaxial(const sf_foam *foam, double dt, double strain, sf_uniaxial *point);
+
+/* Factor on the stress of the loading curve where W is `ratio` of its largest (theory eq. 14). */
+static inline double sf_foam_unloading(double hu, double shape, double ratio) {
+    return 1 - (1 - hu) * (1 - (shape == 1 ? ratio : pow(ratio, shape)));
+}
 
 /* Rate overstress sigma(eps, rate) - sigma(eps, slowest curve) in Pa, interpolated over the logarithm of the
  * rate (s-1), with its derivatives by strain and rate. Needs two curves or more. */

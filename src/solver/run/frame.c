@@ -35,7 +35,7 @@ static void take_stress(const sf_model *m, const sf_state *s, const sf_pair_sums
     *mises = sqrt(1.5 * square);
 }
 
-static void sort_stretches(const sf_foam_batch *b, int lane, double out[3]) {
+static void sort_stretches(const sf_law_batch *b, int lane, double out[3]) {
     double x = b->stretch[0][lane], y = b->stretch[1][lane], z = b->stretch[2][lane];
     out[0] = fmin(x, fmin(y, z));
     out[1] = fmax(fmin(x, y), fmin(fmax(x, y), z));
@@ -69,7 +69,7 @@ static void take_stresses(const sf_model *m, const sf_operators *op, const sf_st
 /* A field of the law of nodes from the first of a block. */
 static void take_law_field(const sf_model *m, const sf_operators *op, const sf_state *s, sf_frame_field kind,
                            int64_t first, int64_t end, double *out) {
-    sf_foam_batch b;
+    sf_law_batch b;
     double stretch[3];
     for (int64_t i = first; i < end; i++) {
         int lane = (int)(i % SF_LANES);
