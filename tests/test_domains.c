@@ -357,6 +357,24 @@ static void lumped_masses_sum_to_density_times_volume(void **state) {
     fixture_free(&f);
 }
 
+/* The shares of the top's nodes add up to its area; inner ones of the lattice have a cell's face each. */
+static void contact_areas_tile_the_top(void **state) {
+    (void)state;
+    fixture f;
+    fixture_pad((const char *const[]){"geometry.parameters.fine_spacing=10.0",
+                                      "geometry.parameters.outer_spacing=20.0", NULL},
+                &f);
+    double sum = 0;
+    int64_t whole = 0;
+    for (int64_t k = 0; k < f.model.contact_count; k++) {
+        sum += f.model.contact_area[k];
+        whole += fabs(f.model.contact_area[k] - 1e-4) < 1e-12;
+    }
+    assert_true(fabs(sum - 0.2 * 0.2) < 1e-12);
+    assert_true(whole >= 81); /* 9 x 9 inside the quarter's zone of 10 x 10 cells */
+    fixture_free(&f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(smoothed_gradients_of_a_constant_vanish),
@@ -371,6 +389,7 @@ int main(void) {
         cmocka_unit_test(hopelessly_flat_cloud_is_refused_with_its_position),
         cmocka_unit_test(domains_are_the_same_bits_for_any_thread_count),
         cmocka_unit_test(lumped_masses_sum_to_density_times_volume),
+        cmocka_unit_test(contact_areas_tile_the_top),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -52,6 +52,8 @@ static const sf_model_field fields[] = {
           "1: part of the base, 0: symmetry plane only"),
     SCALAR(contact_count, I64, "/contact/count", "1", "number of contact points"),
     ARRAY(contact_node, I32, contact_count, 0, 1, "/contact/node", "1", "node that the missile may touch"),
+    ARRAY(contact_area, F64, contact_count, 0, 1, "/contact/area", "m2",
+          "area of the surface that belongs to it"),
     SCALAR(surface_node_count, I64, "/missile/surface_node_count", "1", "nodes of the missile's surface"),
     SCALAR(surface_triangle_count, I64, "/missile/surface_triangle_count", "1", "triangles of it"),
     ARRAY(surface_position, F64, surface_node_count, 0, 3, "/missile/surface_position", "m",

@@ -99,6 +99,7 @@ typedef struct sf_model {
     uint8_t *fixed_base; /* [fixed_count] 1 = carries the base reaction, 0 = symmetry plane only */
     int64_t contact_count;
     int32_t *contact_node; /* [contact_count] ascending */
+    double *contact_area;  /* [contact_count] m2, of the undeformed surface that belongs to the node */
 
     /* The missile's surface at t = 0, triangles turned outwards. */
     int64_t surface_node_count;

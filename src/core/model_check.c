@@ -156,6 +156,14 @@ static sf_status check_mesh(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
+static sf_status check_areas(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->contact_count; k++)
+        if (!(m->contact_area[k] >= 0))
+            return SF_FAIL(err, SF_ERR_MODEL, "the area of contact point %lld is %g m2", (long long)k,
+                           m->contact_area[k]);
+    return SF_OK;
+}
+
 static sf_status check_nodes(const sf_model *m, sf_error *err) {
     for (int64_t i = 0; i < m->node_count; i++)
         if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0 && m->support[i] > 0))
@@ -233,7 +241,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         check_edges(m, err) != SF_OK ||
         check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
         check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK ||
-        check_constraints(m, err) != SF_OK)
+        check_areas(m, err) != SF_OK || check_constraints(m, err) != SF_OK)
         return err->status;
     return check_mesh(m, err);
 }

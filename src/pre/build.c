@@ -7,6 +7,7 @@
 #include "pre/cloud/domains.h"
 #include "pre/drop_check.h"
 #include "pre/cloud/dual.h"
+#include "pre/cloud/surface_area.h"
 #include "pre/mesh/missile_shape.h"
 #include <math.h>
 #include <stdio.h>
@@ -60,9 +61,10 @@ static void take_domains(sf_domains *d, sf_dual *dual, sf_model *m, sf_build_rep
     dual->edge_node = NULL;
 }
 
-/* Spacing, supports, domains, masses; the mesh is whole until take_mesh. */
-static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_build_report *report,
-                             sf_error *err) {
+/* Spacing, supports, domains, masses, and contact_area [node_count], m2; the mesh is whole until take_mesh.
+ */
+static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, double **contact_area,
+                             sf_build_report *report, sf_error *err) {
     sf_dual dual = {0};
     sf_domains domains = {0};
     int64_t n = mesh->node_count;
@@ -73,9 +75,13 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_bu
     m->spacing = sf_alloc(err, (unsigned long)n, sizeof *m->spacing, "spacing");
     m->support = sf_alloc(err, (unsigned long)n, sizeof *m->support, "supports");
     m->mass = sf_alloc(err, (unsigned long)n, sizeof *m->mass, "masses");
+    *contact_area = sf_alloc(err, (unsigned long)n, sizeof **contact_area, "areas");
     if (err->status != SF_OK)
         goto done;
     sf_cloud_spacing(mesh, &dual, m->spacing);
+    const sf_node_set *contact = sf_mesh_find_set(mesh, c->contact_group);
+    if (contact && sf_surface_area(mesh, &dual, contact, *contact_area, err) != SF_OK)
+        goto done;
     for (int64_t i = 0; i < n; i++)
         m->support[i] = c->support_ratio * m->spacing[i];
     if (sf_domains_build(mesh, &dual, c->condition_limit, m->support, &domains, err) != SF_OK ||
@@ -172,8 +178,8 @@ static sf_status mark_sliding(const sf_case *c, const sf_mesh *mesh, const sf_mo
 }
 
 /* Groups to constrained nodes (with their components) and contact points. */
-static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf_build_report *report,
-                            sf_error *err) {
+static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const double *contact_area, sf_model *m,
+                            sf_build_report *report, sf_error *err) {
     uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
     uint8_t *base = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
     if (err->status != SF_OK || mark_symmetry(c, mesh, m, mask, err) != SF_OK)
@@ -195,6 +201,7 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, 
     if (!contact)
         goto done;
     m->contact_node = sf_alloc(err, (unsigned long)contact->count, sizeof *m->contact_node, "contact points");
+    m->contact_area = sf_alloc(err, (unsigned long)contact->count, sizeof *m->contact_area, "contact points");
     m->fixed_node = sf_alloc(err, (unsigned long)m->fixed_count, sizeof *m->fixed_node, "constraints");
     m->fixed_mask = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     m->fixed_base = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
@@ -209,6 +216,8 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, sf_model *m, 
         memcpy(m->contact_node, contact->node, (size_t)contact->count * sizeof *contact->node);
         m->contact_count = contact->count;
     }
+    for (int64_t k = 0; k < m->contact_count; k++)
+        m->contact_area[k] = contact_area[m->contact_node[k]];
     int64_t used = 0;
     for (int64_t i = 0; i < m->node_count; i++) {
         if (!mask[i])
@@ -294,10 +303,13 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
                          const sf_sink *sink, sf_error *err) {
     memset(m, 0, sizeof *m);
     memset(report, 0, sizeof *report);
-    if (build_cloud(c, mesh, m, report, err) == SF_OK && build_sets(c, mesh, m, report, err) == SF_OK &&
+    double *contact_area = NULL;
+    if (build_cloud(c, mesh, m, &contact_area, report, err) == SF_OK &&
+        build_sets(c, mesh, contact_area, m, report, err) == SF_OK &&
         build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK &&
         sf_drop_check(c, mesh, m, sink, err) == SF_OK && sf_model_check(m, err) == SF_OK)
         first_step(m, &report->first_step, err);
+    free(contact_area);
     if (err->status != SF_OK)
         sf_model_free(m);
     return err->status;
