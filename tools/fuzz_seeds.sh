@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Makes the seeds of the fuzzers of model.h5 and results.h5 again: run it after a change of either format.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+bin=$PWD/${BUILD_DIR:-build}/bin corpus=$PWD/tests/fuzz/corpus
+folder=/tmp/softfall-seeds # a fixed name, as the provenance holds it
+rm -rf "$folder"
+mkdir "$folder"
+trap 'rm -rf "$folder"' EXIT
+cp -r examples geo "$folder"
+cd "$folder"
+"$bin/softfall-pre" -o m.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.1 ms' examples/compression/case.cfg >/dev/null
+"$bin/softfall-solve" m.h5 -o r.h5 -t 1 --no-checkpoint >/dev/null 2>&1
+cp m.h5 "$corpus/model/cube.h5"
+cp r.h5 "$corpus/results/cube.h5"
