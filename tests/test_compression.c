@@ -6,6 +6,7 @@
 #include "core/curve.h"
 #include "core/mat3.h"
 #include "core/motion.h"
+#include "solver/run/history.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>
@@ -165,11 +166,31 @@ static void missile_follows_its_table_without_drift(void **state) {
     fixture_free(&f);
 }
 
+/* The history's column: none without points in contact, all of the block's top under a platen that covers it.
+ */
+static void area_in_contact_is_that_of_the_covered_top(void **state) {
+    (void)state;
+    static const double time[] = {0, 0.004, 0.04}, displacement[] = {0, 0, 0.018};
+    fixture f;
+    sf_history history = {0};
+    sf_error err = SF_ERROR_INIT;
+    start_cube(&f, 0.3, 3, time, displacement);
+    sf_state *s = &f.state;
+    for (fixture_step(&f); s->time < 0.03; sf_step_advance(&f.model, s), fixture_step(&f))
+        assert_int_equal(sf_history_add(&history, &f.model, s, &err), SF_OK);
+    for (int64_t i = 0; i < history.rows; i++)
+        assert_true((history.contact_area[i] > 0) == (history.contact_nodes[i] > 0));
+    assert_close(history.contact_area[history.rows - 1], AREA, 1e-15);
+    sf_history_free(&history);
+    fixture_free(&f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stress_follows_the_law_when_loaded_released_and_loaded_again),
         cmocka_unit_test(a_release_returns_the_energy_of_the_law),
         cmocka_unit_test(missile_follows_its_table_without_drift),
+        cmocka_unit_test(area_in_contact_is_that_of_the_covered_top),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,6 +43,7 @@
     X(largest_compression, "1", "largest_compression_1", 1, "1 - smallest principal stretch of all domains", "")       \
     X(smallest_jacobian, "1", "smallest_jacobian_1", 1, "smallest det F", "of all domains")                            \
     X(contact_nodes, "1", "contact_nodes_1", 1, "points in contact, modelled part", "")                                \
+    X(contact_area, "m2", "contact_area_mm2", 1e6, "undeformed area of the surface that belongs to these points", "whole pad") \
     X(penetration, "m", "penetration_mm", 1e3, "deepest penetration of a point", "after the step")                     \
     X(constraint_residual, "m s-1", "constraint_residual_m_s", 1, "largest |G v|, measured every 16 steps", "")        \
     X(time_step, "s", "time_step_us", 1e6, "step that follows", "")

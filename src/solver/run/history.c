@@ -1,11 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/history.h"
 
+#include "core/mat3.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { FIRST_ROWS = 4096 };
+
+/* Area (m2) of the undeformed surface whose points have a contact force, of the modelled part. */
+static double area_in_contact(const sf_model *m, const sf_state *s) {
+    double area = 0;
+    for (int64_t k = 0; k < m->contact_count; k++)
+        if (sf_dot3(&s->contact_force[3 * k], &s->contact_force[3 * k]) > 0)
+            area += m->contact_area[k];
+    return area;
+}
 
 /* The value of each column of core/history.h. m: the model; s: the state after sf_step_evaluate; whole:
  * modelled parts that make the whole. */
@@ -38,6 +48,7 @@ VALUE(momentum_error, s->ledger.momentum_error)
 VALUE(largest_compression, s->largest_compression)
 VALUE(smallest_jacobian, s->smallest_jacobian)
 VALUE(contact_nodes, (double)s->contact_count)
+VALUE(contact_area, whole * area_in_contact(m, s))
 VALUE(penetration, s->penetration)
 VALUE(constraint_residual, s->constraint_residual)
 VALUE(time_step, s->dt)
