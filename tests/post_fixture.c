@@ -124,6 +124,7 @@ static void fill_row(sf_history *h, int64_t i, bool untouched) {
     h->largest_compression[i] = untouched ? 0 : 0.7 * sin(x);
     h->smallest_jacobian[i] = 1 - 0.5 * sin(x);
     h->contact_nodes[i] = contact * 9;
+    h->contact_area[i] = contact * FIXTURE_CONTACT_AREA * sin(x);
 }
 
 static sf_status put_history(sf_h5 *file, const fixture_options *o, sf_error *err) {

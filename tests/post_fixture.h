@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #define FIXTURE_PEAK_G 100.0
+#define FIXTURE_CONTACT_AREA 0.01 /* m2, largest */
 #define FIXTURE_DURATION 0.04  /* s */
 #define FIXTURE_SPEED 15.0     /* m s-1 */
 #define FIXTURE_MASS 4.6       /* kg */

@@ -131,6 +131,10 @@ static void half_sine_drop_gives_closed_form_figures(void **state) {
     double change = FIXTURE_PEAK_G * SF_STANDARD_GRAVITY * FIXTURE_DURATION * 2 / M_PI;
     assert_relative(summary_number(p, "v_rebound_m_s"), change - FIXTURE_SPEED, 1e-6);
     assert_close(summary_number(p, "v0_m_s"), FIXTURE_SPEED, 1e-9);
+    assert_relative(summary_number(p, "absorbed_energy_per_volume_kJ_m3"),
+                    1e-3 * summary_number(p, "absorbed_energy_J") /
+                        (FIXTURE_CONTACT_AREA * 1e-3 * summary_number(p, "thickness_mm")),
+                    1e-6);
     assert_relative(summary_number(p, "max_indentation_mm"), 30, 1e-6);
     assert_relative(summary_number(p, "max_local_strain"), 0.7, 1e-6);
     assert_relative(summary_number(p, "energy_error"), 0.002, 1e-6);

@@ -60,6 +60,9 @@ static void compute_rebound(const sf_results *r, sf_figures *f) {
     double initial = r->missile_mass * f->v0 * f->v0 / 2;
     f->absorbed_energy = initial - r->missile_mass * f->v_rebound * f->v_rebound / 2;
     f->absorbed_energy_fraction = f->absorbed_energy / initial;
+    double volume = sf_history_largest(h, h->contact_area) * r->thickness;
+    if (volume > 0)
+        f->absorbed_density = f->absorbed_energy / volume;
 }
 
 static void compute_extremes(const sf_results *r, sf_figures *f) {

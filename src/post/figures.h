@@ -40,6 +40,7 @@
     X(NUMBER, rebound_time, "rebound_time_ms", 1e3, "time of that row")                                                \
     X(NUMBER, absorbed_energy, "absorbed_energy_J", 1, "m (v0^2 - v_rebound^2) / 2")                                   \
     X(NUMBER, absorbed_energy_fraction, "absorbed_energy_fraction", 1, "that of m v0^2 / 2")                           \
+    X(NUMBER, absorbed_density, "absorbed_energy_per_volume_kJ_m3", 1e-3, "that energy / (largest contact_area x thickness): per unit of pad volume under the missile") \
     X(NUMBER, max_indentation, "max_indentation_mm", 1e3, "largest indentation")                                       \
     X(NUMBER, max_indentation_time, "max_indentation_time_ms", 1e3, "its time")                                        \
     X(NUMBER, max_mean_strain, "max_mean_strain", 1, "largest indentation / thickness")                                \
