@@ -41,7 +41,7 @@ cd "$source/examples/library"
 # Word splitting of the flags is wanted.
 # shellcheck disable=SC2046
 "$cc" -std=c11 -Wall -Wextra -Werror drop.c -o "$place/by-pkg-config" $(pkg-config --cflags --libs softfall-build)
-cmake -S . -B "$place/build" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >"$place/cmake.log" 2>&1 &&
+cmake -G Ninja -S . -B "$place/build" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >"$place/cmake.log" 2>&1 &&
     cmake --build "$place/build" >>"$place/cmake.log" 2>&1 || fail "$(tail -n 5 "$place/cmake.log")"
 
 case=$source/examples/eva50-v4.5/case.cfg
