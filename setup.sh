@@ -43,7 +43,7 @@ missing_packages() {
 install_packages() {
     local missing as_root=() log
     if ! command -v dpkg-query >/dev/null; then
-                echo "This is not Debian: no packages are installed; packages.txt lists those needed."
+        echo "This is not Debian: no packages are installed; packages.txt lists those needed."
         return
     fi
     missing=$(missing_packages "$@")
@@ -79,7 +79,7 @@ build() {
 }
 
 build_programs() {
-    build --target softfall-pre softfall-solve softfall-post softfall-fit softfall-cfh
+    build --target softfall-pre softfall-solve softfall-post softfall-fit softfall-cfh softfall_api softfall_api_build
 }
 
 demo() {
@@ -92,9 +92,9 @@ demo() {
         tools/run_case.sh examples/eva50-v4.5/case.cfg "$dir"
     fi
     echo "  $dir/model.h5           the model of softfall-pre"
-        echo "  $dir/results.h5         the results of softfall-solve"
+    echo "  $dir/results.h5         the results of softfall-solve"
     echo "  $report         the lines above"
-        echo "The files are in $PWD. Next: README.md explains how to read the results and change the case."
+    echo "The files are in $PWD. Next: README.md explains how to read the results and change the case."
 }
 
 run_tests() {
@@ -131,7 +131,7 @@ demo)
 test)
     install_packages build run test
     build
-        # One test per core and one thread per test; tests of threading set their own number.
+    # One test per core and one thread per test; tests of threading set their own number.
     OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(nproc)"
     ;;
 slow)

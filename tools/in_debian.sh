@@ -44,7 +44,7 @@ for program in debootstrap git unshare apt-get; do
 done
 # The mirror of Debian's main archive that this machine uses, without the security and updates parts.
 mirror=$(apt-get indextargets --format '$(ORIGIN)|$(LABEL)|$(CODENAME)|$(REPO_URI)' 'Created-By: Packages' |
-    awk -F'|' '$1 == "Debian" && $2 == "Debian" && $3 ~ /^(bookworm|trixie|sid|forky)$/ { print $4; exit }')
+    awk -F'|' '$1 == "Debian" && $2 == "Debian" && $3 ~ /^(bookworm|trixie|sid|forky)$/ && !n++ { print $4 }')
 [ -n "$mirror" ] || fail "the apt sources of this machine name no Debian archive: run apt-get update"
 
 system=$(mktemp -d "${TMPDIR:-/var/tmp}/softfall-$release-XXXXXX")
@@ -54,12 +54,13 @@ debootstrap --variant=minbase --include=ca-certificates,git "$release" "$system"
     fail "debootstrap failed; its last line: $(tail -n 1 "$system.log"); all of them: $system.log"
 rm -f "$system.log"
 cp /etc/resolv.conf "$system/etc/"
-for file in /etc/apt/apt.conf.d/*; do # settings for access to the archive, without hooks
-    ! grep -qsi 'Acquire::' "$file" || cp "$file" "$system/etc/apt/apt.conf.d/"
+for file in /etc/apt/apt.conf.d/*; do # access to the archive: the lines about it, no hooks
+    ! grep -si '^Acquire::' "$file" >"$system/etc/apt/apt.conf.d/${file##*/}" || continue
+    rm "$system/etc/apt/apt.conf.d/${file##*/}"
 done
-git clone --quiet --no-hardlinks "$root" "$system/softfall"
+git -c safe.directory="$root" -c safe.directory="$root/.git" clone --quiet --no-hardlinks "$root" "$system/softfall"
 [ -z "$(git -C "$root" status --porcelain --untracked-files=no)" ] ||
-        echo "in_debian.sh: the clone does not contain uncommitted changes" >&2
+    echo "in_debian.sh: the clone does not contain uncommitted changes" >&2
 echo "in_debian.sh: $* in a fresh clone ($(git -C "$root" describe --always)) on Debian $release"
 # The mounts are in a separate mount namespace, which ends with the command in every case.
 status=0
@@ -72,6 +73,7 @@ unshare --mount --propagation private bash -ec '
     exec chroot "$system" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
         bash -c "cd /softfall && exec \"\$@\"" bash "$@"' bash "$system" "$@" </dev/null || status=$?
 if [ -n "$fetch" ] && [ -d "$system/softfall/out" ]; then
+    rm -rf "$fetch"
     mkdir -p "$fetch"
     cp -r "$system/softfall/out/." "$fetch/"
 fi

@@ -34,6 +34,8 @@ def main():
         a, b = read_summary(os.path.join(first, drop)), read_summary(os.path.join(second, drop))
         if a.get("prescribed_motion"):
             continue
+        if None in (a["a_max_g"], a["hic"], b["a_max_g"], b["hic"]):
+            sys.exit("systems_table: %s has no a_max or HIC on one of the systems" % drop)
         change = [percent(a[key], b[key]) for key in ("a_max_g", "hic")]
         worst = max([worst] + [abs(c) for c in change])
         rows.append((drop, "%d" % a["nodes"], "%d" % b["nodes"], "%.3f" % a["a_max_g"], "%.3f" % b["a_max_g"],

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contact and base reaction: Hertz's sphere, a plate dropped on a column, friction, the momentum of the pad,
  * and the energy that contact loses. */
+#include "core/units.h"
 #include "column.h"
 #include "formula.h"
 #include "model_fixture.h"
@@ -268,7 +269,7 @@ static void plate_study(sf_study *s) {
     sf_foam_card heavy = light;
     heavy.density = 35;
     heavy.maxwell_modulus = 3.43e6;
-    sf_column column = {.height = 0.05, .speed = 4.5, .gravity = 9.80665, .foam = &light};
+    sf_column column = {.height = 0.05, .speed = 4.5, .gravity = SF_STANDARD_GRAVITY, .foam = &light};
     sf_series reference, force;
     fixture f;
     comparison c;
@@ -295,7 +296,7 @@ static void plate_study(sf_study *s) {
     sf_study_text(s,
                   "Light foam: peak %.1f g, contact %.2f ms, %lld steps; largest difference of the "
                   "unfiltered force %.2f %% of the peak.\n\n",
-                  c.peak / column.mass / 9.80665, 1e3 * reference.time[reference.count - 1],
+                  c.peak / column.mass / SF_STANDARD_GRAVITY, 1e3 * reference.time[reference.count - 1],
                   (long long)force.count, 100 * c.raw);
     check_column(s, &c, "light foam");
     sf_series_free(&reference);
@@ -312,7 +313,7 @@ static void plate_study(sf_study *s) {
     sf_study_text(s,
                   "Foam of 35 kg/m³: peak %.1f g, contact %.2f ms, %lld steps; largest difference of the "
                   "unfiltered force %.2f %% of the peak.\n\n",
-                  c.peak / column.mass / 9.80665, 1e3 * reference.time[reference.count - 1],
+                  c.peak / column.mass / SF_STANDARD_GRAVITY, 1e3 * reference.time[reference.count - 1],
                   (long long)force.count, 100 * c.raw);
     check_column(s, &c, "35 kg/m³");
     if (data)

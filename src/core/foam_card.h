@@ -19,8 +19,8 @@ typedef struct sf_foam_card {
     double maxwell_rate;     /* s-1, BETA1 > 0 */
     double kelvin_viscosity; /* Pa s, eta >= 0 */
     double tension_cutoff;   /* Pa, largest tensile nominal stress; huge = none */
-    int64_t
-        densification_rule; /* SF_DENSIFICATION_*: which keys a case must give; the solver has the numbers */
+    /* SF_DENSIFICATION_*: the keys that a case must give; the solver reads the numbers only */
+    int64_t densification_rule;
     double densification_start;    /* -, strain from which the law replaces the table; 0 = its end */
     double densification_limit;    /* -, strain eps_L at which the stress becomes infinite; 1 for rule H1 */
     double densification_exponent; /* -, exponent; 0 = the one that makes the additive constant vanish */

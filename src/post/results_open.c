@@ -2,7 +2,6 @@
 /* sf_results_open and sf_frame_read (post/results.h). */
 #include "post/results.h"
 
-#include "core/mat3.h"
 #include "io/provenance.h"
 #include "post/results_check.h"
 #include <math.h>
@@ -62,13 +61,11 @@ static sf_status read_vector(const sf_results *r, const char *path, double vecto
     return SF_OK;
 }
 
-/* Free or driven? Older files hold the points of the motion in its place, or neither. */
+/* Free, or driven by a prescribed motion? */
 static sf_status read_driven(sf_results *r, sf_error *err) {
     int64_t driven = 0;
     if (sf_h5_exists(r->file, "/model/missile_driven"))
         read_integer(r, "/model/missile_driven", &driven, err);
-    else if (sf_h5_exists(r->file, "/model/motion_count"))
-        read_integer(r, "/model/motion_count", &driven, err);
     r->driven = driven > 0;
     return err->status;
 }

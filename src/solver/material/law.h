@@ -22,8 +22,8 @@ typedef struct sf_law_batch {
     double f_old[9][SF_LANES]; /* at its start */
     double length[SF_LANES];   /* m, of damping */
     /* in and out */
-    double history[SF_LAW_HISTORY]
-                  [SF_LANES]; /* SI, by law->history; rows beyond its variables are not used */
+    /* SI, by law->history; rows beyond its variables are not used */
+    double history[SF_LAW_HISTORY][SF_LANES];
     /* out */
     double p[9][SF_LANES];       /* Pa, first Piola-Kirchhoff stress */
     double stretch[3][SF_LANES]; /* -, principal stretches, unsorted */

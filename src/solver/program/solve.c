@@ -116,8 +116,9 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     if (read_model(o, &from, &model, &model_file, hash, err) != SF_OK ||
         set_end_time(o, &from, &model, err) != SF_OK)
         goto done;
-    if (!realpath(o->model ? o->model : from.model_path, path))
-        snprintf(path, sizeof path, "%s", o->model);
+    const char *named = o->model ? o->model : from.model_path;
+    if (!realpath(named, path))
+        snprintf(path, sizeof path, "%s", named);
     sf_solve_print_model(&model, o->threads);
     if (o->restart)
         compare_builds(&from);
