@@ -444,7 +444,7 @@ static void nothing_is_replaced_without_force(void **state) {
     program_succeed(p, "solve", "model.h5 -o kept.h5 --end-time '1 ms'");
     program_result results = program_run(p, "solve", "model.h5 -o kept.h5");
     assert_int_equal(results.code, SF_ERR_INPUT);
-    assert_non_null(strstr(results.err, "--restart goes on with it"));
+    assert_non_null(strstr(results.err, "--restart resumes it"));
     program_shell(p, "rm kept.h5");
     program_result checkpoint = program_run(p, "solve", "model.h5 -o kept.h5");
     assert_int_equal(checkpoint.code, SF_ERR_INPUT);

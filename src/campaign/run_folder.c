@@ -59,7 +59,7 @@ static void last_line(const char *path, char *out, size_t size) {
 
 sf_status sf_run_folder_interrupted(sf_error *err) {
     return SF_FAIL(err, SF_INTERRUPTED,
-                   "interrupted; finished drops are kept: the same command goes on from here");
+                   "interrupted; finished drops are kept: run the same command again to resume");
 }
 
 /* Runs a program with its words appended to `log`; its exit code decides. */

@@ -159,9 +159,10 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     ut_unit *unit =
         length < (int)sizeof name && is_plain_unit_text(name) ? ut_parse(units->system, name, UT_UTF8) : NULL;
     if (!unit)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "\"%s\": \"%s\" is not a unit that UDUNITS-2 knows; expected %s, for example \"%s\"",
-                       text, name, want->phrase, want->example);
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "\"%s\": \"%s\" is not a unit in the UDUNITS-2 database; expected %s, for example \"%s\"", text,
+            name, want->phrase, want->example);
     sf_status status = convert(units, text, number, unit, kind, si, err);
     ut_free(unit);
     return status;

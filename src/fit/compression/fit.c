@@ -144,7 +144,7 @@ static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_e
     return SF_OK;
 }
 
-/* ---- what is known ---- */
+/* ---- estimates with their intervals ---- */
 
 /* Correlation of neighbouring deviations of a branch. Independent ones have 0 +- 1/sqrt(count). */
 static double neighbour_correlation(const sf_compression_fit *fit) {
@@ -217,7 +217,7 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
                                                  : -INFINITY,
                      number == SF_NUMBER_HU || number == SF_NUMBER_LIMIT ? 1 : INFINITY, e);
     if (isfinite(e->error) && number == SF_NUMBER_HU && e->low <= 0)
-        e->note = "not told from zero by these tests";
+        e->note = "not distinguishable from zero by these tests";
 }
 
 static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e, sf_error *err) {
@@ -254,7 +254,7 @@ static void estimate_modulus(const sf_compression_fit *fit, sf_estimate *e) {
     e->error = sqrt(c11 * fit->serial);
     set_interval(fit, false, -INFINITY, INFINITY, e);
     if (!(e->low > 0))
-        e->note = "not told from zero by these tests";
+        e->note = "not distinguishable from zero by these tests";
 }
 
 static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {

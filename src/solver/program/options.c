@@ -35,7 +35,7 @@ static int parse_threads(const char *text, struct argp_state *state) {
 
 static void check_options(sf_solve_options *o, struct argp_state *state) {
     if (o->restart && o->output)
-        argp_error(state, "--restart RESULTS goes on in RESULTS: -o has no place beside it");
+        argp_error(state, "--restart RESULTS writes to RESULTS: -o is not allowed with it");
     if (!o->restart && (!o->model || !o->output))
         argp_error(state, "usage: softfall-solve model.h5 -o results.h5");
     if (o->restart)
@@ -112,7 +112,7 @@ void sf_solve_options_parse(int argc, char **argv, sf_solve_options *o) {
         .parser = parse,
         .args_doc = "MODEL",
         .doc = "Solves the drop in MODEL (from softfall-pre). Ctrl-C (SIGINT, SIGTERM) ends the run after "
-               "the present step with readable results and a checkpoint, from which --restart goes on.\vExit "
+               "the present step with readable results and a checkpoint, from which --restart resumes.\vExit "
                "code: 0 done, 2 wrong input, 3 a file failed, 4 wrong model, 5 numerical failure, 6 out of "
                "memory, 7 a library failed, 130 interrupted (SIGINT, SIGTERM)."};
     *o = (sf_solve_options){

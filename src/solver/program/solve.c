@@ -19,9 +19,9 @@ static sf_status check_output(const sf_solve_options *o, const sf_output *output
         return SF_OK;
     if (access(output->results, F_OK) == 0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it%s", output->results,
-                       access(output->checkpoint, F_OK) == 0 ? ", --restart goes on with it" : "");
+                       access(output->checkpoint, F_OK) == 0 ? ", --restart resumes it" : "");
     if (access(output->checkpoint, F_OK) == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --restart %s goes on from it, --force starts anew",
+        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --restart %s resumes from it, --force starts a new run",
                        output->checkpoint, output->results);
     return SF_OK;
 }
@@ -67,7 +67,7 @@ static void remove_all(const sf_output *output) {
     sf_output_clear(output);
 }
 
-/* What a failure leaves behind. */
+/* After a failure: removes the files, or reports which of them remain. */
 static void handle_failure(const sf_solve_options *o, const sf_output *output, const sf_state *state) {
     if (o->remove_failed) {
         remove_all(output);
