@@ -93,7 +93,7 @@ void sf_solve_options_parse(int argc, char **argv, sf_solve_options *o) {
         {"threads", 't', "N", 0, "OpenMP threads (default: all processors, or OMP_NUM_THREADS)", 0},
         {"force", 'f', 0, 0, "replace an existing results file", 0},
         {"restart", RESTART, "RESULTS", 0,
-         "go on with RESULTS from RESULTS.restart, with the bits of one run; MODEL only if it has been moved",
+         "resume RESULTS from RESULTS.restart, bit for bit as if uninterrupted; MODEL only if it has been moved",
          0},
         {"end-time", END_TIME, "TIME", 0, "another end of the simulated time, such as \"40 ms\"", 0},
         {"checkpoint-every", CHECKPOINT_EVERY, "TIME", 0, "wall time between checkpoints (default: 60 s)", 0},

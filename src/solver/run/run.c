@@ -169,7 +169,7 @@ static sf_status load(drop *d, const sf_checkpoint *from, sf_error *err) {
     return err->status;
 }
 
-/* After a failure: the same steps again up to the last that held, for a checkpoint there. */
+/* After a failure: repeats the steps up to the last valid one, for a checkpoint there. */
 static sf_status replay(drop *d, sf_error *err) {
     sf_checkpoint last = {0};
     d->last_step = d->s->step - 1;
