@@ -119,8 +119,8 @@ static int lowest(const sf_candidate *candidates, int count, int otherwise) {
 }
 
 /* First the rate dependence, with the prescribed densification or the free exponent of H1; then, unless it is
- * prescribed, the densification. A = 0 is tried to be told, but not chosen: it has a parameter less and would
- * win wherever the data leave A open, with intervals that deny the doubt. */
+ * prescribed, the densification. A = 0 is fitted for the report, but not chosen: with one parameter less it
+ * would win wherever the data do not determine A, with intervals that are too narrow. */
 static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_error *err) {
     static const sf_rule prescribed[] = {[SF_RULE_AUTO] = SF_H1_FREE,
                                          [SF_RULE_H1] = SF_H1_FREE,
