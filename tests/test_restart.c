@@ -260,7 +260,7 @@ static void interruption_at_once_leaves_a_checkpoint(void **state) {
                       "while [ ! -e early.h5 ]; do sleep 0.005; done; kill $s; wait $s; exit $?",
                       getenv("SF_BIN_DIR"));
     assert_int_equal(first.code, SF_INTERRUPTED);
-    assert_non_null(strstr(first.err, "--restart goes on"));
+    assert_non_null(strstr(first.err, "--restart resumes the run"));
     assert_true(is_there(p, "early.h5.restart") && !is_there(p, "early.h5.run"));
     program_succeed(p, "solve", "--restart early.h5 --threads 2");
     assert_same_results(p, "full.h5", "early.h5");
