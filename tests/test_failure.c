@@ -78,15 +78,15 @@ static void inverted_domain(void **state) {
 static void displacement_without_a_number(void **state) {
     fixture *f = *state;
     f->state.d[3 * middle(f) + 1] = NAN;
-    assert_fails(f, &f->state, -1, "has lost its numbers: det F = nan", "smaller solver.step_safety");
+    assert_fails(f, &f->state, -1, "holds a NaN or infinity: det F = nan", "smaller solver.step_safety");
     f->state.d[3 * middle(f) + 1] = INFINITY;
-    assert_fails(f, &f->state, -1, "has lost its numbers: det F = ", "smaller solver.step_safety");
+    assert_fails(f, &f->state, -1, "holds a NaN or infinity: det F = ", "smaller solver.step_safety");
 }
 
 static void velocity_without_a_number(void **state) {
     fixture *f = *state;
     f->state.v[3 * middle(f)] = NAN;
-    assert_fails(f, &f->state, -1, "has lost its numbers", "smaller solver.step_safety");
+    assert_fails(f, &f->state, -1, "holds a NaN or infinity", "smaller solver.step_safety");
 }
 
 /* A history variable of the foam: the stress of one domain, in the step itself. */
@@ -96,13 +96,13 @@ static void stress_without_a_number(void **state) {
         f->state
             .history[(middle(f) / SF_LANES * f->state.history_rows + row) * SF_LANES + middle(f) % SF_LANES] =
             NAN;
-    assert_fails(f, &f->state, -1, "has lost its numbers", "smaller solver.step_safety");
+    assert_fails(f, &f->state, -1, "holds a NaN or infinity", "smaller solver.step_safety");
 }
 
 static void missile_without_a_number(void **state) {
     fixture *f = *state;
     f->state.missile.velocity = NAN;
-    assert_fails(f, &f->state, -1, "has lost its numbers", "smaller solver.step_safety");
+    assert_fails(f, &f->state, -1, "holds a NaN or infinity", "smaller solver.step_safety");
 }
 
 static void growing_energy(void **state) {

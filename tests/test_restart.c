@@ -260,7 +260,7 @@ static void interruption_at_once_leaves_a_checkpoint(void **state) {
                       "while [ ! -e early.h5 ]; do sleep 0.005; done; kill $s; wait $s; exit $?",
                       getenv("SF_BIN_DIR"));
     assert_int_equal(first.code, SF_INTERRUPTED);
-    assert_non_null(strstr(first.err, "--restart goes on"));
+    assert_non_null(strstr(first.err, "--restart resumes the run"));
     assert_true(is_there(p, "early.h5.restart") && !is_there(p, "early.h5.run"));
     program_succeed(p, "solve", "--restart early.h5 --threads 2");
     assert_same_results(p, "full.h5", "early.h5");
@@ -444,7 +444,7 @@ static void nothing_is_replaced_without_force(void **state) {
     program_succeed(p, "solve", "model.h5 -o kept.h5 --end-time '1 ms'");
     program_result results = program_run(p, "solve", "model.h5 -o kept.h5");
     assert_int_equal(results.code, SF_ERR_INPUT);
-    assert_non_null(strstr(results.err, "--restart goes on with it"));
+    assert_non_null(strstr(results.err, "--restart resumes it"));
     program_shell(p, "rm kept.h5");
     program_result checkpoint = program_run(p, "solve", "model.h5 -o kept.h5");
     assert_int_equal(checkpoint.code, SF_ERR_INPUT);

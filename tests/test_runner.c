@@ -77,8 +77,8 @@ static void a_drop_that_fails_is_told_in_the_words_of_its_program(void **state) 
         {MAKE_MODEL, "echo 'softfall-solve: collapsed' >&2; exit 5", SF_ERR_NUMERIC,
          "softfall-solve: collapsed (exit code 5; see ", "log.txt)", false},
         {MAKE_MODEL, "exit 0", SF_ERR_IO, "results.h5", "", false}, /* it left no results */
-        {MAKE_MODEL, "exit 130", SF_INTERRUPTED, "the same command goes on from here", "", true},
-        {MAKE_MODEL, "kill -TERM $$", SF_INTERRUPTED, "the same command goes on from here", "", true},
+        {MAKE_MODEL, "exit 130", SF_INTERRUPTED, "run the same command again to resume", "", true},
+        {MAKE_MODEL, "kill -TERM $$", SF_INTERRUPTED, "run the same command again to resume", "", true},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         sf_error err;

@@ -57,14 +57,13 @@ typedef struct softfall_error {
 
 typedef enum softfall_severity {
     SOFTFALL_NOTE = 0,   /* a choice that was made for the user */
-    SOFTFALL_WARNING = 1 /* legal, but probably not what the user wants */
+    SOFTFALL_WARNING = 1 /* legal, but probably not intended */
 } softfall_severity;
 
-/* Where warnings and notes go. `sentence` is valid during the call only. Wherever a sink is taken, NULL means
- * that nobody listens. */
+/* Where warnings and notes go. `sentence` is valid during the call only. A sink of NULL drops them. */
 typedef struct softfall_sink {
     void (*tell)(void *user, softfall_severity severity, const char *sentence);
-    void *user; /* handed on */
+    void *user; /* passed to `tell` */
 } softfall_sink;
 
 /* "0.1.0" and the git revision; static storage. */
@@ -116,7 +115,7 @@ SOFTFALL_API const double *softfall_model_positions(const softfall_model *model)
 typedef struct softfall_drop softfall_drop;
 
 typedef struct softfall_drop_options {
-    int threads;     /* OpenMP threads, 0: what OpenMP would take; the bits do not depend on it */
+    int threads;     /* OpenMP threads, 0: the default of OpenMP; results do not depend on it, bit for bit */
     double end_time; /* s, 0: that of the model */
 } softfall_drop_options;
 
@@ -169,7 +168,7 @@ SOFTFALL_API softfall_status softfall_drop_run(softfall_drop *drop,
 /* The last step. Before the first: all zero, but step = -1. */
 SOFTFALL_API softfall_observation softfall_drop_observe(const softfall_drop *drop);
 
-/* The history, a value for each step: `columns` [count] lists what there is. The values of a column are owned
+/* The history, a value for each step: `columns` [count] lists its columns. The values of a column are owned
  * by the drop and valid until its next step; the result is their number, -1 if there is no such column. */
 SOFTFALL_API const softfall_quantity *softfall_drop_columns(const softfall_drop *drop, int *count);
 SOFTFALL_API int64_t softfall_drop_history(const softfall_drop *drop, const char *name,
@@ -183,8 +182,8 @@ SOFTFALL_API softfall_status softfall_drop_field(const softfall_drop *drop, cons
 
 /* ---- Figures ---- */
 
-/* What the run does not define (the missile never touched, contact had not ended, its motion was prescribed)
- * is NaN. Indicative, not a certification. */
+/* A figure that the run does not define (the missile never touched, contact had not ended, its motion was
+ * prescribed) is NaN. Indicative, not a certification. */
 typedef struct softfall_figures {
     int touched;                          /* 1: the missile touched the pad */
     int rebounded;                        /* 1: contact had ended before the last step, upwards */
@@ -210,7 +209,7 @@ typedef struct softfall_figures {
 } softfall_figures;
 
 /* Of a drop so far (three steps at least), or of a results.h5 of softfall-solve. `filter`: channel frequency
- * class (SAE J211) 60, 180, 600 or 1000; softfall-post takes 1000 unless told otherwise. */
+ * class (SAE J211) 60, 180, 600 or 1000; softfall-post takes 1000 by default. */
 SOFTFALL_API softfall_status softfall_drop_figures(const softfall_drop *drop, double filter,
                                                    softfall_figures *figures, softfall_error *error);
 SOFTFALL_API softfall_status softfall_results_figures(const char *path, double filter,

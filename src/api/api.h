@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files behind include/softfall/softfall.h share. */
+/* Shared by the files that implement include/softfall/softfall.h. */
 #ifndef SF_API_API_H
 #define SF_API_API_H
 

@@ -17,7 +17,7 @@ static void tell(void *user, sf_severity severity, const char *sentence) {
     sink->tell(sink->user, severity == SF_WARNING ? SOFTFALL_WARNING : SOFTFALL_NOTE, sentence);
 }
 
-/* `copy` is what the result refers to. */
+/* The result refers to `copy`. */
 static sf_sink listen(const softfall_sink *sink, softfall_sink *copy) {
     *copy = sink ? *sink : (softfall_sink){0};
     return (sf_sink){copy->tell ? tell : NULL, copy};
@@ -42,7 +42,7 @@ void softfall_case_free(softfall_case *c) {
     free(c);
 }
 
-/* What the model's file tells about its origin. */
+/* The provenance in the model's file. */
 static void keep_texts(softfall_case *c, const sf_build_report *report, softfall_model *m, sf_error *err) {
     m->case_text = strdup(c->data.text);
     m->parameters = strdup(c->data.parameters);

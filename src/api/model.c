@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models: to and from their files, and what they tell. */
+/* Models: reading, writing and their properties. */
 #include "api/api.h"
 
 #include "build_info.h"

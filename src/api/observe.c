@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a drop shows: its last step, its history, the fields over its nodes. */
+/* Results of a drop: its last step, its history, the fields over its nodes. */
 #include "api/drop.h"
 
 #include "solver/run/frame.h"

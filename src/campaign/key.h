@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What makes two drops the same. */
+/* The key of a drop: equal for equal inputs. */
 #ifndef SF_CAMPAIGN_KEY_H
 #define SF_CAMPAIGN_KEY_H
 

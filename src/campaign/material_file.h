@@ -9,7 +9,7 @@
 #include "core/material.h"
 
 typedef struct sf_material_text {
-    const char *title;      /* first line of both files: what the material is */
+    const char *title;      /* first line of both files: a description of the material */
     const char *provenance; /* lines, each ended by '\n': where the numbers come from, their intervals */
 } sf_material_text;
 

@@ -59,7 +59,7 @@ static void last_line(const char *path, char *out, size_t size) {
 
 sf_status sf_run_folder_interrupted(sf_error *err) {
     return SF_FAIL(err, SF_INTERRUPTED,
-                   "interrupted; finished drops are kept: the same command goes on from here");
+                   "interrupted; finished drops are kept: run the same command again to resume");
 }
 
 /* Runs a program with its words appended to `log`; its exit code decides. */
@@ -78,7 +78,7 @@ static sf_status run_program(const char *const *arguments, const char *log, sf_e
                    "%s (exit code %d; see %s)", said, code, log);
 }
 
-/* Takes up a drop that was interrupted. False if there is none, or it cannot go on: then it starts anew. */
+/* Resumes an interrupted drop. False if there is none or it cannot be resumed: then the drop starts anew. */
 static bool resume(const char *solve, const char *threads, const sf_run_folder *at, sf_error *err) {
     const char *run[] = {solve, "--restart", at->results, at->model, "-t", threads, NULL};
     sf_error trial = SF_ERROR_INIT;

@@ -16,17 +16,18 @@ typedef struct sf_run_folder {
         log[SF_RUN_PATH_SIZE];
 } sf_run_folder;
 
-/* The names, "parent/label-<key of the case with its overrides>" and what is below; nothing is made. */
+/* The names, "parent/label-<key of the case with its overrides>" and the names of its files; nothing is
+ * created. */
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *folder, sf_error *err);
 
 /* True if the folder holds a drop that ran to its end. */
 bool sf_run_folder_is_finished(const sf_run_folder *folder);
 
-/* Simulates the drop by softfall-pre and softfall-solve on `threads` threads, with what they print in the
- * log. A drop that was interrupted resumes from its checkpoint, or starts anew if it cannot. Errors: the last
- * line that the program printed, with its exit code and the log; SF_INTERRUPTED (io/process.h), which keeps
- * model and checkpoint. */
+/* Simulates the drop by softfall-pre and softfall-solve on `threads` threads, with their output in the log. A
+ * drop that was interrupted resumes from its checkpoint, or starts anew if it cannot. Errors: the last line
+ * that the program printed, with its exit code and the log; SF_INTERRUPTED (io/process.h), which keeps model
+ * and checkpoint. */
 sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Drops simulated by softfall-pre and softfall-solve, each in a folder of its own that stays: a campaign (a
- * fit, a series of drop heights) that was interrupted finds the drops it has finished and goes on from there,
- * with an interrupted drop from its checkpoint.
+ * fit, a series of drop heights) that was interrupted reuses its finished drops and resumes an interrupted
+ * drop from its checkpoint.
  *
  * The programs are those in the folder of the running program, or in SF_BIN_DIR if that is set. */
 #ifndef SF_CAMPAIGN_RUNNER_H
@@ -32,7 +32,7 @@ typedef struct sf_runner_drop {
     const char *overrides[SF_RUNNER_OVERRIDES]; /* "group.key=value" */
 } sf_runner_drop;
 
-/* What a campaign asks of a drop; figures of the CFC 1000 curve. */
+/* The results of a drop for a campaign; figures of the CFC 1000 curve. */
 typedef struct sf_runner_result {
     double a_max_g, hic;     /* g, - */
     double v0, v_rebound;    /* m s-1; v_rebound NaN if contact had not ended */
@@ -47,8 +47,8 @@ typedef struct sf_runner_result {
 
 /* Simulates the drop unless a finished run of the same inputs is there: the same values of every key of the
  * case and the material, the same curves and geometry files, and programs of the same revision. Release with
- * sf_runner_result_free. Errors: what the programs said, with the path of their log; a drop that never
- * touched the pad; SF_INTERRUPTED when a program was interrupted. */
+ * sf_runner_result_free. Errors: the message of the program that failed, with the path of its log; a drop
+ * that never touched the pad; SF_INTERRUPTED when a program was interrupted. */
 sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
                         sf_error *err);
 void sf_runner_result_free(sf_runner_result *result);

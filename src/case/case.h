@@ -64,8 +64,8 @@ typedef struct sf_case {
 /* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in
  * libconfig syntax or bare text, which is taken as a string). Refuses unknown groups and keys (naming file,
  * line and what exists), missing keys, wrong types, units of another dimension and values out of bounds.
- * Paths are relative to the file that holds the key (the case, or what it includes); @include is relative to
- * the case file's folder. Warnings and notes go to `sink`. On failure `*out` is zeroed. */
+ * Paths are relative to the file that holds the key (the case, or a file that it includes); @include is
+ * relative to the case file's folder. Warnings and notes go to `sink`. On failure `*out` is zeroed. */
 sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                        sf_case *out, sf_error *err);
 void sf_case_free(sf_case *c);

@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 enum { SF_CURVE_MIN_POINTS = 4 };
-#define SF_CURVE_MIN_END 0.2 /* a table that stops earlier says nothing of a foam that is hit */
+#define SF_CURVE_MIN_END 0.2 /* a shorter table does not cover the strains of an impact */
 
 typedef struct sf_case_curve {
     int64_t count;

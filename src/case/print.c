@@ -114,7 +114,7 @@ static void print_row(FILE *file, const sf_key *key) {
     fprintf(file, " | %s |\n", key->description);
 }
 
-/* `law`: of a law that is not the default, only what it adds; else NULL. */
+/* `law`: of a law that is not the default, only the keys that it adds; else NULL. */
 static void print_list(FILE *file, const sf_key_list *list, const char *law) {
     const char *group = "";
     for (size_t k = 0; k < list->count; k++) {

@@ -34,8 +34,7 @@ static sf_status unknown_name(const sf_case_reader *reader, const config_setting
                    names);
 }
 
-/* Refuses everything in `setting` (the group called `group`, "" for the file) that the table does not know.
- */
+/* Refuses everything in `setting` (the group called `group`, "" for the file) that is not in the table. */
 static sf_status check_names(const sf_case_reader *reader, const config_setting_t *setting, const char *group,
                              sf_error *err) {
     for (int i = 0; i < config_setting_length(setting); i++) {
@@ -210,7 +209,7 @@ static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
     return sf_case_check_motion(reader, err);
 }
 
-/* What follows from values that are allowed. The only function that changes what was read. */
+/* Derives values from those read; the only function that changes values after reading. */
 static void complete(const sf_case_reader *reader, sf_case *c) {
     sf_missile_card *card = &c->missile_card;
     double length = sqrt(sf_dot3(card->direction, card->direction));

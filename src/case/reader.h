@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the readers of a case's keys share: the case under construction, where a setting stands, what the case
- * gives. Internal to src/case. */
+/* Shared by the readers of a case's keys: the case under construction, the location of a setting, the keys
+ * given. Internal to src/case. */
 #ifndef SF_CASE_READER_H
 #define SF_CASE_READER_H
 

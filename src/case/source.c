@@ -185,7 +185,7 @@ static sf_status copy_text(text_copy *copy, const char *path, const char *from, 
     if (!S_ISREG(info.st_mode))
         return SF_FAIL(err, SF_ERR_INPUT, "%sthe case file %s is not a plain file", where, path);
     if (info.st_size > LARGEST_TEXT || ftell(copy->out) > LARGEST_TEXT) /* includes of includes multiply */
-        return SF_FAIL(err, SF_ERR_INPUT, "%sthe case file %s is larger than %d bytes, with what it includes",
+        return SF_FAIL(err, SF_ERR_INPUT, "%sthe case file %s and its includes are larger than %d bytes",
                        where, path, LARGEST_TEXT);
     FILE *in = fopen(path, "r");
     if (!in)

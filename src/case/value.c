@@ -52,7 +52,7 @@ static const char *type_phrase(const config_setting_t *setting) {
     }
 }
 
-/* libconfig's get_float returns 0 for the integer types unless told to convert. */
+/* libconfig's get_float returns 0 for the integer types unless automatic conversion is on. */
 static double number_of(const config_setting_t *setting) {
     switch (config_setting_type(setting)) {
     case CONFIG_TYPE_INT:

@@ -34,7 +34,7 @@ typedef struct sf_cfh_crossing {
 
 /* height: [count] m, ascending; value: [count] positive. `name` is the quantity, for sentences. The fit takes
  * the points within a factor of 1.6 of the crossing, and at least the nearest four. The interval is that of
- * the fit (Student's t, first order): it says how well the points lie on a quadratic, nothing about the
+ * the fit (Student's t, first order): it measures how well a quadratic fits the points, not the error of the
  * model. Errors: SF_ERR_INPUT for points that are not as described, or fewer than four with a crossing among
  * them; SF_ERR_NUMERIC for values that fall by more than 2 % from one height to a greater one, or a fit that
  * does not rise through the limit. */

@@ -14,7 +14,7 @@
 
 enum { MAX_DROPS = 8 };
 
-/* What is known of the drop before the first is simulated. */
+/* The figures of the drop before the first simulation. */
 typedef struct setting {
     double speed; /* m s-1, of the case */
     double mass;  /* kg */

@@ -14,7 +14,7 @@ typedef struct sf_cfh_options {
     const char *rig_path; /* NULL: free fall */
     bool force;
     int threads;
-    int override_count; /* at most SF_RUNNER_OVERRIDES - 1: the speed is ours */
+    int override_count; /* at most SF_RUNNER_OVERRIDES - 1: one is used for the speed */
     const char *overrides[SF_RUNNER_OVERRIDES];
     double limit[SF_CFH_CRITERIA]; /* g, - */
     double height;                 /* m, 0: not given */
@@ -23,7 +23,8 @@ typedef struct sf_cfh_options {
     double list[SF_CFH_MAX_POINTS]; /* m, ascending */
 } sf_cfh_options;
 
-/* Exits by argp for --help, --version and unknown options. SF_ERR_INPUT: a value that cannot be meant. */
+/* Exits by argp for --help, --version and unknown options. SF_ERR_INPUT: a value out of bounds or
+ * malformed. */
 sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, sf_error *err);
 
 #endif

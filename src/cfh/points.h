@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The simulated drops of a critical fall height, in ascending height, and what is read from them. Heights are
- * those of free fall unless a name says "rig". */
+/* The simulated drops of a critical fall height, in ascending height, and the results read from them. Heights
+ * are those of free fall unless a name says "rig". */
 #ifndef SF_CFH_POINTS_H
 #define SF_CFH_POINTS_H
 
@@ -44,7 +44,7 @@ typedef struct sf_cfh_result {
     sf_error problem; /* of UNKNOWN */
 } sf_cfh_result;
 
-/* Puts a point in its place; the caller sees to it that there is room. */
+/* Inserts a point in order of height; the caller ensures that there is room. */
 void sf_cfh_points_add(sf_cfh_points *points, const sf_cfh_point *point);
 
 /* The crossings with limit[SF_CFH_CRITERIA], and which of them decides: the lowest. */

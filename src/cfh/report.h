@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What softfall-cfh says: cfh.json, cfh.csv, report.md, and the lines on the terminal. */
+/* Output of softfall-cfh: cfh.json, cfh.csv, report.md, and the lines on the terminal. */
 #ifndef SF_CFH_REPORT_H
 #define SF_CFH_REPORT_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simulates drop after drop until the search has what it needs. */
+/* Simulates one drop after another until the search ends. */
 #ifndef SF_CFH_SERIES_H
 #define SF_CFH_SERIES_H
 
@@ -17,7 +17,7 @@ typedef struct sf_cfh_series {
 } sf_cfh_series;
 
 /* Runs the search. A drop whose simulation fails numerically becomes a point that failed, with a note; every
- * other failure ends the series. SF_INTERRUPTED: the same command goes on from there. */
+ * other failure ends the series. SF_INTERRUPTED: run the same command again to resume. */
 sf_status sf_cfh_simulate(const sf_cfh_series *series, sf_runner *runner, sf_cfh_points *points,
                           sf_cfh_step *ending, sf_error *err);
 

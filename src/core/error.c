@@ -29,8 +29,8 @@ sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int l
     return status;
 }
 
-/* Large blocks ask for large pages: a step reads them from end to end, and address translation of small pages
- * costs a few percent of it. */
+/* Large blocks are advised to use large pages: a step reads them from end to end, and address translation of
+ * small pages costs a few percent of it. */
 static void *allocate(unsigned long bytes) {
     static const unsigned long large = 2UL << 20;
     void *block = NULL;

@@ -56,7 +56,7 @@ enum { SF_HISTORY_COUNT = 0 SF_HISTORY_COLUMNS(SF_HISTORY_ONE) };
 /* Each column under its name, and all of them in the order of the list. */
 #define SF_HISTORY_MEMBER(name, ...) double *name;
 typedef struct sf_history {
-    int64_t rows, room; /* rows held, and allocated (0 if nobody adds rows) */
+    int64_t rows, room; /* rows held, and allocated (0 if no rows are added) */
     union {
         struct {
             SF_HISTORY_COLUMNS(SF_HISTORY_MEMBER) /* [rows] owned */

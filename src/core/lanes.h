@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The vector wrapper of the kernels: points in batches of SF_LANES, arrays [component][lane], loops over
- * lanes under `#pragma omp simd`. What is in such a loop may not branch: a choice is a conditional expression
- * of values that all exist. Sums over the neighbours of a node run over sf_vec instead. */
+ * lanes under `#pragma omp simd`. Such a loop may not branch: a choice is a conditional expression whose
+ * values are all computed. Sums over the neighbours of a node run over sf_vec instead. */
 #ifndef SF_CORE_LANES_H
 #define SF_CORE_LANES_H
 
@@ -9,11 +9,10 @@
 
 enum { SF_LANES = 16 };
 
-/* A kernel is compiled for three levels of the processor, with all that it calls within its file; the program
- * takes the best level that it finds when it starts. The levels differ in the width of the vectors only:
- * nothing is fused or reordered, so that all give the same bits. Arguments and results of kernels are
- * pointers and scalars, since vectors are passed differently at different levels. SF_DISPATCH: set by the
- * build. */
+/* A kernel is compiled for three levels of the processor, with all functions of its file that it calls; the
+ * program selects the best level at its start. The levels differ in the width of the vectors only: nothing is
+ * fused or reordered, so that all give the same bits. Arguments and results of kernels are pointers and
+ * scalars, since vectors are passed differently at different levels. SF_DISPATCH: set by the build. */
 #ifdef SF_DISPATCH
 #define SF_KERNEL __attribute__((flatten, target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else

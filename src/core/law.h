@@ -2,9 +2,10 @@
 /* sf_law: a material law, as one constant entry of the table in solver/material/law.h (which says how to add
  * one). Its parameters are declared once, in `parameter`: that list drives the keys of the case file,
  * `softfall-pre --keys`, the check of a model, model.h5 and written material files. A card is the values of
- * the parameters, a struct of the law's own; everybody else reaches into it by the offsets given here.
+ * the parameters, a struct of the law's own; all other code accesses it by the offsets given here.
  *
- * Points are updated in batches (sf_law_batch) by what `build` makes of a card. Pure functions throughout. */
+ * Points are updated in batches (sf_law_batch) with the data that `build` derives from a card. Pure functions
+ * throughout. */
 #ifndef SF_CORE_LAW_H
 #define SF_CORE_LAW_H
 
@@ -97,7 +98,7 @@ typedef struct sf_law {
     /* Points. */
     const sf_history_variable *history;
     int history_count;
-    /* What the functions below need of a card: `*numbers` is owned by the caller, until release. */
+    /* Derives from a card the data for the functions below; the caller owns `*numbers` until release. */
     sf_status (*build)(const void *card, void **numbers, sf_error *err);
     void (*release)(void *numbers);
     /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. Stress, energies, and
@@ -106,7 +107,8 @@ typedef struct sf_law {
     /* J m-3, energy of loading in uniaxial compression to `strain`; beyond the data that at their end. */
     double (*energy)(const void *numbers, double strain);
     /* Advances a point under uniaxial compression with the lateral stretches held at 1 to `strain` over dt
-     * (s); returns the nominal stress (Pa), compression positive. Without what depends on a length. */
+     * (s); returns the nominal stress (Pa), compression positive. Without the terms that depend on a
+     * length. */
     double (*uniaxial)(const void *numbers, double dt, double strain, struct sf_uniaxial *point);
 } sf_law;
 

@@ -80,7 +80,7 @@ static sf_status check_curves(const sf_law_curves *c, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the material has no usable compression curve");
     if (!all_finite(c->curve_rate, c->curve_count) || !all_finite(c->curve_strain, c->curve_points) ||
         !all_finite(c->curve_stress, c->curve_points))
-        return SF_FAIL(err, SF_ERR_MODEL, "a compression curve holds what is not a finite number");
+        return SF_FAIL(err, SF_ERR_MODEL, "a compression curve holds a NaN or infinity");
     for (int64_t k = 0; k < c->curve_count; k++) {
         int64_t first = c->curve_ptr[k], last = c->curve_ptr[k + 1];
         if (first < 0 || last < first || last > c->curve_points || last - first < 4)

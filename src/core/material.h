@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* sf_material: a law and a card of it. The functions here walk the law's declarations, and know no law. */
+/* sf_material: a law and a card of it. The functions here use the law's declarations and depend on no
+ * particular law. */
 #ifndef SF_CORE_MATERIAL_H
 #define SF_CORE_MATERIAL_H
 

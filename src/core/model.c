@@ -9,7 +9,7 @@
     { offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text, false }
 #define SCALAR(member, type, path, units, text)                                                              \
     { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, false }
-/* What models of older versions do not hold. */
+/* Fields that models of older versions may lack. */
 #define OPTIONAL_ARRAY(member, type, rows, path, units, text)                                                \
     { offsetof(sf_model, member), type, offsetof(sf_model, rows), 0, 1, path, units, text, true }
 #define OPTIONAL_SCALAR(member, type, path, units, text)                                                     \

@@ -149,17 +149,16 @@ sf_status sf_model_take_material(sf_model *model, sf_material *material, sf_erro
 /* Releases every array and zeroes the model. Safe on a zeroed model. */
 void sf_model_free(sf_model *model);
 
-/* Releases the background mesh: a solver that has written it to its
- * results needs it no more. */
+/* Releases the background mesh: the solver no longer needs it once it is in the results. */
 void sf_model_drop_mesh(sf_model *model);
 
 /* A hash of every field, with the mesh: are two models the same? */
 uint64_t sf_model_hash(const sf_model *model);
 
-/* Releases domain_node and support: the solver's groups have numbers of their own for what domains see. */
+/* Releases domain_node and support: the solver's groups have local numbers for the nodes of their domains. */
 void sf_model_drop_domain_nodes(sf_model *model);
 
-/* Releases the edges: the solver has its pairs. */
+/* Releases the edges, once the solver has made its pairs. */
 void sf_model_drop_edges(sf_model *model);
 
 /* True if sizes, index ranges, finiteness, CSR monotonicity and the physical bounds of the cards hold;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The prescribed motion of a missile that a machine drives (model->motion_*): displacement along its
- * direction, linear between the points of the table, whatever the forces. Only for models whose
- * missile is driven (sf_missile_is_driven). */
+/* The prescribed motion of a missile driven by a machine (model->motion_*): displacement along its direction,
+ * linear between the points of the table, independent of the forces. Only for models whose missile is driven
+ * (sf_missile_is_driven). */
 #ifndef SF_CORE_MOTION_H
 #define SF_CORE_MOTION_H
 
@@ -11,8 +11,8 @@
 #define SF_MOTION_SLACK 1e-12
 #define SF_MOTION_MAX_SPEED 200.0 /* m s-1 */
 
-/* Displacement (m) at `time` >= 0 (s). The last piece goes on beyond the end of the table: the last step of a
- * run passes its end time by less than a step. */
+/* Displacement (m) at `time` >= 0 (s). Extrapolates the last piece beyond the end of the table: the last step
+ * of a run passes its end time by less than a step. */
 double sf_motion_displacement(const sf_model *model, double time);
 /* Velocity (m s-1) of the piece that begins at or before `time`. */
 double sf_motion_velocity(const sf_model *model, double time);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists of numbers, X(type, name, array size, units, meaning), that declare the members of a struct and drive their way to
- * and from a file (io/members.h). */
+/* Lists of numbers, X(type, name, array size, units, meaning), that declare the members of a struct;
+ * io/members.h writes and reads them by the list. */
 #ifndef SF_CORE_NUMBERS_H
 #define SF_CORE_NUMBERS_H
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* When a loop is worth a second thread: waking one takes about 50 us on a virtual machine, so that loops over
- * fewer nodes with little work for each, and over fewer rows or contact points, stay on one. The build can
- * ask for threads always (SOFTFALL_THREADS_ALWAYS), so that analyses and tests with small models see them. */
+/* Below these sizes a loop runs on one thread: waking a thread takes about 50 us on a virtual machine. They
+ * apply to loops with little work per node, and to loops over rows or contact points. A build with
+ * SOFTFALL_THREADS_ALWAYS uses threads in every loop, so that analyses and tests with small models cover
+ * them. */
 #ifndef SF_CORE_THREADS_H
 #define SF_CORE_THREADS_H
 

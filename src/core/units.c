@@ -60,7 +60,7 @@ sf_status sf_units_open(sf_units **units, sf_error *err) {
         (*units)->si[k] = ut_parse((*units)->system, quantities[k].unit, UT_ASCII);
         if (!(*units)->si[k]) {
             sf_units_close(units);
-            return SF_FAIL(err, SF_ERR_LIBRARY, "the UDUNITS-2 database does not know the unit \"%s\"",
+            return SF_FAIL(err, SF_ERR_LIBRARY, "the UDUNITS-2 database lacks the unit \"%s\"",
                            quantities[k].unit);
         }
     }
@@ -86,7 +86,7 @@ static bool same_dimension(const ut_unit *a, const ut_unit *b) {
     return same;
 }
 
-/* What the unit is: the phrase of a known kind, or its base units. */
+/* Describes the unit: the phrase of a known kind, or its base units. */
 static void describe_unit(const sf_units *units, const ut_unit *unit, char *out, size_t size) {
     for (int k = 0; k < SF_QUANTITY_COUNT; k++) {
         if (same_dimension(unit, units->si[k])) {
@@ -159,9 +159,10 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     ut_unit *unit =
         length < (int)sizeof name && is_plain_unit_text(name) ? ut_parse(units->system, name, UT_UTF8) : NULL;
     if (!unit)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "\"%s\": \"%s\" is not a unit that UDUNITS-2 knows; expected %s, for example \"%s\"",
-                       text, name, want->phrase, want->example);
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "\"%s\": \"%s\" is not a unit in the UDUNITS-2 database; expected %s, for example \"%s\"", text,
+            name, want->phrase, want->example);
     sf_status status = convert(units, text, number, unit, kind, si, err);
     ut_free(unit);
     return status;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Quantities with units, read with UDUNITS-2: "4.5 m/s" to 4.5, "160 mm" to 0.16. The only file that includes
- * udunits2.h is units.c. Errors are sentences that say the text, what it is and what was expected. */
+ * udunits2.h is units.c. Error messages quote the text and name its kind and the kind expected. */
 #ifndef SF_CORE_UNITS_H
 #define SF_CORE_UNITS_H
 
@@ -12,7 +12,7 @@
 #define SF_UNITS_QUOTE(value) SF_UNITS_QUOTE_AS_IS(value)
 #define SF_UNITS_QUOTE_AS_IS(value) #value
 
-/* The kinds of quantity that softfall's inputs know. */
+/* The kinds of quantity in softfall's inputs. */
 typedef enum sf_quantity {
     SF_LENGTH,
     SF_MASS,

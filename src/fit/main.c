@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* softfall-fit WORD ...: material parameters from measurements. The first word chooses what is measured. */
+/* softfall-fit WORD ...: material parameters from measurements. The first word names the kind of
+ * measurement. */
 #include "build_info.h"
 #include "core/program.h"
 #include "core/error.h"

@@ -102,7 +102,7 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
 enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE };
 
 /* Does the link stand for the object of the same path in a file of the folder that belongs to this file while
- * its run goes on (FILE.run, docs/formats.md)? */
+ * its run is in progress (FILE.run, docs/formats.md)? */
 static bool is_own_link(const sf_h5 *file, const char *path, size_t size) {
     char value[1024], folder[512];
     const char *slash = strrchr(file->path, '/'), *target = NULL, *object = NULL;
@@ -116,7 +116,7 @@ static bool is_own_link(const sf_h5 *file, const char *path, size_t size) {
            strcmp(object, path) == 0;
 }
 
-/* What stands at a path. Soft links and those into other files are found but not followed, but for a file's
+/* The object at a path. Soft links and those into other files are found but not followed, but for a file's
  * own: a file speaks of itself only. */
 static int find_link(const sf_h5 *file, const char *path) {
     char part[512];
@@ -305,7 +305,7 @@ static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, s
     return SF_OK;
 }
 
-/* Data of other files (external, virtual) would let a file reach what it does not hold, and a filter
+/* Data of other files (external, virtual) would let a file refer to data outside it, and a filter
  * (compression) lets a small file claim a large memory: softfall writes neither and refuses both. */
 static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, sf_error *err) {
     hid_t creation = H5Dget_create_plist(set);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The only door to HDF5. Every dataset carries the attributes `units` (UDUNITS-2 spelling, "1" if
+/* The only code that calls HDF5. Every dataset carries the attributes `units` (UDUNITS-2 spelling, "1" if
  * dimensionless) and `description`. Numbers are stored in the native types named by sf_h5_type. All functions
  * record failures in `err` and return its status; a failing read returns no buffer. */
 #ifndef SF_IO_H5_H
@@ -14,7 +14,7 @@ typedef struct sf_h5 sf_h5;
 
 typedef enum sf_h5_type { SF_H5_F64, SF_H5_I32, SF_H5_I64, SF_H5_U8 } sf_h5_type;
 
-/* What a dataset is: its path in the file and the two attributes. All strings are borrowed. */
+/* A dataset: its path in the file and the two attributes. All strings are borrowed. */
 typedef struct sf_h5_info {
     const char *path;        /* absolute, e.g. "/cloud/position"; missing groups are created */
     const char *units;       /* UDUNITS-2, e.g. "m s-1" */

@@ -15,7 +15,7 @@ typedef struct sf_process {
     const char *const *arguments; /* the program, a path or a name to look for in PATH, and its arguments;
                                      ends with NULL */
     const char *folder;           /* in which it runs; NULL: the present one */
-    const char *log;              /* file to which what it prints is appended; NULL: it is dropped */
+    const char *log;              /* file to which its output is appended; NULL: the output is dropped */
     bool stoppable;               /* signals are passed on to it, see sf_process_handle_signals */
 } sf_process;
 

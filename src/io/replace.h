@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files that are whole at any instant: written under another name on the same disk, brought to the disk and
- * renamed. Whatever happens in between, the earlier file stays. Model, results, checkpoint and reports all go
- * through here. */
+/* Files that are complete at any instant: written under another name on the same file system, synchronised
+ * (fsync) and renamed. After a failure in between, the earlier file remains. Model, results, checkpoint and
+ * reports all go through here. */
 #ifndef SF_IO_REPLACE_H
 #define SF_IO_REPLACE_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A checksum at the end of a file, behind what its own format (HDF5) reads: 8 bytes "SFSEAL01", the length of
- * the file before it (u64) and its hash (u64, core/hash.h), in the machine's byte order. */
+/* A checksum at the end of a file, behind the part that its own format (HDF5) reads: 8 bytes "SFSEAL01", the
+ * length of the file before it (u64) and its hash (u64, core/hash.h), in the machine's byte order. */
 #ifndef SF_IO_SEAL_H
 #define SF_IO_SEAL_H
 

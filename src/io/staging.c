@@ -66,7 +66,7 @@ static void remove_flat(int parent, const char *name) {
     unlinkat(parent, name, AT_REMOVEDIR);
 }
 
-/* What runs that were killed have left: staging directories of processes that are gone. */
+/* Removes the staging directories of processes that no longer exist (killed runs). */
 static void remove_stale(const char *directory) {
     DIR *listing = opendir(directory);
     struct dirent *entry;

@@ -12,7 +12,7 @@
 
 enum { MAX_COLUMNS = 256 };
 
-/* The file being read: what the sentences and the growing arrays need. */
+/* The file being read: data for the messages and the growing arrays. */
 typedef struct csv {
     const char *path;
     const sf_table_layout *layout;

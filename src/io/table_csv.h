@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A name that the header may use, which of the two columns it is, and what makes it SI. */
+/* A name that the header may use, which of the two columns it is, and its factor to SI. */
 typedef struct sf_table_name {
     const char *name;
     int column;
@@ -33,7 +33,7 @@ typedef sf_status sf_table_check(const sf_table_point *point, sf_error *err);
 typedef struct sf_table_layout {
     const char *what;      /* "curve" */
     const char *column[2]; /* "strain", "stress" */
-    const char *wanted[2]; /* what the header may call them, for the sentence */
+    const char *wanted[2]; /* the names allowed in the header, for messages */
     const sf_table_name *names;
     int name_count;
     bool first;  /* of several columns that mean the same the first counts; else they are refused */

@@ -102,7 +102,7 @@ static void set_undefined(sf_figures *f) {
             *(double *)((char *)f + figure[k].offset) = NAN;
 }
 
-/* What is known of every run. */
+/* Figures of every run, free or driven. */
 static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
     f->cfc = cfc;
     f->touched = sf_results_touched(r);

@@ -32,7 +32,7 @@ typedef struct options {
     sf_error err;
 } options;
 
-/* What the run holds, for one clean-up. */
+/* All resources of the program, released together. */
 typedef struct job {
     sf_results results;
     sf_figures figures;

@@ -31,7 +31,7 @@ static void value_range(const sf_figures *f, const sf_comparison *c, double rang
     range[1] = high > 0 ? 1.1 * high : 1;
 }
 
-/* What all pictures share; `name` without its ending. */
+/* Settings common to all pictures; `name` without its ending. */
 static void put_style(FILE *g, const char *name) {
     fprintf(g,
             "set terminal pngcairo size 1600,1000 font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"

@@ -2,9 +2,9 @@
 /* Reads results.h5 (docs/formats.md) and refuses what does not keep to that format: every size, index range,
  * order and finiteness is checked here, so that the rest of softfall-post may trust the numbers.
  *
- * A file of a run that failed, was killed or is still going is read as far as it goes, and what is left out
- * is said in `notes`: history rows that are not complete or not finite, and frames without their scalars. In
- * a file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
+ * A file of a run that failed, was killed or is in progress is read as far as it is valid; `notes` lists the
+ * parts left out: history rows that are not complete or not finite, and frames without their scalars. In a
+ * file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
  * errors. */
 #ifndef SF_POST_RESULTS_H
 #define SF_POST_RESULTS_H

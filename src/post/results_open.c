@@ -102,7 +102,7 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
     r->has_summary = sf_h5_exists(r->file, "/summary/status");
     if (!r->has_summary) {
         sf_results_note(
-            r, "there is no /summary: the run is still going or was killed; what it had written is used");
+            r, "there is no /summary: the run still runs or was killed; the data written so far are used");
         return SF_OK;
     }
     char *status = NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* summary.json, and the short table that softfall-post prints. Keys carry their units; what the run does not
- * define is null. docs/formats.md lists the keys. */
+/* summary.json, and the short table that softfall-post prints. Keys carry their units; a figure that the run
+ * does not define is null. docs/formats.md lists the keys. */
 #ifndef SF_POST_SUMMARY_H
 #define SF_POST_SUMMARY_H
 
@@ -19,7 +19,7 @@ typedef struct sf_summary {
 
 sf_status sf_summary_write(const sf_staging *output, const sf_summary *summary, sf_error *err);
 
-/* The table on `out`, ending with what the figures are not. */
+/* The table on `out`; its last line says that the figures are indicative. */
 void sf_summary_print(FILE *out, const sf_summary *summary);
 
 #endif

@@ -10,7 +10,7 @@
 #include "pre/cloud/invariants.h"
 #include "pre/mesh/mesh.h"
 
-/* What the building found out, for the table that softfall-pre prints. */
+/* Results of the build, for the table that softfall-pre prints. */
 typedef struct sf_build_report {
     char mesh_hash[17];
     int64_t cells[10]; /* by SF_CELL_* */

@@ -131,7 +131,7 @@ static bool is_cut(const sf_model *m, const edge *list, int axis, double place, 
     return false;
 }
 
-/* Zero for what is zero but for the rounding of the mesh. */
+/* Zero for a place that is zero within the rounding of the mesh. */
 static double round_off(double place, double extent) {
     return fabs(place) > 1e-9 * extent ? place : 0;
 }
@@ -163,7 +163,7 @@ static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_
     return err->status;
 }
 
-/* ---- what the case leaves out ---- */
+/* ---- symmetry groups that the case does not hold ---- */
 
 static bool holds(const sf_case *c, const char *name) {
     const struct {
@@ -184,7 +184,7 @@ static void tell_free_planes(const sf_case *c, const sf_mesh *mesh, const sf_sin
         if (strncmp(mesh->set[k].name, "symmetry", 8) == 0 && !holds(c, mesh->set[k].name))
             sf_sink_tell(sink, SF_WARNING,
                          "pad.symmetry leaves out the group \"%s\" of the geometry: that "
-                         "side is free, and what is modelled counts as the whole pad",
+                         "side is free, and the modelled part counts as the whole pad",
                          mesh->set[k].name);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Does a model make sense as a drop? What sf_model_check cannot ask, as it sees neither the case nor the
- * names of the geometry. */
+/* Does a model make sense as a drop? The checks that need the case and the group names of the geometry, which
+ * sf_model_check does not have. */
 #ifndef SF_PRE_DROP_CHECK_H
 #define SF_PRE_DROP_CHECK_H
 

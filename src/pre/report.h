@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table that softfall-pre prints before anybody spends time on a run. */
+/* The table that softfall-pre prints: size and checks of the model, before a run. */
 #ifndef SF_PRE_REPORT_H
 #define SF_PRE_REPORT_H
 

@@ -18,7 +18,7 @@ static void request_stop(int signal_number) {
 
 /* Waiting threads spin for billions of cycles by default, which costs a factor of ten and more as soon as
  * another process wants a processor. The OpenMP runtimes read their policy from the environment before main,
- * so the program starts itself once more with the passive one; what the user has set stands. */
+ * so the program starts itself once more with the passive one; a value set by the user is kept. */
 static void limit_spinning(char **argv) {
     /* a spin of some 0.2 ms bridges the barriers of a step, and costs little where threads share a processor
      */

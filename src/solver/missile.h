@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rigid missile: the one owner of its pose, velocity and mass, of what drives it, and of the forces on
- * it. Contact, ledger, history, frames and run ask here, with the point in question, and know nothing of its
- * degrees of freedom.
+/* The rigid missile: it alone holds its pose, velocity and mass, its prescribed motion, and the forces on it.
+ * Contact, ledger, history, frames and run use these functions, with the point concerned, and do not depend
+ * on its degrees of freedom.
  *
- * At present there is one: a translation along a fixed unit vector, the direction of the missile card. A free
- * missile is pulled by gravity and braked by the pad. A driven one (sf_missile_is_driven, core/motion.h)
- * follows its prescribed motion: zero mobility, that is infinite mass.
+ * At present there is one: a translation along a fixed unit vector, the direction of the missile card. A
+ * free missile is pulled by gravity and braked by the pad. A driven missile (sf_missile_is_driven,
+ * core/motion.h) follows its prescribed motion: it has zero mobility (infinite mass).
  *
  * Forces, masses, energies and momenta are those of the modelled part, 1/2 or 1/4 of the missile under
- * symmetry; sf_model_whole leads to the whole. Points and vectors are in the geometry's frame. A scalar
- * "along" is the component in the direction of the missile card. */
+ * symmetry; sf_model_whole is the factor to the whole. Points and vectors are in the geometry's frame. A
+ * scalar "along" is the component in the direction of the missile card. */
 #ifndef SF_SOLVER_MISSILE_H
 #define SF_SOLVER_MISSILE_H
 
@@ -17,7 +17,7 @@
 #include "core/numbers.h"
 #include "solver/contact/missile_surface.h"
 
-/* What a checkpoint keeps of it (core/numbers.h). */
+/* The numbers of the missile in a checkpoint (core/numbers.h). */
 /* clang-format off */
 #define SF_MISSILE_NUMBERS(X)                                                                                          \
     X(double, displacement, , "m", "along, since t = 0")                                                               \
@@ -77,7 +77,7 @@ void sf_missile_free_motion(const sf_missile_response *response, const double x[
 bool sf_missile_gap_ahead(const sf_model *model, const sf_missile *missile,
                           const sf_missile_response *response, const sf_missile_surface *surface,
                           const double x[3], const double step[3], double *gap, double normal[3]);
-/* Takes a force (N) of the missile on the pad at x into the response; replaces `old` there by `force`. */
+/* Adds a force (N) of the missile on the pad at x to the response; replaces `old` there by `force`. */
 void sf_missile_load(sf_missile_response *response, const double x[3], const double force[3]);
 void sf_missile_reload(sf_missile_response *response, const double x[3], const double old[3],
                        const double force[3]);
@@ -89,13 +89,13 @@ double sf_missile_mobility(const sf_missile_response *response, const double x[3
 
 /* ---- forces and the step ---- */
 
-/* Takes all forces off. */
+/* Sets the forces to zero. */
 void sf_missile_clear(sf_missile *missile);
 /* Adds a force (N) of the pad on the missile at x; n: the missile's unit normal there, to which friction is
  * tangential. */
 void sf_missile_apply(const sf_model *model, sf_missile *missile, const double x[3], const double n[3],
                       const double force[3]);
-/* Notes that there is contact at `time`. */
+/* Records contact at `time`. */
 void sf_missile_touch(sf_missile *missile, double time);
 /* Acceleration by gravity and the forces applied. */
 void sf_missile_accelerate(const sf_model *model, sf_missile *missile);
@@ -106,7 +106,7 @@ void sf_missile_drift(const sf_model *model, sf_missile *missile, double time, d
 
 /* ---- figures ---- */
 
-double sf_missile_mass(const sf_model *model);   /* kg; 0 of a driven one, which has none to be told */
+double sf_missile_mass(const sf_model *model);   /* kg; 0 of a driven missile, whose mass is infinite */
 double sf_missile_weight(const sf_model *model); /* N, along */
 double sf_missile_along(const sf_model *model, const double vector[3]);
 /* Momentum along (kg m s-1), at the half step. */

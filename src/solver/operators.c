@@ -13,7 +13,7 @@ static sf_status build_laws(const sf_model *m, sf_operators *op, sf_error *err) 
     return err->status;
 }
 
-/* `owned`: the model too, if it may lose what is no longer needed as soon as that is so; else NULL. */
+/* `owned`: the same model if arrays that are no longer needed may be released at once; else NULL. */
 static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_error *err) {
     memset(op, 0, sizeof *op);
     op->stability = sf_alloc(err, (unsigned long)m->node_count, sizeof *op->stability, "stability constants");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* sf_operators: what the solver derives from the model before the first step and never changes. */
+/* sf_operators: data derived from the model before the first step, constant afterwards. */
 #ifndef SF_SOLVER_OPERATORS_H
 #define SF_SOLVER_OPERATORS_H
 
@@ -17,7 +17,7 @@ typedef struct sf_operators {
     sf_material_law *law; /* [law_count] of the model's materials */
     double *stability;    /* [n] m kg-1, core/stability.h */
 
-    sf_halo halo; /* what groups of domains see */
+    sf_halo halo; /* gather and scatter of groups of domains */
 
     sf_pairs pairs;
 
@@ -27,8 +27,8 @@ typedef struct sf_operators {
 } sf_operators;
 
 sf_status sf_operators_build(const sf_model *model, sf_operators *operators, sf_error *err);
-/* The same, and releases what of the model only operators are made of, so that both are never in memory
- * together: domain_node, support, the edges. */
+/* The same, and releases the arrays of the model that only this function needs (domain_node, support, the
+ * edges), so that arrays and operators are never in memory together. */
 sf_status sf_operators_take(sf_model *model, sf_operators *operators, sf_error *err);
 void sf_operators_free(sf_operators *operators);
 

@@ -31,8 +31,8 @@ typedef struct sf_partial {
 } sf_partial;
 
 /* The numbers of the state that a checkpoint keeps: X(type, name, array size, units, meaning). Each list
- * declares the members of a struct and drives their way to and from a checkpoint (run/state_io.c): a line
- * added here is all. */
+ * declares the members of a struct; the checkpoint writes and reads them by the list (run/state_io.c). To add
+ * a number: a line here. */
 /* clang-format off */
 
 /* Energies at the current time and the momentum balance, of the modelled part. */
@@ -45,7 +45,7 @@ typedef struct sf_partial {
     X(double, stabilisation, , "J", "work of the stabilisation")                                                       \
     X(double, contact, , "J", "lost in normal contact")                                                                \
     X(double, friction, , "J", "lost in friction")                                                                     \
-    X(double, external, , "J", "work of gravity on the missile, or of what drives it")                                 \
+    X(double, external, , "J", "work of gravity on the missile, or of its prescribed motion")                           \
     X(double, reference, , "J", "to which errors refer: total at t = 0; see ledger.h")                                 \
     X(double, stabilisation_drift, , "J", "work that changed stiffness put into the pairs, to date")                   \
     X(double, error, , "1", "of the balance, over `reference`")                                                        \
@@ -95,8 +95,8 @@ typedef struct sf_state {
     /* Smoothing domains. */
     double *f;       /* [n][9] F */
     double *stress;  /* [n][9] J, V P plus the stabilisation's couple */
-    double *history; /* [blocks][history_rows][SF_LANES] SI, what the laws declare and the cards need
-                        (solver/material/law.h) */
+    double *history; /* [blocks][history_rows][SF_LANES] SI, history variables declared by the laws that the
+                        cards need (solver/material/law.h) */
     int64_t history_rows;
     double *stiffness; /* [n] Pa */
     double *tangent;   /* [n] Pa, effective: a + 2 eta / dt of the last step */
@@ -118,16 +118,16 @@ typedef struct sf_state {
     double *contact_gap;      /* [contacts] m, predicted */
     double *contact_normal;   /* [contacts][3] outward from the missile */
     int32_t *contact_active;  /* [contacts] list */
-    int32_t *contact_near;    /* [contacts] list of the points that can touch before contact_room is used up:
-                                 the others' arrays are not kept up to date */
+    int32_t *contact_near;    /* [contacts] Verlet list: the points that can touch before contact_room is used
+                                 up; arrays of other points are not up to date */
     int64_t contact_near_count;
-    double contact_room; /* m, what points and missile may approach each other until the list is made anew */
+    double contact_room; /* m, rest of the skin: approach of points and missile until the list is made anew */
     double fastest;      /* m s-1, of the coefficients at the half step */
 
     int64_t chunk_count;
     sf_partial *partial; /* [chunks] */
 
-    sf_stopwatch *watch; /* borrowed; NULL = nobody measures */
+    sf_stopwatch *watch; /* borrowed; NULL = no timing */
 } sf_state;
 
 /* One array of the state. */

@@ -15,7 +15,7 @@
 enum { RESIDUAL_INTERVAL = 16 };          /* steps between measurements of |G v| */
 static const double SMALLEST_STEP = 1e-9; /* of the end time */
 
-/* A domain that has collapsed, turned inside out or lost its numbers. */
+/* Fails on a domain with det F <= 0, or with det F or a stable step that is NaN or infinite. */
 static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *err) {
     for (int64_t k = 0; k < s->chunk_count; k++) {
         const sf_partial *p = &s->partial[k];
@@ -27,7 +27,7 @@ static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *e
             err, SF_ERR_NUMERIC,
             "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, %s: det F = %.3g. %s",
             s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2],
-            finite ? "has collapsed" : "has lost its numbers", p->jacobian,
+            finite ? "has collapsed" : "holds a NaN or infinity", p->jacobian,
             finite ? "The curve is too soft for this impact there; check its densification"
                    : "The step before was unstable; try a smaller solver.step_safety");
     }
@@ -46,9 +46,9 @@ static sf_status check_step(const sf_model *m, const sf_state *s, sf_error *err)
         s->time, s->dt, floor, (long long)s->jacobian_node, x[0], x[1], x[2], s->smallest_jacobian);
 }
 
-/* The first node with a force or a velocity that is no number; -1: none. */
+/* The first node whose force or velocity holds a NaN or infinity; -1: none. */
 static int64_t find_lost(const sf_model *m, const sf_state *s) {
-    const double *const fields[] = {s->force, s->v}; /* reactions carry a loss to every held node's v */
+    const double *const fields[] = {s->force, s->v}; /* reactions spread a NaN to v of every held node */
     for (int k = 0; k < 2; k++)
         for (int64_t i = 0; i < m->node_count; i++)
             if (!isfinite(fields[k][3 * i] + fields[k][3 * i + 1] + fields[k][3 * i + 2]))
@@ -62,14 +62,15 @@ static sf_status check_finite(const sf_model *m, const sf_state *s, sf_error *er
     int64_t node = find_lost(m, s);
     if (node < 0)
         return SF_FAIL(err, SF_ERR_NUMERIC,
-                       "at t = %.6g s (step %lld) the missile has lost its numbers: acceleration %g m/s2, "
+                       "at t = %.6g s (step %lld) the missile holds a NaN or infinity: acceleration %g m/s2, "
                        "displacement %g m. The contact was unstable; try a smaller solver.step_safety",
                        s->time, (long long)s->step, s->missile.acceleration, s->missile.displacement);
     const double *x = &m->position[3 * node], *f = &s->force[3 * node];
-    return SF_FAIL(err, SF_ERR_NUMERIC,
-                   "at t = %.6g s (step %lld) node %lld, X = (%.5g, %.5g, %.5g) m, has lost its numbers: its "
-                   "force is (%g, %g, %g) N. The step before was unstable; try a smaller solver.step_safety",
-                   s->time, (long long)s->step, (long long)node, x[0], x[1], x[2], f[0], f[1], f[2]);
+    return SF_FAIL(
+        err, SF_ERR_NUMERIC,
+        "at t = %.6g s (step %lld) node %lld, X = (%.5g, %.5g, %.5g) m, holds a NaN or infinity: its "
+        "force is (%g, %g, %g) N. The step before was unstable; try a smaller solver.step_safety",
+        s->time, (long long)s->step, (long long)node, x[0], x[1], x[2], f[0], f[1], f[2]);
 }
 
 static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed) {

@@ -6,9 +6,9 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* Forces, accelerations and books of the present time (state->time). SF_ERR_NUMERIC on a collapsed or
+/* Forces, accelerations and ledger of the present time (state->time). SF_ERR_NUMERIC on a collapsed or
  * non-finite domain, a time step below 1e-9 of the end time, or an energy error above run.energy_limit: the
- * sentence names node, position and time, and the state keeps the last values. */
+ * message names node, position and time, and the state holds the last values. */
 sf_status sf_step_evaluate(const sf_model *model, const sf_operators *operators, sf_state *state,
                            sf_error *err);
 

@@ -28,7 +28,7 @@ static inline double sf_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Books the time since the last call on `phase`. Nothing without a watch. */
+/* Adds the time since the last call to `phase`. Does nothing without a watch. */
 static inline void sf_lap(sf_stopwatch *watch, sf_phase phase) {
     if (!watch)
         return;

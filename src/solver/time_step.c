@@ -12,14 +12,14 @@ enum {
     POWER_WARM = BASIS,  /* of the later ones */
     POWER_LEAST = 4,     /* of a cycle, before it may count as settled */
 };
-/* What the last product or cycle may still add to the frequency squared, as a share of it. */
+/* Converged when the last product or cycle adds less than this share to the frequency squared. */
 static const double SETTLED = 1e-4;
 static const double POWER_CHANGE =
     0.1; /* of the bound on the frequency squared, that calls for a measurement */
 /* The iteration converges from below; its estimate of the frequency squared is raised by this factor. */
 static const double POWER_MARGIN = 1.08;
-/* The ratio is rounded up to a multiple of 1 / POWER_ROUNDING: what rounding errors do to the iteration stays
- * out of the time steps, and so out of the results. */
+/* The ratio is rounded up to a multiple of 1 / POWER_ROUNDING: rounding errors of the iteration do not change
+ * the time steps, and so not the results. */
 static const double POWER_ROUNDING = 16384;
 static const double GROWTH = 1.02;
 
@@ -79,7 +79,7 @@ static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, const 
         field_gradient(m, h, l, seen, &gradient[3 * l]);
 }
 
-/* What one pair does for a scalar field: force on i, the opposite on j; the same couple on both. */
+/* Contributions of one pair for a scalar field: force on i, the opposite on j; the same couple on both. */
 static inline double pull_pair(const sf_model *m, const sf_state *s, const float *gradient, int64_t i,
                                int64_t j, double weight, double couple[3]) {
     double half[3], explained = 0;
@@ -93,7 +93,7 @@ static inline double pull_pair(const sf_model *m, const sf_state *s, const float
     return force;
 }
 
-/* Pair forces of a group into w->out, and what its domains exert into w->flux. */
+/* Pair forces of a group into w->out, fluxes of its domains into w->flux. */
 static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t group,
                                   const power_work *w) {
     const sf_pairs *pairs = &op->pairs;
@@ -145,7 +145,8 @@ static inline void add_flux(const sf_model *m, const sf_halo *h, int64_t l, cons
     }
 }
 
-/* What the domains of a group exert: on its own nodes at once, on others by what waits for them. */
+/* Forces of the domains of a group: on its own nodes at once; contributions to nodes owned by other groups
+ * are stored and summed later in group order. */
 static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_halo *h, int64_t group,
                                      const power_work *w) {
     int64_t own = sf_halo_first(group), end = sf_halo_end(m, group),

@@ -17,7 +17,7 @@ typedef struct sf_compression_check {
     sf_cube_test cube[SF_COMPRESSION_TESTS]; /* if simulated */
 } sf_compression_check;
 
-/* Fills `check` but for what is simulated, from zeros. `card`: of sf_compression_card. */
+/* Fills a zeroed `check`, except the simulated part. `card`: of sf_compression_card. */
 sf_status sf_compression_check_card(const sf_compression_fit *fit, const sf_foam_card *card,
                                     sf_compression_check *check, sf_error *err);
 

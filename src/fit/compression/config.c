@@ -114,7 +114,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
     return read_tests(file, root, c, err);
 }
 
-/* ---- what the tests must have together ---- */
+/* ---- requirements on all tests together ---- */
 
 static sf_status check_together(const char *path, const sf_compression_config *c, sf_error *err) {
     double shortest = 1;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The fitted material in a simulated test: a foam cube between platens (softfall-pre, softfall-solve) against
  * the material point. A laboratory test of minutes is simulated faster by a factor k with everything that
- * depends on the rate scaled by k; what is left of inertia is small. */
+ * depends on the rate scaled by k; the remaining inertia is small. */
 #ifndef SF_FIT_COMPRESSION_CUBE_H
 #define SF_FIT_COMPRESSION_CUBE_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The points of all tests in one list, with the scatter of each: what the joint fit sees. */
+/* The points of all tests in one list, with the scatter of each: the input of the joint fit. */
 #ifndef SF_FIT_COMPRESSION_DATA_H
 #define SF_FIT_COMPRESSION_DATA_H
 

@@ -119,8 +119,8 @@ static int lowest(const sf_candidate *candidates, int count, int otherwise) {
 }
 
 /* First the rate dependence, with the prescribed densification or the free exponent of H1; then, unless it is
- * prescribed, the densification. A = 0 is tried to be told, but not chosen: it has a parameter less and would
- * win wherever the data leave A open, with intervals that deny the doubt. */
+ * prescribed, the densification. A = 0 is fitted for the report, but not chosen: with one parameter less it
+ * would win wherever the data do not determine A, with intervals that are too narrow. */
 static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_error *err) {
     static const sf_rule prescribed[] = {[SF_RULE_AUTO] = SF_H1_FREE,
                                          [SF_RULE_H1] = SF_H1_FREE,
@@ -144,7 +144,7 @@ static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_e
     return SF_OK;
 }
 
-/* ---- what is known ---- */
+/* ---- estimates with their intervals ---- */
 
 /* Correlation of neighbouring deviations of a branch. Independent ones have 0 +- 1/sqrt(count). */
 static double neighbour_correlation(const sf_compression_fit *fit) {
@@ -217,7 +217,7 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
                                                  : -INFINITY,
                      number == SF_NUMBER_HU || number == SF_NUMBER_LIMIT ? 1 : INFINITY, e);
     if (isfinite(e->error) && number == SF_NUMBER_HU && e->low <= 0)
-        e->note = "not told from zero by these tests";
+        e->note = "not distinguishable from zero by these tests";
 }
 
 static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e, sf_error *err) {
@@ -254,7 +254,7 @@ static void estimate_modulus(const sf_compression_fit *fit, sf_estimate *e) {
     e->error = sqrt(c11 * fit->serial);
     set_interval(fit, false, -INFINITY, INFINITY, e);
     if (!(e->low > 0))
-        e->note = "not told from zero by these tests";
+        e->note = "not distinguishable from zero by these tests";
 }
 
 static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The joint fit of all tests: weighted least squares of compression_model.h (GSL, Levenberg-Marquardt), the
- * choice of rate dependence and densification by BIC, and what is known of every number. */
+ * choice of rate dependence and densification by BIC, and the 95 % interval of every number. */
 #ifndef SF_FIT_COMPRESSION_FIT_H
 #define SF_FIT_COMPRESSION_FIT_H
 

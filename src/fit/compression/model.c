@@ -154,7 +154,7 @@ static double beyond_linear(double x) {
     return fabs(x) < 1e-3 ? x * x * (0.5 - x * (1.0 / 6 - x / 24)) : x + expm1(-x);
 }
 
-/* Second Piola-Kirchhoff stress of the branch after `time` from what it held, at a constant rate of the
+/* Second Piola-Kirchhoff stress of the branch after `time` from its initial value, at a constant rate of the
  * stretch (the convolution of E' = stretch stretch'). */
 static double maxwell_leg(double decay_rate, double velocity, double held, double from, double time) {
     double x = decay_rate * time, per = velocity / decay_rate;

@@ -3,7 +3,7 @@
  * rate (lateral stretches 1), as a function of the parameters that compression tests identify, with its
  * derivatives. The loading curve is a cubic spline whose coefficients ascend, and beyond the densification
  * start the law of theory eq. (23), joined with its slope; the hysteresis is eq. (14), the Maxwell stress the
- * closed form of eq. (19). DAMP, which at the rates of these tests is nothing, is left out.
+ * closed form of eq. (19). DAMP is left out: it is negligible at the rates of these tests.
  *
  * A parameter vector holds for every curve the logarithms of the coefficients' increments, then the other
  * parameters mapped from their bounds to the real line. */

@@ -9,7 +9,7 @@
 /* "0.4136 MPa": value, error or bound of an estimate in a unit that reads well; "-" for one that is not
  * finite. */
 void sf_compression_text(const sf_estimate *e, double value, char *out, size_t size);
-/* What a form of the law means, in a phrase. */
+/* A phrase that describes a form of the law. */
 const char *sf_compression_rate_phrase(sf_rate_model model);
 const char *sf_compression_rule_phrase(sf_rule rule);
 

@@ -140,8 +140,8 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
     const sf_estimate *e = fit->estimate;
     double fastest = c->test[c->test_count - 1].rate;
     fprintf(out,
-            "\n## What is extrapolated\n\n"
-            "- Strains beyond %.4g: the densification law goes on from the last part of the data. Compare "
+            "\n## Extrapolation\n\n"
+            "- Strains beyond %.4g: the densification law extrapolates the last part of the data. Compare "
             "`max_local_strain` of a drop.\n",
             fit->data.end);
     if (fit->model.form.rate == SF_RATE_MAXWELL)

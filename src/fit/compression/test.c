@@ -25,7 +25,7 @@ void sf_compression_test_free(sf_compression_test *test) {
 
 /* ---- reading ---- */
 
-/* What a single row can tell; quotes the cells as written. */
+/* Checks of a single row; messages quote the cells as written. */
 static sf_status check_row(const sf_table_point *p, sf_error *err) {
     bool fraction = p->value[0] == strtod(p->text[0], NULL);
     if (p->value[0] >= 1 && fraction)

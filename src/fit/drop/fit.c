@@ -171,7 +171,7 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     return err->status;
 }
 
-/* Adds what the speeds of u change, by columns. */
+/* Adds the effect of the speeds in u, by columns. */
 static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, sf_error *err) {
     double given[SF_MAPPING_MAX_PARAMETERS] = {0};
     unsigned long n = (unsigned long)fit->row[fit->measured_drops];
@@ -211,7 +211,7 @@ static void report_progress(void *context, int iteration, const double *u, const
     fflush(fit->log);
 }
 
-/* ---- what the result says ---- */
+/* ---- conclusions from the result ---- */
 
 /* Each measured drop predicted from the others with the corrected surrogate. */
 static sf_status leave_one_out(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_error *err) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Identification of a foam from drops: responses, surrogate and simulation of a sf_fit_input for space
- * mapping, and what is concluded from the result.
+ * mapping, and the conclusions from the result.
  *
  * Scaled variables: u = ln(value / SI unit) of the unknown parameters; responses per drop: ln a_max, ln HIC,
  * then the samples of a measured curve over its peak. Measured or not, every drop has the first two. */
@@ -43,8 +43,8 @@ typedef struct sf_drop_fit {
     double *response_sd; /* [responses] standard deviation by the parameters; owned */
     /* [responses] each measured drop predicted by the others; NaN if there are none; owned */
     double *without;
-    /* what the drops say about the curve, by strain bin: sum over the data of (d response / d ln sigma /
-     * sd)^2 */
+    /* information of the drops about the curve, by strain bin: sum over the data of (d response / d ln sigma
+     * / sd)^2 */
     double information[SF_FIT_STRAIN_BINS];
     double curve_sd[SF_FIT_STRAIN_BINS];       /* of ln sigma in the bin's middle */
     double curve_prior_sd[SF_FIT_STRAIN_BINS]; /* the same before the data */

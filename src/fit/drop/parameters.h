@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parameters of a foam that drops can identify, and how a set of values makes a foam card. */
+/* The parameters of a foam that drops can identify, and their conversion to a foam card. */
 #ifndef SF_FIT_DROP_PARAMETERS_H
 #define SF_FIT_DROP_PARAMETERS_H
 
@@ -39,13 +39,13 @@ const sf_parameter_info *sf_parameter_get(sf_foam_parameter parameter);
 /* SF_PARAMETER_COUNT if there is none of that name. */
 sf_foam_parameter sf_parameter_find(const char *name);
 
-/* What a fit varies: everything not set below is the start material's. */
+/* The form that a fit varies; all other values are the start material's. */
 typedef struct sf_foam_form {
     sf_foam_card base; /* the start material; curves owned */
     bool gas;          /* the loading curve is a gas curve; else the base's table, scaled */
 } sf_foam_form;
 
-/* Start values (SI) of every parameter, from the base and, for the gas curve, from what is usual for
+/* Start values (SI) of every parameter, from the base and, for the gas curve, from values usual for
  * closed-cell foams: s0 = 0.02 E, p0 = 101 kPa but at most E/2, B = p0/4, m = 3. */
 void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]);
 

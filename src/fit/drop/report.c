@@ -133,7 +133,7 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
     fputs(".\n\n", f);
 }
 
-/* Speeds that are not known exactly: what the fit makes of them. */
+/* Fitted speeds, for drops whose speed is not known exactly. */
 static void put_speeds(FILE *f, const sf_drop_fit *fit) {
     bool any = false;
     for (int d = 0; d < fit->measured_drops; d++)
@@ -229,7 +229,7 @@ static void put_strains(FILE *f, const sf_drop_fit *fit) {
         sum += fit->information[b];
     fprintf(f,
             "## Which strains the drops see\n\nNine tenths of the information lie between strains of %.2f "
-            "and %.2f. Outside, the curve is what its form and the priors make it.\n\n"
+            "and %.2f. Outside, its form and the priors determine the curve.\n\n"
             "| strain | part of the information | standard deviation of the stress | before the data |\n"
             "|---|---|---|---|\n",
             low, high);
@@ -257,7 +257,7 @@ static sf_status write_report(const sf_drop_fit *fit, const char *input_path, co
     put_sensitivities(f, fit);
     put_strains(f, fit);
     if (picture)
-        fputs("![Identified curve, what the drops see of it, and the drops](fit.png)\n", f);
+        fputs("![Identified curve, information of the drops about it, and the drops](fit.png)\n", f);
     return sf_staging_close(f, "report.md", err);
 }
 
@@ -366,8 +366,8 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
     double low, high;
     informed_strains(fit, &low, &high);
     fprintf(f,
-            "The drops inform the curve between strains of %.2f and %.2f; beyond, it is what its form makes "
-            "it.\n",
+            "The drops inform the curve between strains of %.2f and %.2f; beyond, its form "
+            "determines it.\n",
             low, high);
     if (fit->input->form.gas)
         fputs("Curve: s0 (1 - exp(-(E - p0) e / s0)) + p0 x + B x^m with x = e / (1 - e).\n", f);
@@ -437,7 +437,7 @@ static void put_strain_panels(FILE *f) {
           "set ylabel 'nominal stress (kPa)'\nset logscale y\n"
           "plot 'fit-curve.csv' skip 1 u 1:3:4 w filledcurves fc rgb '#c6dbef' t '95 %', '' skip 1 u 1:2 w l "
           "lw 3 lc rgb '#08519c' t 'loading curve'\n"
-          "unset logscale y\nset ylabel 'part of what the drops say about the curve'\nset yrange [0:*]\n"
+          "unset logscale y\nset ylabel 'share of the information of the drops'\nset yrange [0:*]\n"
           "set boxwidth 0.045\nset style fill solid 0.6\n"
           "plot 'fit-curve.csv' skip 1 u 1:5 w boxes lc rgb '#fd8d3c' t 'information by strain'\n",
           f);

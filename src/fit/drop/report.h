@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `softfall-fit drop` leaves: report.md, fit.json, fit.png with its data, and the material file. */
+/* The output of `softfall-fit drop`: report.md, fit.json, fit.png with its data, and the material file. */
 #ifndef SF_FIT_DROP_REPORT_H
 #define SF_FIT_DROP_REPORT_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parameters that a .geo file offers: gmsh itself accepts a value for any name and says nothing, so that
- * a misspelt parameter would leave its default in place unseen. */
+/* The parameters that a .geo file offers: gmsh itself accepts a value for any name without a message, so that
+ * a misspelt parameter would keep its default unnoticed. */
 #ifndef SF_PRE_MESH_GEO_PARAMETERS_H
 #define SF_PRE_MESH_GEO_PARAMETERS_H
 

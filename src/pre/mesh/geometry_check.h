@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What can be asked of a geometry file before gmsh sees it. gmsh decides by name and content what a file is,
- * takes what it does not know for a script, and a script can write files and run programs. */
+/* Checks of a geometry file before gmsh opens it. gmsh chooses the format by name and content and runs a file
+ * of unknown format as a script; a script can write files and run programs. */
 #ifndef SF_PRE_MESH_GEOMETRY_CHECK_H
 #define SF_PRE_MESH_GEOMETRY_CHECK_H
 

@@ -166,8 +166,8 @@ static sf_status merge_source(sf_gmsh *session, const sf_geo_source *source, sf_
     return check_log(session, ierr, "reading", err);
 }
 
-/* gmsh trusts a mesh file: a damaged one can crash it or make it ask for any memory. So a process of its own
- * reads it first, and only a file that this process survives is read in earnest. */
+/* gmsh does not check a mesh file: a damaged one can crash it or make it allocate any amount of memory. So a
+ * child process reads the file first; this process reads it only if the child succeeds. */
 static sf_status try_mesh(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
     int status = 0;
     fflush(NULL);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The only door to gmsh (C API). A session reads geometries that gmsh can open (.geo, .msh, .step with
- * groups), sets their parameters, meshes them if they hold no mesh, and hands out the pad's cells and the
- * missile's surface. gmsh is not re-entrant: one session at a time. */
+/* The only code that calls gmsh (C API), with gmsh_adapter.h and gmsh_size.h. A session reads geometries that
+ * gmsh can open (.geo, .msh, .step with groups), sets their parameters, meshes them if they hold no mesh, and
+ * hands out the pad's cells and the missile's surface. gmsh is not re-entrant: one session at a time. */
 #ifndef SF_PRE_MESH_GMSH_SESSION_H
 #define SF_PRE_MESH_GMSH_SESSION_H
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Part of the door to gmsh (pre/mesh/gmsh_session.h): how large will the mesh of the open geometry be? */
+/* Part of the gmsh session (pre/mesh/gmsh_session.h): an estimate of the memory for the mesh of the open
+ * geometry. */
 #ifndef SF_PRE_MESH_GMSH_SIZE_H
 #define SF_PRE_MESH_GMSH_SIZE_H
 

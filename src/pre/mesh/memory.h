@@ -4,9 +4,9 @@
 #ifndef SF_PRE_MESH_MEMORY_H
 #define SF_PRE_MESH_MEMORY_H
 
-/* Bytes; infinite if nobody knows. */
+/* Bytes; INFINITY if unknown. */
 double sf_memory_available(void);
-/* Makes allocations of this process beyond that fail, for a process that may be handed anything. */
+/* Makes allocations of this process beyond that fail, for a process that reads untrusted files. */
 void sf_memory_limit_process(void);
 
 #endif

@@ -23,7 +23,7 @@ typedef struct sf_mesh {
     int32_t *cell_node; /* [..] VTK vertex order, positive volume */
     int set_count;
     sf_node_set *set;     /* [set_count] every physical surface group whose nodes belong to the pad */
-    int64_t orphan_count; /* nodes of the geometry that no cell of any volume uses (told, not kept) */
+    int64_t orphan_count; /* nodes of the geometry that no cell of any volume uses (counted, not kept) */
 } sf_mesh;
 
 typedef struct sf_surface {

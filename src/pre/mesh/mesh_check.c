@@ -64,7 +64,7 @@ static const char *type_name(int type) {
     }
 }
 
-/* Positions of the cell's vertices relative to its first one: what is far from the origin loses no digits. */
+/* Positions of the cell's vertices relative to its first one: no digits are lost far from the origin. */
 static int local_vertices(const sf_mesh *mesh, int64_t cell, double x[MAX_VERTICES][3]) {
     const int32_t *node = mesh->cell_node + mesh->cell_ptr[cell];
     int count = (int)(mesh->cell_ptr[cell + 1] - mesh->cell_ptr[cell]);
@@ -180,9 +180,9 @@ static int compare_along(const void *a, const void *b) {
     return p->node < q->node ? -1 : p->node > q->node;
 }
 
-/* Coinciding nodes are a crack that nobody sees: a mesh made of parts that were not joined. Near nodes are
- * near along any direction; along an oblique one few others are, unlike along an axis, where a lattice has
- * whole planes. */
+/* Coinciding nodes are an invisible crack: a mesh of parts that were not joined. Near nodes are near along
+ * any direction; along an oblique one few others are, unlike along an axis, where a lattice has whole
+ * planes. */
 static sf_status check_coinciding(const sf_mesh *mesh, const double low[3], const double high[3],
                                   sf_error *err) {
     static const double direction[3] = {0.540302305868, 0.614787296915, 0.574617168265};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A mesh as a mesh generator hands it out: nodes by tag, cells and faces by node tags; and what is made of
- * it. */
+/* The raw mesh of a mesh generator: nodes by tag, cells and faces by node tags; and its conversion to
+ * sf_mesh. */
 #ifndef SF_PRE_MESH_MESH_RAW_H
 #define SF_PRE_MESH_MESH_RAW_H
 

@@ -33,7 +33,7 @@ static void sort_tags(size_t tag[SF_RAW_FACE]) {
         }
 }
 
-/* What the steps below share. */
+/* Shared by the steps below. */
 typedef struct surface_builder {
     const sf_raw_mesh *raw;
     sf_tag_index *nodes;

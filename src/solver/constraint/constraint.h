@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Essential boundary conditions on u_h by the transformation method, as an exact projection (Chen, Pan, Wu,
  * Liu 1996; theory, section "Constraints"): with G the rows phi(X_c) of the held nodes, (G M^-1 G^T) lambda =
- * G a* + (G v) / dt,    a = a* - M^-1 G^T lambda. The factor is made once (solver/constraint/ldl.h). A row of
- * G stands for a node held in all components, or for one component of a node that is held in some. */
+ * G a* + (G v) / dt, a = a* - M^-1 G^T lambda. The matrix is factored once (solver/constraint/ldl.h). A row
+ * of G stands for a node held in all components, or for one component of a node that is held in some. */
 #ifndef SF_SOLVER_CONSTRAINT_CONSTRAINT_H
 #define SF_SOLVER_CONSTRAINT_CONSTRAINT_H
 
@@ -28,14 +28,14 @@ typedef struct sf_constraint {
 
     sf_ldl factor; /* of G M^-1 G^T */
     /* Work of one projection at a time, although the functions take a constant. */
-    sf_vec *field;  /* [touched_count] what G is applied to */
+    sf_vec *field;  /* [touched_count] the vector that G multiplies */
     sf_vec *lambda; /* [rows] right side, then lambda (N); in sf_constraint_residual G v */
 } sf_constraint;
 
 sf_status sf_constraint_build(const sf_model *model, sf_constraint *constraint, sf_error *err);
 void sf_constraint_free(sf_constraint *constraint);
 
-/* What the constraints see of a step. */
+/* Input and output of the projection in one step. */
 typedef struct sf_constraint_step {
     const double *force; /* [n][3] N, all forces but the reactions */
     const double *v;     /* [n][3] m s-1, at the last half step */

@@ -82,7 +82,7 @@ static void cut_tree(tree *t) {
             t->branch[j] = t->branch[t->parent[j]];
 }
 
-/* What a build works on. A system is a list of row ranges, whose rows it has in the order of `position`. */
+/* Work arrays of a build. A system is a list of row ranges, whose rows it has in the order of `position`. */
 typedef struct builder {
     const sf_ldl_entries *a;
     int64_t rows;

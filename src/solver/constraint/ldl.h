@@ -2,9 +2,8 @@
 /* Solution of three sparse symmetric positive definite systems at once, many times: one for each component of
  * a vector. They share the rows and entries that hold for all components; each may have rows of its own,
  * which come last. CHOLMOD orders and factors A = L D L^T once, and L too is shared. The elimination tree of
- * the shared rows is cut into branches, which have nothing to do with each other and may run side by side,
- * and a trunk on top of them; the cut depends on A alone, so that the bits of x do not depend on the number
- * of threads. */
+ * the shared rows is cut into independent branches, which may be solved in parallel, and a trunk above them.
+ * The cut depends on A alone: x is the same, bit for bit, for any number of threads. */
 #ifndef SF_SOLVER_CONSTRAINT_LDL_H
 #define SF_SOLVER_CONSTRAINT_LDL_H
 
@@ -17,7 +16,7 @@ enum { SF_LDL_BRANCHES = 4 };
 
 /* Entries of the lower triangle, in any order; those of one place add up. Rows 0 to part[0] - 1 are those of
  * the components in `shared` (bits 1, 2, 4) together, part[c] to part[c + 1] - 1 those of component c alone.
- * Owned by who fills it. */
+ * Owned by the caller that fills it. */
 typedef struct sf_ldl_entries {
     uint8_t shared;
     int64_t part[4], count;
@@ -38,8 +37,8 @@ typedef struct sf_ldl {
     double *value;   /* [column[rows]] */
     double *inverse; /* [rows] 1 / D */
     sf_vec *mask;    /* [rows] 1 in the components that have the row, else 0 */
-    sf_vec *carried; /* [SF_LDL_BRANCHES][rows - branch[SF_LDL_BRANCHES]] what branches leave to the trunk;
-                        work of one solution at a time */
+    sf_vec *carried; /* [SF_LDL_BRANCHES][rows - branch[SF_LDL_BRANCHES]] contributions of the branches to the
+                        trunk; work of one solution at a time */
 } sf_ldl;
 
 /* Do two rows have no component in common? Then A has no entry there. */

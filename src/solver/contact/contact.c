@@ -10,18 +10,18 @@ static const double ENTRY_DEPTH =
     0.1; /* of the spacing: no free point gets deeper in one step through the surface */
 static const double SWEEP_TOLERANCE = 1e-10; /* largest change of a force, relative to the largest force */
 
-/* What one solve needs beside the state. */
+/* Constants of one solve, and the response of the missile. */
 typedef struct contact_solve {
     double shift; /* s2, dt times the distance of the half steps */
     sf_missile_response missile;
 } contact_solve;
 
-/* The list of near points is made of those within NEAR spacings of the missile, and made anew when half of
- * that is used up, or when what is left is not more than twice what is used up in a step. */
+/* Verlet list with skin: the near points are those within NEAR spacings of the missile. The list is made anew
+ * when half of that distance is used up, or when the rest is not more than twice the travel of one step. */
 static const double NEAR = 2;
 
-/* Takes the last step's travel from the room of the list. Once too little is left, all points are looked at;
- * returns whether they are. */
+/* Subtracts the last step's travel from the skin of the Verlet list. When the rest is too small, lists all
+ * points and returns true. */
 static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
     double speed = op->gram.spread * s->fastest + sf_missile_fastest(&s->missile);
     s->contact_room -= s->dt_old * speed;
@@ -33,7 +33,7 @@ static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
     return true;
 }
 
-/* Of all points, the near ones. */
+/* Makes the list of near points from the points listed now. */
 static void list_near(const sf_model *m, const sf_operators *op, sf_state *s) {
     int64_t count = 0;
     s->contact_room = NEAR * op->gram.spacing;

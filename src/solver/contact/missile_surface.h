@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rigid missile as contact sees it: gap and outward normal at a point, for an exact sphere cap or a
- * triangulated surface. All points are in the missile's frame: its position at t = 0, so that a moved missile
- * is asked about a point moved back. */
+/* The surface of the rigid missile for contact: gap and outward normal at a point, for an exact sphere cap or
+ * a triangulated surface. All points are in the missile's frame, that of its position at t = 0: the caller
+ * moves a point back by the missile's translation. */
 #ifndef SF_SOLVER_CONTACT_MISSILE_SURFACE_H
 #define SF_SOLVER_CONTACT_MISSILE_SURFACE_H
 
@@ -21,7 +21,7 @@ typedef struct sf_missile_surface {
     double *edge_normal;
     uint8_t *rim_edge;      /* [triangles][3 edges] 1 = no second face */
     uint8_t *rim_vertex;    /* [nodes] 1 = end of such an edge */
-    double reach;           /* m, gaps beyond this are not looked for */
+    double reach;           /* m, larger gaps are not searched for */
     double low[3], high[3]; /* of all nodes */
     int64_t bins[2];
     int64_t *start;  /* [bins + 1] */

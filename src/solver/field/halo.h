@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups of consecutive nodes, and the nodes that their domains see: their own, and some of other groups. A
- * group gathers the coefficients it needs into an array of its own, and collects what its domains exert on
- * nodes there, so that the gradient B is stored once, by domain, and read in its order both ways. What it has
- * collected for nodes of other groups waits for them; a node sums it in the order of the groups: the same
- * bits for any number of threads. */
+/* Groups of consecutive nodes. A group owns its nodes; its ghosts are the nodes of other groups in the
+ * supports of its domains. Gather: a group copies the coefficients of its nodes and ghosts into a local
+ * array. Scatter: it sums the forces of its domains into a local array. So the gradient B is stored once, by
+ * domain, and read in storage order both ways. Contributions to nodes owned by other groups are stored and
+ * summed later in group order: the same bits for any number of threads. */
 #ifndef SF_SOLVER_FIELD_HALO_H
 #define SF_SOLVER_FIELD_HALO_H
 
@@ -12,25 +12,25 @@
 #include "core/model.h"
 
 enum {
-    SF_HALO_WORK = 8,     /* doubles per node that passes may count on */
+    SF_HALO_WORK = 8,     /* doubles per node that every pass may use */
     SF_GROUP = 128,       /* nodes, a multiple of SF_CHUNK (state.h) */
-    SF_GROUP_SEES = 4096, /* nodes at most */
-    SF_AHEAD = 512,       /* numbers of B between what a kernel works on and what it asks the memory for, as B
-                             does not fit into the caches and processors stop reading ahead at the end of a page */
+    SF_GROUP_SEES = 4096, /* nodes and ghosts of a group at most */
+    SF_AHEAD = 512,       /* prefetch distance in numbers of B: B does not fit into the caches, and
+                             hardware prefetch stops at the end of a page */
 };
 
 typedef struct sf_halo {
     int64_t group_count;
-    int64_t *ptr;      /* [group_count + 1] */
-    int32_t *node;     /* [ptr[group_count]] nodes of other groups that the group sees, ascending */
-    uint16_t *local;   /* [domain_nnz] place of each entry of B (domain_b) in what its group sees: its own
-                          nodes, then those others */
+    int64_t *ptr;    /* [group_count + 1] */
+    int32_t *node;   /* [ptr[group_count]] ghosts of the group, ascending */
+    uint16_t *local; /* [domain_nnz] place of each entry of B (domain_b) in the local array of its group: own
+                        nodes, then ghosts */
     int32_t *slot_ptr; /* [n + 1] */
-    int32_t *slot;     /* [ptr[group_count]] where the other groups' lists hold node i, ascending */
-    double *work;      /* [SF_HALO_WORK n or 3 ptr[group_count], the larger] of use within one pass */
+    int32_t *slot;     /* [ptr[group_count]] places of node i in the ghost lists of other groups, ascending */
+    double *work;      /* [SF_HALO_WORK n or 3 ptr[group_count], the larger] valid within one pass */
 } sf_halo;
 
-/* SF_ERR_MODEL if one group sees more than SF_GROUP_SEES nodes. */
+/* SF_ERR_MODEL if one group has more than SF_GROUP_SEES nodes and ghosts. */
 sf_status sf_halo_build(const sf_model *model, sf_halo *halo, sf_error *err);
 void sf_halo_free(sf_halo *halo);
 

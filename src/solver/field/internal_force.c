@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* Adds V P B_J of domain l to what its nodes get; x, y, z: columns of V P. */
+/* Adds V P B_J of domain l to the local sums of its nodes; x, y, z: columns of V P. */
 static inline void add_domain(const sf_model *m, const sf_halo *h, int64_t l, sf_vec x, sf_vec y, sf_vec z,
                               sf_vec *restrict sum) {
     const int64_t first = m->domain_ptr[l], count = m->domain_ptr[l + 1] - first;
@@ -15,7 +15,8 @@ static inline void add_domain(const sf_model *m, const sf_halo *h, int64_t l, sf
     }
 }
 
-/* What the domains of group g exert: on its own nodes at once, on others by what waits for them. */
+/* Forces of the domains of group g: on its own nodes at once; contributions to nodes owned by other groups
+ * are stored and summed later in group order. */
 static SF_KERNEL void collect_group(const sf_model *m, const sf_halo *h, const double *stress, int64_t g,
                                     double *force) {
     int64_t own = sf_halo_first(g), end = sf_halo_end(m, g), others = h->ptr[g + 1] - h->ptr[g];
@@ -33,7 +34,7 @@ static SF_KERNEL void collect_group(const sf_model *m, const sf_halo *h, const d
         memcpy(&h->work[3 * (h->ptr[g] + q)], &seen[end - own + q], 3 * sizeof(double));
 }
 
-/* What waits for the nodes of group g, from their forces. */
+/* Subtracts the stored contributions of other groups from the forces on the nodes of group g. */
 static SF_KERNEL void take_waiting(const sf_model *m, const sf_halo *h, int64_t g, double *force) {
     for (int64_t i = sf_halo_first(g); i < sf_halo_end(m, g); i++) {
         sf_vec f = {0};

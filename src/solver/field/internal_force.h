@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Internal forces f_I = - sum_L (V P)_L B_I^L, collected by groups of domains (halo.h), then
- * summed by node (theory eq. 8). */
+/* Internal forces f_I = - sum_L (V P)_L B_I^L, scattered by groups of domains (halo.h), then summed by node
+ * (theory eq. 8). */
 #ifndef SF_SOLVER_FIELD_INTERNAL_FORCE_H
 #define SF_SOLVER_FIELD_INTERNAL_FORCE_H
 

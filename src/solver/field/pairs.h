@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stabilisation pairs along the edges of the background mesh, as groups of nodes (halo.h) work on them: a
- * pair within a group once, from its node of the lower number; a pair between groups in each of the two, so
- * that no group writes what is another's. */
+/* Stabilisation pairs along the edges of the background mesh, by groups of nodes (halo.h). A pair within a
+ * group is listed once, at its node of the lower number. A pair between two groups is listed in both, so that
+ * each group writes to its own nodes only. */
 #ifndef SF_SOLVER_FIELD_PAIRS_H
 #define SF_SOLVER_FIELD_PAIRS_H
 

@@ -2,7 +2,7 @@
 #include "solver/field/stabilisation.h"
 #include <string.h>
 
-/* A node as its pairs see it. */
+/* The data of a node that its pairs need. */
 typedef struct pair_node {
     sf_vec x, d, f[3];
     double stiffness;
@@ -16,7 +16,8 @@ static inline void load_node(const sf_model *m, const double *d, const double *f
     sf_vec_columns(&f[9 * i], node->f);
 }
 
-/* What one pair does to its nodes: force on a, the opposite on b; the same couple and energy on both. */
+/* Contributions of one pair to its nodes: force on a, the opposite on b; the same couple and energy on
+ * both. */
 typedef struct pair_effect {
     sf_vec force, couple[3], energy;
 } pair_effect;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Control of the zero-energy modes of nodal integration (theory, section "Stabilisation"; after Ganzenmueller
  * 2015, doi:10.1016/j.cma.2014.12.005). For every mesh edge IJ the part of x_J - x_I that the gradients do
- * not explain, e = x_J - x_I - 1/2 (F_I + F_J)(X_J - X_I), is penalised by the energy 1/2 k |e|^2, k = weight
- * (g_I + g_J), g the current stiffness of the foam. Forces are the exact gradient of that energy: on x, and
- * on F as an extra couple in the stress, so that linear and angular momentum hold. */
+ * not reproduce, e = x_J - x_I - 1/2 (F_I + F_J)(X_J - X_I), is penalised by the energy 1/2 k |e|^2, k =
+ * weight (g_I + g_J), g the current stiffness of the foam. Forces are the exact gradient of that energy: on
+ * x, and on F as an extra couple in the stress, so that linear and angular momentum hold. */
 #ifndef SF_SOLVER_FIELD_STABILISATION_H
 #define SF_SOLVER_FIELD_STABILISATION_H
 
@@ -15,7 +15,7 @@
  * stabilisation. */
 void sf_stabilisation(const sf_model *model, const sf_operators *operators, sf_state *state);
 
-/* What the pairs do to the nodes of a group, by place in it. */
+/* Forces, couples and energies of the pairs at the nodes of a group, by place in it. */
 typedef struct sf_pair_sums {
     sf_vec force[SF_GROUP];     /* N */
     sf_vec couple[SF_GROUP][3]; /* J, by column */

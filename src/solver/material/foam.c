@@ -232,7 +232,7 @@ double sf_foam_uniaxial(const sf_foam *foam, double dt, double strain, sf_uniaxi
     return stress - stretch * (*maxwell + foam->kelvin * green_rate);
 }
 
-/* Adds the rate overstress of every lane to the principal stresses `part`, books its work and says what it
+/* Adds the rate overstress of every lane to the principal stresses `part`, adds its work and returns what it
  * adds to the bounds. */
 static void rate_stress(const sf_foam *foam, double dt, sf_law_batch *b, double v[9][SF_LANES],
                         double rate_of_e[6][SF_LANES], double part[3][SF_LANES], double extra[SF_LANES]) {

@@ -58,7 +58,7 @@ const sf_law *sf_law_get(int number);
 /* NULL if there is none of that name. */
 const sf_law *sf_law_find(const char *name);
 
-/* A material, ready to update points. */
+/* A material with the data to update points. */
 typedef struct sf_material_law {
     const sf_law *law;
     void *numbers;           /* owned */

@@ -35,7 +35,7 @@ static int parse_threads(const char *text, struct argp_state *state) {
 
 static void check_options(sf_solve_options *o, struct argp_state *state) {
     if (o->restart && o->output)
-        argp_error(state, "--restart RESULTS goes on in RESULTS: -o has no place beside it");
+        argp_error(state, "--restart RESULTS writes to RESULTS: -o is not allowed with it");
     if (!o->restart && (!o->model || !o->output))
         argp_error(state, "usage: softfall-solve model.h5 -o results.h5");
     if (o->restart)
@@ -93,7 +93,7 @@ void sf_solve_options_parse(int argc, char **argv, sf_solve_options *o) {
         {"threads", 't', "N", 0, "OpenMP threads (default: all processors, or OMP_NUM_THREADS)", 0},
         {"force", 'f', 0, 0, "replace an existing results file", 0},
         {"restart", RESTART, "RESULTS", 0,
-         "go on with RESULTS from RESULTS.restart, with the bits of one run; MODEL only if it has been moved",
+         "resume RESULTS from RESULTS.restart, bit for bit as if uninterrupted; MODEL only if it has been moved",
          0},
         {"end-time", END_TIME, "TIME", 0, "another end of the simulated time, such as \"40 ms\"", 0},
         {"checkpoint-every", CHECKPOINT_EVERY, "TIME", 0, "wall time between checkpoints (default: 60 s)", 0},
@@ -112,7 +112,7 @@ void sf_solve_options_parse(int argc, char **argv, sf_solve_options *o) {
         .parser = parse,
         .args_doc = "MODEL",
         .doc = "Solves the drop in MODEL (from softfall-pre). Ctrl-C (SIGINT, SIGTERM) ends the run after "
-               "the present step with readable results and a checkpoint, from which --restart goes on.\vExit "
+               "the present step with readable results and a checkpoint, from which --restart resumes.\vExit "
                "code: 0 done, 2 wrong input, 3 a file failed, 4 wrong model, 5 numerical failure, 6 out of "
                "memory, 7 a library failed, 130 interrupted (SIGINT, SIGTERM)."};
     *o = (sf_solve_options){

@@ -17,7 +17,8 @@ typedef struct sf_solve_options {
     bool force;
 } sf_solve_options;
 
-/* Reads the command line; a wrong one ends the program with a sentence. Texts are borrowed from `argv`. */
+/* Reads the command line; a wrong command line ends the program with a message. Texts are borrowed from
+ * `argv`. */
 void sf_solve_options_parse(int argc, char **argv, sf_solve_options *options);
 
 #endif

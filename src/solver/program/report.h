@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What softfall-solve prints before and after a run. */
+/* Texts of softfall-solve before and after a run. */
 #ifndef SF_SOLVER_PROGRAM_REPORT_H
 #define SF_SOLVER_PROGRAM_REPORT_H
 

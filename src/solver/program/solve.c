@@ -19,9 +19,9 @@ static sf_status check_output(const sf_solve_options *o, const sf_output *output
         return SF_OK;
     if (access(output->results, F_OK) == 0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it%s", output->results,
-                       access(output->checkpoint, F_OK) == 0 ? ", --restart goes on with it" : "");
+                       access(output->checkpoint, F_OK) == 0 ? ", --restart resumes it" : "");
     if (access(output->checkpoint, F_OK) == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --restart %s goes on from it, --force starts anew",
+        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --restart %s resumes from it, --force starts a new run",
                        output->checkpoint, output->results);
     return SF_OK;
 }
@@ -67,7 +67,7 @@ static void remove_all(const sf_output *output) {
     sf_output_clear(output);
 }
 
-/* What a failure leaves behind. */
+/* After a failure: removes the files, or reports which of them remain. */
 static void handle_failure(const sf_solve_options *o, const sf_output *output, const sf_state *state) {
     if (o->remove_failed) {
         remove_all(output);
@@ -75,13 +75,13 @@ static void handle_failure(const sf_solve_options *o, const sf_output *output, c
     }
     fprintf(stderr, "softfall-solve: %s has the frame of the failure", output->results);
     if (!o->no_checkpoint && access(output->checkpoint, F_OK) == 0)
-        fprintf(stderr, "; %s is step %lld, t = %.6g s, the last that held", output->checkpoint,
+        fprintf(stderr, "; %s is step %lld, t = %.6g s, the last valid step", output->checkpoint,
                 (long long)state->step, state->time);
     fputc('\n', stderr);
 }
 
-/* All that a step needs, and the base of the results: the mesh is never in memory together with what the
- * solver derives from the model, and the model's file is needed no more. */
+/* Builds operators and state, and writes the base of the results first: so the mesh is released before the
+ * operators are built, and the model's file is closed. */
 static sf_status build(sf_model *model, sf_h5 **model_file, const sf_provenance *provenance,
                        const sf_output *output, sf_operators *operators, sf_state *state, sf_error *err) {
     if (sf_output_base(output, model, *model_file, provenance, err) != SF_OK ||
@@ -90,7 +90,7 @@ static sf_status build(sf_model *model, sf_h5 **model_file, const sf_provenance 
     sf_model_drop_mesh(model);
     if (sf_operators_take(model, operators, err) != SF_OK)
         return err->status;
-    malloc_trim(0); /* what building took and gave back */
+    malloc_trim(0); /* return the freed work memory of the build */
     return sf_state_create(model, state, err);
 }
 

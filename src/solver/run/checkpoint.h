@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checkpoints (docs/formats.md): a sealed HDF5 file with everything that a run needs to go on with the same
- * bits, beside the model. It holds the state after sf_step_evaluate. */
+/* Checkpoints (docs/formats.md): a sealed HDF5 file. With the model it resumes a run bit for bit as if
+ * uninterrupted. It holds the state after sf_step_evaluate. */
 #ifndef SF_SOLVER_RUN_CHECKPOINT_H
 #define SF_SOLVER_RUN_CHECKPOINT_H
 
@@ -8,7 +8,7 @@
 #include "solver/run/output.h"
 #include "solver/run/recorder.h"
 
-/* What the run was about. */
+/* An open checkpoint and the identity of its run. */
 typedef struct sf_checkpoint {
     sf_h5 *file; /* open for sf_checkpoint_read */
     char *path;

@@ -124,7 +124,7 @@ static sf_status write_item(sf_h5 *file, const char *group, const char *name, co
     return sf_h5_write(file, &info, SF_H5_F64, rank, dims, data, err);
 }
 
-/* What a frame holds beside its fields. */
+/* The data of a frame beside its fields. */
 static sf_status write_head(const sf_model *m, const sf_state *s, const char *path, sf_h5 *file,
                             sf_error *err) {
     const int64_t three = 3;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* results.h5 while it grows (docs/formats.md, section "While a run goes on"). Every file is written under
- * another name and renamed, so that results.h5 is whole at any instant. While the run goes on, results.h5
- * holds the history and links to the model and the frames, which are files of their own in the folder
+ * another name and renamed, so that results.h5 is complete at any instant. During the run, results.h5 holds
+ * the history and links to the model and the frames, which are files of their own in the folder
  * results.h5.run, like the fields at the peak; in the end everything is copied into results.h5 and the folder
  * removed. */
 #ifndef SF_SOLVER_RUN_OUTPUT_H
@@ -28,9 +28,9 @@ sf_status sf_output_name(sf_output *output, const char *results, sf_error *err);
 sf_status sf_output_open(sf_output *output, sf_error *err);
 void sf_output_close(sf_output *output);
 
-/* Provenance and model, from which every results.h5 starts (results_file.h): written aside, while all that an
- * earlier run has left stays as it is, until sf_output_start gives it its name. That keeps the frames of the
- * earlier run or removes them. sf_output_abandon takes back what was done since sf_output_open. */
+/* Provenance and model, from which every results.h5 starts (results_file.h): written under another name,
+ * without change to the files of an earlier run. sf_output_start renames it, and keeps or removes the frames
+ * of the earlier run. sf_output_abandon undoes everything since sf_output_open. */
 sf_status sf_output_base(const sf_output *output, const sf_model *model, const sf_h5 *model_file,
                          const sf_provenance *provenance, sf_error *err);
 sf_status sf_output_start(const sf_output *output, bool keep, sf_error *err);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a run carries from step to step beside the state: the history, the peak, and when
- * the fields are due for a file: as a frame, or as those at the peak (output.h writes them). */
+/* Data that a run carries from step to step beside the state: the history, the peak, and the times at which
+ * the fields are due, as a frame or as the fields at the peak (output.h writes them). */
 #ifndef SF_SOLVER_RUN_RECORDER_H
 #define SF_SOLVER_RUN_RECORDER_H
 
 #include "solver/run/history.h"
 
-/* What a checkpoint keeps of a recorder beside the history, as the lists of state.h. */
+/* The numbers of a recorder in a checkpoint, beside the history; a list as in state.h. */
 /* clang-format off */
 #define SF_RECORDER_NUMBERS(X)                                                                                         \
     X(double, peak_value, , "1", "largest acceleration, m s-2; of a driven missile largest contact force, N")          \
@@ -46,8 +46,8 @@ sf_extremes sf_recorder_extremes(const sf_recorder *recorder);
 void sf_recorder_begin(sf_recorder *recorder);
 void sf_recorder_free(sf_recorder *recorder);
 
-/* What a run is watched for: deceleration, m s-2, or the contact force, N, on a missile whose motion is
- * prescribed. */
+/* The quantity whose peak is recorded: deceleration, m s-2, or the contact force, N, on a missile whose
+ * motion is prescribed. */
 double sf_recorder_measure(const sf_model *model, const sf_state *state);
 
 /* Adds the state after sf_step_evaluate: a row of history, the peak. */
@@ -65,7 +65,7 @@ bool sf_recorder_peak_ahead(const sf_recorder *recorder);
 /* Is a frame due? Then it is counted, and both schedules move past the present time. */
 bool sf_recorder_frame_due(sf_recorder *recorder, const sf_model *model, const sf_state *state);
 
-/* To and from a checkpoint; a recorder that is read must be new. SF_ERR_IO if what is read does not belong to
+/* To and from a checkpoint; a recorder that is read must be new. SF_ERR_IO if the data read do not belong to
  * `state`. */
 sf_status sf_recorder_write(const sf_recorder *recorder, sf_h5 *file, sf_error *err);
 sf_status sf_recorder_read(sf_recorder *recorder, const sf_model *model, const sf_state *state,

@@ -169,7 +169,7 @@ static sf_status load(drop *d, const sf_checkpoint *from, sf_error *err) {
     return err->status;
 }
 
-/* After a failure: the same steps again up to the last that held, for a checkpoint there. */
+/* After a failure: repeats the steps up to the last valid one, for a checkpoint there. */
 static sf_status replay(drop *d, sf_error *err) {
     sf_checkpoint last = {0};
     d->last_step = d->s->step - 1;
@@ -222,7 +222,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
         SF_FAIL(err, late.status, "%s", late.text);
     else if (err->status == SF_OK && strcmp(run->ending, "interrupted") == 0)
         SF_FAIL(err, SF_INTERRUPTED, "interrupted at t = %.6g s; results up to there are readable%s", s->time,
-                run->checkpoints ? ", and --restart goes on from there" : "");
+                run->checkpoints ? "; --restart resumes the run" : "");
     run->extremes = sf_recorder_extremes(&d.r);
     sf_recorder_free(&d.r);
     return err->status;

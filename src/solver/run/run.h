@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A whole run: steps until the end, with history, frames, the peak and the summary in results.h5, and
- * checkpoints from which it can go on. */
+ * checkpoints from which it can be resumed. */
 #ifndef SF_SOLVER_RUN_RUN_H
 #define SF_SOLVER_RUN_RUN_H
 
@@ -25,7 +25,7 @@ typedef struct sf_run {
     double checkpoint_time;          /* s of simulated time between two */
     const sf_provenance *provenance; /* of the checkpoints; borrowed */
     /* out */
-    double wall_time; /* s, with what went before a restart */
+    double wall_time; /* s, with the time before a restart */
     sf_extremes extremes;
     const char *ending; /* "finished", "rebound", "interrupted", "failed" */
 } sf_run;
@@ -33,8 +33,8 @@ typedef struct sf_run {
 /* Runs `state` to the end, from the beginning or from `checkpoint` (NULL: none) with a `state` freshly
  * created. `output` is open and has its base. On a numerical failure or an interruption everything up to the
  * last step is written, with a last frame, and the status says so. After a failure `state` and the checkpoint
- * are those of the last step that held. When a file cannot be written the folder of `output` stays, and the
- * last checkpoint with it. */
+ * are those of the last valid step. When a file cannot be written the folder of `output` stays, and the last
+ * checkpoint with it. */
 sf_status sf_run_drop(const sf_model *model, const sf_operators *operators, sf_state *state, sf_run *run,
                       sf_output *output, const sf_checkpoint *checkpoint, sf_error *err);
 
