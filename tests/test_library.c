@@ -98,6 +98,11 @@ static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     assert_memory_equal(&ours, &theirs, sizeof ours);
     assert_true(ours.hic > 0 && ours.a_max_g > 0 && ours.rebounded);
     assert_int_equal(softfall_drop_figures(p->drop, 100, &ours, &error), SOFTFALL_INPUT);
+    double depth = 0, unchanged = 7;
+    assert_int_equal(softfall_drop_figure(p->drop, 1000, "max_indentation_mm", &depth, &error), SOFTFALL_OK);
+    assert_true(depth == 1e3 * theirs.max_indentation);
+    assert_int_equal(softfall_drop_figure(p->drop, 1000, "nodes", &unchanged, &error), SOFTFALL_INPUT);
+    assert_true(unchanged == 7);
 }
 
 /* Steps taken one by one, from a model that was written and read, are those of the run. */

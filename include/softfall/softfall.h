@@ -200,9 +200,9 @@ typedef struct softfall_figures {
     double max_indentation;               /* m */
     double max_mean_strain;               /* 1, over the thickness */
     double max_local_strain;              /* 1 */
-    double energy_error;                  /* 1, largest; above 0.01 do not trust the figures */
-    double stabilisation_energy_fraction; /* 1, of the internal energy at its peak; above 0.05 likewise */
-    double contact_energy_fraction;       /* 1, likewise; above 0.01 likewise */
+    double energy_error;                  /* 1, largest; docs/formats.md has the limits of a good run */
+    double stabilisation_energy_fraction; /* 1, of the internal energy at its peak */
+    double contact_energy_fraction;       /* 1, likewise */
     double peak_force;                    /* N, largest contact force (prescribed motion, like the next) */
     double peak_stress;                   /* Pa, that force over the pad's mean cross-section */
     double work;                          /* J, largest work of the motion on the pad */
@@ -214,6 +214,11 @@ SOFTFALL_API softfall_status softfall_drop_figures(const softfall_drop *drop, do
                                                    softfall_figures *figures, softfall_error *error);
 SOFTFALL_API softfall_status softfall_results_figures(const char *path, double filter,
                                                       softfall_figures *figures, softfall_error *error);
+
+/* Any number of summary.json that is computed from the history (docs/formats.md), by its key and in the unit
+ * that the key names, for example "max_indentation_mm". SOFTFALL_INPUT for another key. */
+SOFTFALL_API softfall_status softfall_drop_figure(const softfall_drop *drop, double filter, const char *key,
+                                                  double *value, softfall_error *error);
 
 #ifdef __cplusplus
 }

@@ -74,6 +74,26 @@ softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, 
     return softfall_return(&err, error);
 }
 
+static sf_status take_figure(const sf_figures *f, const char *key, double *value, sf_error *err) {
+    const sf_figure *figure = sf_figure_find(key);
+    if (!figure || figure->fact || figure->type != SF_FIGURE_DOUBLE)
+        return SF_FAIL(err, SF_ERR_INPUT, "\"%.80s\" is no number of summary.json that a drop computes", key);
+    *value = *(const double *)((const char *)f + figure->offset) * figure->factor;
+    return SF_OK;
+}
+
+softfall_status softfall_drop_figure(const softfall_drop *drop, double filter, const char *key, double *value,
+                                     softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_results r;
+    sf_figures f = {0};
+    if (view(drop, &r, &err) == SF_OK && check_filter(filter, &err) == SF_OK &&
+        sf_figures_compute(&r, filter, &f, &err) == SF_OK)
+        take_figure(&f, key, value, &err);
+    sf_figures_free(&f);
+    return softfall_return(&err, error);
+}
+
 softfall_status softfall_results_figures(const char *path, double filter, softfall_figures *figures,
                                          softfall_error *error) {
     sf_error err = SF_ERROR_INIT;

@@ -21,6 +21,15 @@ const sf_figure *sf_figure_list(size_t *count) {
     return list;
 }
 
+const sf_figure *sf_figure_find(const char *key) {
+    size_t count;
+    const sf_figure *figure = sf_figure_list(&count);
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(figure[k].key, key) == 0)
+            return &figure[k];
+    return NULL;
+}
+
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
     sf_series uniform = {0};

@@ -109,6 +109,8 @@ typedef struct sf_figure {
 
 /* The list; static storage. */
 const sf_figure *sf_figure_list(size_t *count);
+/* The line of that key; NULL if there is none. */
+const sf_figure *sf_figure_find(const char *key);
 
 /* Release with sf_figures_free. */
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *figures, sf_error *err);

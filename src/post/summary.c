@@ -135,13 +135,9 @@ static const report_line common_lines[] = {
 
 /* The figure of that key, in the unit of the key. */
 static double find_figure(const sf_summary *s, const char *key) {
-    size_t count;
-    const sf_figure *figure = sf_figure_list(&count);
-    for (size_t k = 0; k < count; k++)
-        if (strcmp(figure[k].key, key) == 0 && figure[k].type == SF_FIGURE_DOUBLE)
-            return *(const double *)place_of(s, &figure[k]) * figure[k].factor;
-    assert(false && "a line of the report names no figure of the list");
-    return NAN;
+    const sf_figure *figure = sf_figure_find(key);
+    assert(figure && figure->type == SF_FIGURE_DOUBLE);
+    return *(const double *)place_of(s, figure) * figure->factor;
 }
 
 static void print_lines(FILE *out, const sf_summary *s, const report_line *line) {
