@@ -61,10 +61,14 @@ static void put_figures(FILE *f) {
 }
 
 static void put_good_run(FILE *f) {
-    fputs("| figure | below | meaning |\n|---|---|---|\n", f);
-#define LIMIT(name, value, figure, reason) fprintf(f, "| `%s` | %g | %s |\n", figure, value, reason);
-    SF_GOOD_RUN(LIMIT)
-#undef LIMIT
+    fputs("| check | value | remark beyond | do not use beyond | why it matters |\n|---|---|---|---|---|\n",
+          f);
+    for (int k = 0; k < SF_CHECKS; k++) {
+        const sf_good_run_rule *r = sf_good_run_rule_get(k);
+        fprintf(f, "| `%s` | %s | %g | ", r->key, r->figures, r->remark);
+        isfinite(r->refuse) ? fprintf(f, "%g", r->refuse) : fputc('-', f);
+        fprintf(f, " | %s |\n", r->why);
+    }
 }
 
 /* Path of the scalar that counts the rows of an array. */

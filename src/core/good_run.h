@@ -1,17 +1,44 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The limits of a good run: beyond one of them its figures are not to be trusted. This list is the only one
- * of them; what warns, the studies and the table in docs/formats.md follow it. */
+/* The checks of a good run: a value of each beyond its first bound is a remark on the run's figures, beyond
+ * the second they are not to be used. This list is the only one of them; the verdict of softfall-post
+ * (post/verdict.h), what warns, the studies and the table in docs/formats.md follow it. */
 #ifndef SF_CORE_GOOD_RUN_H
 #define SF_CORE_GOOD_RUN_H
 
-/* X(name, limit of the magnitude, figures of summary.json, reason). */
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
+
+/* X(name, bound of a remark, bound of use (INFINITY: none), shown as, title, value: as figures of
+ * summary.json, why it matters). The magnitude of a value is compared; a value that a run does not define is
+ * not judged. */
 /* clang-format off */
 #define SF_GOOD_RUN(X)                                                                                                 \
-    X(energy_error, 0.01, "energy_error", "the energy balance holds")                                                  \
-    X(stabilisation, 0.05, "stabilisation_energy_fraction", "the stabilisation does not stiffen the pad")              \
-    X(contact, 0.01, "contact_energy_fraction", "contact does not consume the energy")                                 \
-    X(filter, 0.03, "a_max_raw_g / a_max_g - 1", "the filter does not make the peak")                                  \
-    X(local_strain_excess, 0.12, "local_strain_excess", "the foam does not collapse locally")
+    X(ending, 0, 1, SF_AS_NUMBER, "end of the run",                                                                    \
+      "`status`, `touched`: 0 `finished` or `rebound`, 1 interrupted or no end, 2 failed or never touched",            \
+      "figures of a part of the drop are not those of the drop")                                                       \
+    X(ended_in_contact, 0, 0.4, SF_AS_PERCENT, "deceleration left at the end",                                         \
+      "deceleration in the last row / `a_max_g`; 0 if `rebounded`",                                                    \
+      "the peak or a part of the HIC window may lie after the end")                                                    \
+    X(energy_error, 0.01, 0.05, SF_AS_PERCENT, "energy error", "`energy_error`",                                       \
+      "energy that appears or disappears falsifies the deceleration")                                                  \
+    X(stabilisation, 0.05, 0.15, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
+      "the stabilisation stiffens the pad")                                                                            \
+    X(contact, 0.01, 0.05, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
+      "contact consumes energy that the foam should take")                                                             \
+    X(filter, 0.03, 0.25, SF_AS_PERCENT, "raw peak against the filtered one", "`a_max_raw_g` / `a_max_g` - 1",         \
+      "the filter makes the peak, or single steps do")                                                                 \
+    X(coarse, 0, INFINITY, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
+      "-`local_strain_excess`, at least 0",                                                                            \
+      "the mesh is too coarse to show the strain below the missile")                                                   \
+    X(local_strain_excess, 0.12, INFINITY, SF_AS_NUMBER, "largest local strain above the mean", "`local_strain_excess`", \
+      "the foam collapses locally")                                                                                    \
+    X(anvil, 0.9, 0.95, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \
+      "the missile reaches the anvil; its stiffness is not in the model")                                              \
+    X(notes, 0, INFINITY, SF_AS_NUMBER, "notes of the programs", "number of `notes`",                                  \
+      "a program warned of the run or left something out")
 /* clang-format on */
 
 #define SF_GOOD_RUN_LIMIT(name, ...) double name;
@@ -20,7 +47,22 @@ typedef struct sf_good_run {
 } sf_good_run;
 #undef SF_GOOD_RUN_LIMIT
 
-/* The limits; static storage. */
+/* The bounds of a remark; static storage. */
 const sf_good_run *sf_good_run_limits(void);
+
+/* A line of the list. */
+typedef struct sf_good_run_rule {
+    const char *key, *title;
+    double remark, refuse; /* the bounds; refuse INFINITY: none */
+    bool percent;
+    const char *figures, *why;
+} sf_good_run_rule;
+
+#define SF_GOOD_RUN_INDEX(name, ...) SF_CHECK_##name,
+enum { SF_GOOD_RUN(SF_GOOD_RUN_INDEX) SF_CHECKS };
+#undef SF_GOOD_RUN_INDEX
+
+/* Line k of the list, 0 <= k < SF_CHECKS; static storage. */
+const sf_good_run_rule *sf_good_run_rule_get(int k);
 
 #endif

@@ -11,6 +11,7 @@
 #include "post/results.h"
 #include "post/section.h"
 #include "post/summary.h"
+#include "post/verdict.h"
 #include "post/xdmf.h"
 
 #include <argp.h>
@@ -18,12 +19,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_FORCE = 256, KEY_FILTER, KEY_REFERENCE, KEY_WINDOW, KEY_REGIONS, KEY_SHIFT };
+enum {
+    KEY_FORCE = 256,
+    KEY_FILTER,
+    KEY_REFERENCE,
+    KEY_WINDOW,
+    KEY_REGIONS,
+    KEY_SHIFT,
+    KEY_STRICT,
+    KEY_LIMIT_G,
+    KEY_LIMIT_HIC
+};
 
 typedef struct options {
     const char *results_path;
     const char *directory;
     bool force;
+    bool strict; /* the exit status shows the verdict */
+    sf_limits limits;
     double cfc;
     bool comparing; /* --reference was given */
     bool tuned;     /* an option that needs --reference was given */
@@ -36,6 +49,7 @@ typedef struct options {
 typedef struct job {
     sf_results results;
     sf_figures figures;
+    sf_verdict verdict;
     sf_comparison comparison;
     sf_staging output;
     char *command_line;
@@ -62,6 +76,14 @@ static sf_status parse_shift(const char *text, double *shift, sf_error *err) {
     return SF_OK;
 }
 
+static sf_status parse_limit(const char *option, const char *text, double *limit, sf_error *err) {
+    char *end;
+    *limit = strtod(text, &end);
+    if (end == text || *end != '\0' || !isfinite(*limit) || !(*limit > 0))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a positive number", option, text);
+    return SF_OK;
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state) {
     options *o = state->input;
     switch (key) {
@@ -70,6 +92,15 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         break;
     case KEY_FORCE:
         o->force = true;
+        break;
+    case KEY_STRICT:
+        o->strict = true;
+        break;
+    case KEY_LIMIT_G:
+        parse_limit("--limit-g", text, &o->limits.a_max_g, &o->err);
+        break;
+    case KEY_LIMIT_HIC:
+        parse_limit("--limit-hic", text, &o->limits.hic, &o->err);
         break;
     case KEY_FILTER:
         parse_filter(text, &o->cfc, &o->err);
@@ -116,6 +147,10 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         {"output", 'o', "DIR", 0, "write everything there (required)", 0},
         {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier run in DIR", 0},
         {"filter", KEY_FILTER, "CFC", 0, "channel frequency class: 60, 180, 600 or 1000 (default)", 0},
+        {"strict", KEY_STRICT, NULL, 0,
+         "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"", 0},
+        {"limit-g", KEY_LIMIT_G, "G", 0, "limit of a_max in g (default 200)", 0},
+        {"limit-hic", KEY_LIMIT_HIC, "HIC", 0, "limit of HIC (default 1000)", 0},
         {"reference", KEY_REFERENCE, "CSV", 0,
          "compare with a measured curve: columns time_ms (or _s, _us) and acceleration_g (or _m_s2)", 1},
         {"window", KEY_WINDOW, "A,B", 0,
@@ -135,7 +170,10 @@ static sf_status parse_command(int argc, char **argv, options *o) {
                "figures are indicative, not a certification.",
     };
     argp_program_version_hook = print_version;
-    *o = (options){.cfc = 1000, .compare = {.shift = NAN, .window = {NAN, NAN}}, .err = SF_ERROR_INIT};
+    *o = (options){.cfc = 1000,
+                   .limits = SF_DEFAULT_LIMITS,
+                   .compare = {.shift = NAN, .window = {NAN, NAN}},
+                   .err = SF_ERROR_INIT};
     if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
         return SF_FAIL(&o->err, SF_ERR_INPUT, "the command line cannot be read");
     o->compare.regions = o->regions;
@@ -159,13 +197,14 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
         (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
         sf_section_write(&j->output, &j->results, &section, err) != SF_OK ||
         sf_xdmf_write(&j->output, &j->results, j->command_line, &j->frames, err) != SF_OK ||
-        sf_plot_write(&j->output, &j->results, &j->figures, comparison, j->plot_warning,
+        sf_plot_write(&j->output, &j->results, &j->figures, comparison, &j->verdict, j->plot_warning,
                       sizeof j->plot_warning, err))
         return err->status;
     if (!section)
         fprintf(stderr,
                 "softfall-post: warning: no frame holds the von Mises stress at the peak: no section.csv\n");
-    const sf_summary summary = {o->results_path, o->compare.path, &j->results, &j->figures, comparison};
+    const sf_summary summary = {o->results_path, o->compare.path, &j->results,
+                                &j->figures,     comparison,      &j->verdict};
     if (sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
         return err->status;
     sf_summary_print(stdout, &summary);
@@ -220,12 +259,16 @@ static sf_status run(const options *o, job *j, sf_error *err) {
                        o->results_path);
     if (o->comparing && sf_compare_run(&o->compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
         return err->status;
+    sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);
     if (write_output(o, j, err) != SF_OK)
         return err->status;
     print_files(j);
     print_warnings(j);
     return SF_OK;
 }
+
+/* Exit status with --strict, by grade; no sf_status has these numbers. */
+static const int strict_codes[] = {[SF_GRADE_VALID] = 0, [SF_GRADE_REMARKS] = 8, [SF_GRADE_DO_NOT_USE] = 9};
 
 int main(int argc, char **argv) {
     options o;
@@ -245,5 +288,6 @@ int main(int argc, char **argv) {
     sf_results_close(&j.results);
     free(j.command_line);
     free(o.regions);
-    return sf_error_report(&err, "softfall-post");
+    int code = sf_error_report(&err, "softfall-post");
+    return code == 0 && o.strict ? strict_codes[j.verdict.grade] : code;
 }

@@ -43,15 +43,33 @@ static void put_style(FILE *g, const char *name) {
             name);
 }
 
-static void put_axes(FILE *g, const sf_results *r, const sf_figures *f, const sf_comparison *c) {
+/* The limit of a_max as a line, if the axis reaches it, and both limits with pass or fail. */
+static void put_limits(FILE *g, const sf_verdict *v, double highest) {
+    for (int k = 0; k < v->limit_count; k++) {
+        const sf_limit *limit = &v->limits[k];
+        if (isfinite(limit->value))
+            fprintf(g, "set label '%s %.4g, limit %.4g: %s' at graph 0.99, graph %.2f right tc rgb '%s'\n",
+                    limit->title, limit->value, limit->bound, limit->passed ? "passed" : "failed",
+                    0.96 - 0.05 * k, limit->passed ? "#404040" : "#cb181d");
+    }
+    if (v->limit_count > 0 && v->limits[0].bound < highest)
+        fprintf(
+            g,
+            "set arrow from graph 0, first %.6g to graph 1, first %.6g nohead lw 2 dt 3 lc rgb '#cb181d'\n",
+            v->limits[0].bound, v->limits[0].bound);
+}
+
+static void put_axes(FILE *g, const sf_results *r, const sf_figures *f, const sf_comparison *c,
+                     const sf_verdict *v) {
     double time[2], value[2];
     time_range(f, c, time);
     value_range(f, c, value);
-    fprintf(g, "set title 'Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm' offset 0,-0.3\n",
-            r->missile_mass, r->missile_speed, r->thickness * 1e3);
+    fprintf(g, "set title 'Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm: %s' offset 0,-0.3\n",
+            r->missile_mass, r->missile_speed, r->thickness * 1e3, sf_verdict_phrase(v->grade));
     fputs("set xlabel 'time (ms)'\nset ylabel 'deceleration (g)'\n", g);
     fprintf(g, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", time[0], time[1], value[0], value[1]);
     fputs("set key below center horizontal maxcols 3 Left reverse samplen 2 width 1 spacing 1.2\n", g);
+    put_limits(g, v, value[1]);
 }
 
 static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
@@ -76,16 +94,17 @@ static void put_curves(FILE *g, const sf_figures *f, const sf_comparison *c) {
 }
 
 /* Stress over strain of a compression test. */
-static void put_compression(FILE *g, const sf_results *r, const sf_figures *f) {
-    fprintf(g, "set title 'Compression of a foam specimen of %.4g mm, %.4g cm²' offset 0,-0.3\n",
-            r->thickness * 1e3, f->area * 1e4);
+static void put_compression(FILE *g, const sf_results *r, const sf_figures *f, const sf_verdict *v) {
+    fprintf(g, "set title 'Compression of a foam specimen of %.4g mm, %.4g cm²: %s' offset 0,-0.3\n",
+            r->thickness * 1e3, f->area * 1e4, sf_verdict_phrase(v->grade));
     fputs("set xlabel 'strain'\nset ylabel 'nominal stress (kPa)'\nunset key\n"
           "plot 'compression.csv' skip 1 using 2:3 with lines lw 3 lc rgb '#08519c'\n",
           g);
 }
 
 sf_status sf_plot_write(const sf_staging *output, const sf_results *results, const sf_figures *figures,
-                        const sf_comparison *comparison, char *warning, size_t size, sf_error *err) {
+                        const sf_comparison *comparison, const sf_verdict *verdict, char *warning,
+                        size_t size, sf_error *err) {
     const char *name = figures->driven ? "compression" : "acceleration";
     char source[32], picture[32];
     snprintf(source, sizeof source, "%s.gp", name);
@@ -95,9 +114,9 @@ sf_status sf_plot_write(const sf_staging *output, const sf_results *results, con
         return err->status;
     put_style(script, name);
     if (figures->driven) {
-        put_compression(script, results, figures);
+        put_compression(script, results, figures, verdict);
     } else {
-        put_axes(script, results, figures, comparison);
+        put_axes(script, results, figures, comparison, verdict);
         put_curves(script, figures, comparison);
     }
     if (sf_staging_close(script, source, err) != SF_OK)

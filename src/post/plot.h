@@ -7,11 +7,14 @@
 
 #include "post/compare.h"
 #include "post/figures.h"
+#include "post/verdict.h"
 #include "io/staging.h"
 
-/* After the CSV files. `comparison` may be NULL. If gnuplot is absent or fails, `warning` (size bytes) says
- * so in a sentence, and that is no error; otherwise it is "". */
+/* After the CSV files. The picture names the verdict and shows its limits. `comparison` may be NULL. If
+ * gnuplot is absent or fails, `warning` (size bytes) says so in a sentence, and that is no error; otherwise
+ * it is "". */
 sf_status sf_plot_write(const sf_staging *output, const sf_results *results, const sf_figures *figures,
-                        const sf_comparison *comparison, char *warning, size_t size, sf_error *err);
+                        const sf_comparison *comparison, const sf_verdict *verdict, char *warning,
+                        size_t size, sf_error *err);
 
 #endif

@@ -50,6 +50,52 @@ static void put_figures(sf_json *json, const sf_summary *s) {
     sf_json_close(json, ']');
 }
 
+/* Infinity, a bound that there is not, becomes null. */
+static void put_checks(sf_json *json, const sf_verdict *v) {
+    sf_json_open(json, "checks", '[');
+    for (int k = 0; k < v->count; k++) {
+        const sf_check *c = &v->rows[k];
+        sf_json_open(json, NULL, '{');
+        sf_json_text(json, "key", c->key);
+        sf_json_text(json, "title", c->title);
+        sf_json_number(json, "value", c->value);
+        sf_json_number(json, "bound", c->bound);
+        sf_json_number(json, "use_bound", c->use_bound);
+        sf_json_text(json, "unit", c->unit);
+        sf_json_text(json, "grade", isnan(c->value) ? NULL : sf_verdict_phrase(c->grade));
+        sf_json_text(json, "finding", c->text);
+        sf_json_text(json, "why", c->why);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+static void put_limits(sf_json *json, const sf_verdict *v) {
+    sf_json_open(json, "limits", '[');
+    for (int k = 0; k < v->limit_count; k++) {
+        const sf_limit *limit = &v->limits[k];
+        sf_json_open(json, NULL, '{');
+        sf_json_text(json, "key", limit->key);
+        sf_json_number(json, "value", limit->value);
+        sf_json_number(json, "bound", limit->bound);
+        sf_json_text(json, "unit", limit->unit);
+        if (isfinite(limit->value))
+            sf_json_bool(json, "passed", limit->passed);
+        else
+            sf_json_text(json, "passed", NULL);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+static void put_verdict(sf_json *json, const sf_verdict *v) {
+    sf_json_open(json, "verdict", '{');
+    sf_json_text(json, "grade", sf_verdict_phrase(v->grade));
+    put_checks(json, v);
+    put_limits(json, v);
+    sf_json_close(json, '}');
+}
+
 static void put_comparison(sf_json *json, const char *path, const sf_comparison *c) {
     sf_json_open(json, "reference", '{');
     sf_json_text(json, "file", path);
@@ -88,6 +134,7 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
     sf_json_text(&json, "program", "softfall-post " SF_VERSION);
     sf_json_text(&json, "results", s->results_path);
     sf_json_text(&json, "caution", caution);
+    put_verdict(&json, s->verdict);
     put_figures(&json, s);
     if (s->comparison)
         put_comparison(&json, s->reference_path, s->comparison);
@@ -192,7 +239,24 @@ static void print_compression(FILE *out, const sf_summary *s) {
     print_lines(out, s, compression_lines);
 }
 
+static void print_verdict(FILE *out, const sf_verdict *v) {
+    char line[4096];
+    sf_verdict_line(v, line, sizeof line);
+    fprintf(out, "Verdict: %s\n", line);
+    for (int k = 0; k < v->count; k++)
+        if (v->rows[k].grade != SF_GRADE_VALID)
+            fprintf(out, "  %-18s %-20s %s\n", sf_verdict_phrase(v->rows[k].grade), v->rows[k].key,
+                    v->rows[k].why);
+    for (int k = 0; k < v->limit_count; k++) {
+        const sf_limit *limit = &v->limits[k];
+        if (isfinite(limit->value))
+            fprintf(out, "  limit of %-5s %6.4g: %s (%.4g)\n", limit->title, limit->bound,
+                    limit->passed ? "passed" : "failed", limit->value);
+    }
+}
+
 void sf_summary_print(FILE *out, const sf_summary *s) {
+    print_verdict(out, s->verdict);
     if (s->figures->driven)
         print_compression(out, s);
     else

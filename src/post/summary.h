@@ -6,6 +6,7 @@
 
 #include "post/compare.h"
 #include "post/figures.h"
+#include "post/verdict.h"
 #include "io/staging.h"
 
 /* `comparison` may be NULL. */
@@ -15,11 +16,13 @@ typedef struct sf_summary {
     const sf_results *results;
     const sf_figures *figures;
     const sf_comparison *comparison;
+    const sf_verdict *verdict;
 } sf_summary;
 
 sf_status sf_summary_write(const sf_staging *output, const sf_summary *summary, sf_error *err);
 
-/* The table on `out`; its last line says that the figures are indicative. */
+/* The verdict, its rows that are not valid, and the table on `out`; the last line says that the figures are
+ * indicative. */
 void sf_summary_print(FILE *out, const sf_summary *summary);
 
 #endif

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/verdict.h"
+
+#include "core/units.h"
+#include "post/results_check.h"
+#include <stdio.h>
+#include <string.h>
+
+const char *sf_verdict_phrase(sf_grade grade) {
+    static const char *const phrases[] = {"valid", "valid with remarks", "do not use"};
+    return phrases[grade];
+}
+
+/* ---- the value of each check; NaN: not defined ---- */
+
+static double ending_value(const sf_results *r, const sf_figures *f) {
+    if (!f->touched)
+        return 2;
+    if (!r->has_summary || strcmp(r->status, "interrupted") == 0)
+        return 1;
+    return sf_results_ended_well(r) ? 0 : 2;
+}
+
+static double ended_in_contact_value(const sf_results *r, const sf_figures *f) {
+    const sf_history *h = &r->history;
+    if (!f->touched || f->driven)
+        return NAN;
+    if (f->rebounded)
+        return 0;
+    double left = h->acceleration[h->rows - 1] / SF_STANDARD_GRAVITY / f->injury.a_max_g;
+    return fmax(left, 1e-6); /* still in contact: never 0 */
+}
+
+static double energy_error_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->energy_error;
+}
+
+static double stabilisation_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->stabilisation_energy_fraction;
+}
+
+static double contact_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->contact_energy_fraction;
+}
+
+static double filter_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    if (f->driven || !(f->injury.a_max_g > 0))
+        return NAN;
+    return f->injury_raw.a_max_g / f->injury.a_max_g - 1;
+}
+
+static double coarse_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return isnan(f->local_strain_excess) ? NAN : fmax(0, -f->local_strain_excess);
+}
+
+static double local_strain_excess_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return isnan(f->local_strain_excess) ? NAN : fmax(0, f->local_strain_excess);
+}
+
+static double anvil_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->max_mean_strain;
+}
+
+static double notes_value(const sf_results *r, const sf_figures *f) {
+    (void)f;
+    return r->note_count;
+}
+
+typedef double (*value_of)(const sf_results *results, const sf_figures *figures);
+#define VALUE(name, ...) name##_value,
+static const value_of values[SF_CHECKS] = {SF_GOOD_RUN(VALUE)};
+#undef VALUE
+
+/* ---- rows ---- */
+
+static sf_grade judge(double value, const sf_good_run_rule *rule) {
+    double size = fabs(value);
+    return size > rule->refuse   ? SF_GRADE_DO_NOT_USE
+           : size > rule->remark ? SF_GRADE_REMARKS
+                                 : SF_GRADE_VALID;
+}
+
+/* A value as a sentence shows it. */
+static void show(double value, bool percent, char text[32]) {
+    snprintf(text, 32, percent ? "%.3g %%" : "%.3g", percent ? 100 * value : value);
+}
+
+static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf_figures *f, sf_check *c) {
+    char value[32], bound[32];
+    show(c->value, rule->percent, value);
+    show(c->grade == SF_GRADE_DO_NOT_USE ? c->use_bound : c->bound, rule->percent, bound);
+    if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_notes)->key)
+        snprintf(c->text, sizeof c->text, "%d of the programs' notes, the first: %.200s", r->note_count,
+                 r->notes[0]);
+    else if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_ending)->key)
+        snprintf(c->text, sizeof c->text, "%.250s",
+                 !f->touched               ? "the missile never touched the pad"
+                 : !r->has_summary         ? "the run has no end: it still runs or was killed"
+                 : c->value > c->use_bound ? "the run failed"
+                                           : "the run was interrupted");
+    else if (isnan(c->value))
+        snprintf(c->text, sizeof c->text, "%s: not defined by this run", c->title);
+    else
+        snprintf(c->text, sizeof c->text, "%s %s (%s %s)", c->title, value,
+                 c->grade == SF_GRADE_DO_NOT_USE ? "not to be used beyond" : "good up to", bound);
+}
+
+static void fill_row(int k, const sf_results *r, const sf_figures *f, sf_check *c) {
+    const sf_good_run_rule *rule = sf_good_run_rule_get(k);
+    *c = (sf_check){.key = rule->key,
+                    .title = rule->title,
+                    .why = rule->why,
+                    .unit = "1",
+                    .value = values[k](r, f),
+                    .bound = rule->remark,
+                    .use_bound = rule->refuse};
+    c->grade = judge(c->value, rule);
+    describe(rule, r, f, c);
+}
+
+static sf_limit limit_of(const char *key, const char *title, const char *unit, double value, double bound) {
+    return (sf_limit){key, title, unit, value, bound, value <= bound};
+}
+
+void sf_verdict_compute(const sf_results *results, const sf_figures *figures, const sf_limits *limits,
+                        sf_verdict *verdict) {
+    *verdict = (sf_verdict){.count = SF_CHECKS};
+    for (int k = 0; k < SF_CHECKS; k++) {
+        sf_check *row = &verdict->rows[k];
+        fill_row(k, results, figures, row);
+        if (row->grade > verdict->grade)
+            verdict->grade = row->grade;
+    }
+    if (figures->driven)
+        return;
+    verdict->limit_count = SF_LIMITS;
+    verdict->limits[0] = limit_of("a_max_g", "a_max", "g", figures->injury.a_max_g, limits->a_max_g);
+    verdict->limits[1] = limit_of("hic", "HIC", "1", figures->injury.hic.value, limits->hic);
+}
+
+void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size) {
+    size_t used = (size_t)snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
+    const char *joint = ": ";
+    for (int grade = SF_GRADE_DO_NOT_USE; grade > SF_GRADE_VALID; grade--)
+        for (int k = 0; k < verdict->count && used < size; k++)
+            if (verdict->rows[k].grade == (sf_grade)grade) {
+                used += (size_t)snprintf(text + used, size - used, "%s%s", joint, verdict->rows[k].text);
+                joint = "; ";
+            }
+}

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The verdict on a run: its rows from figures at and beyond their bounds, and softfall-post as it shows them
+ * on synthetic results. */
+#include "post/verdict.h"
+#include "post_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+#include "program_fixture.h"
+
+/* A sound run with its figures, to be changed. */
+typedef struct sound_run {
+    sf_results results;
+    sf_figures figures;
+    sf_verdict verdict;
+} sound_run;
+
+static void write_fixture(program_place *p, fixture_options options) {
+    sf_error err = SF_ERROR_INIT;
+    if (fixture_write(program_path(p, "results.h5"), &options, &err) != SF_OK)
+        fail_msg("%s", err.text);
+}
+
+static sound_run open_run(program_place *p, fixture_options options) {
+    sound_run run = {0};
+    sf_error err = SF_ERROR_INIT;
+    write_fixture(p, options);
+    if (sf_results_open(program_path(p, "results.h5"), &run.results, &err) != SF_OK ||
+        sf_figures_compute(&run.results, 1000, &run.figures, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    return run;
+}
+
+static void close_run(sound_run *run) {
+    sf_figures_free(&run->figures);
+    sf_results_close(&run->results);
+}
+
+static sf_grade judge(sound_run *run) {
+    const sf_limits limits = SF_DEFAULT_LIMITS;
+    sf_verdict_compute(&run->results, &run->figures, &limits, &run->verdict);
+    return run->verdict.grade;
+}
+
+static const sf_check *row(const sound_run *run, const char *key) {
+    for (int k = 0; k < run->verdict.count; k++)
+        if (strcmp(run->verdict.rows[k].key, key) == 0)
+            return &run->verdict.rows[k];
+    fail_msg("the verdict has no row %s", key);
+    return NULL;
+}
+
+static int set_up(void **state) {
+    return program_group_folder(state);
+}
+
+static void a_sound_run_is_valid_in_every_row(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0});
+    sf_grade grade = judge(&run);
+    char line[1024];
+    sf_verdict_line(&run.verdict, line, sizeof line);
+    if (grade != SF_GRADE_VALID || strcmp(line, "valid") != 0)
+        fail_msg("%s", line);
+    assert_close(row(&run, "energy_error")->value, 0.002, 1e-8);
+    close_run(&run);
+}
+
+/* Each figure at its bounds, and just beyond. */
+static void a_figure_beyond_its_bound_is_a_remark_and_far_beyond_not_to_be_used(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0});
+    const struct {
+        const char *key;
+        double *figure;
+    } cases[] = {
+        {"energy_error", &run.figures.energy_error},
+        {"stabilisation", &run.figures.stabilisation_energy_fraction},
+        {"contact", &run.figures.contact_energy_fraction},
+        {"anvil", &run.figures.max_mean_strain},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        double sound = *cases[k].figure;
+        judge(&run);
+        double remark = row(&run, cases[k].key)->bound, use = row(&run, cases[k].key)->use_bound;
+        assert_true(sound < remark && remark < use && isfinite(use));
+        *cases[k].figure = remark;
+        assert_int_equal(judge(&run), SF_GRADE_VALID);
+        *cases[k].figure = 1.01 * remark;
+        assert_int_equal(judge(&run), SF_GRADE_REMARKS);
+        assert_int_equal(row(&run, cases[k].key)->grade, SF_GRADE_REMARKS);
+        *cases[k].figure = 1.01 * use;
+        assert_int_equal(judge(&run), SF_GRADE_DO_NOT_USE);
+        *cases[k].figure = sound;
+    }
+    assert_int_equal(judge(&run), SF_GRADE_VALID);
+    close_run(&run);
+}
+
+static void a_raw_peak_beyond_the_filtered_one_is_a_remark(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0});
+    run.figures.injury_raw.a_max_g = 1.1 * run.figures.injury.a_max_g;
+    assert_int_equal(judge(&run), SF_GRADE_REMARKS);
+    assert_close(row(&run, "filter")->value, 0.1, 1e-9);
+    assert_non_null(strstr(row(&run, "filter")->text, "10 %"));
+    close_run(&run);
+}
+
+static void a_local_strain_below_the_mean_shows_a_coarse_mesh(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0});
+    run.figures.local_strain_excess = -0.05;
+    assert_int_equal(judge(&run), SF_GRADE_REMARKS);
+    assert_close(row(&run, "coarse")->value, 0.05, 1e-12);
+    close_run(&run);
+}
+
+static void a_run_that_ends_on_the_way_down_is_not_to_be_used(void **state) {
+    sound_run run = open_run(*state, (fixture_options){.end_time = 0.4 * FIXTURE_DURATION});
+    assert_int_equal(judge(&run), SF_GRADE_DO_NOT_USE);
+    assert_close(row(&run, "ended_in_contact")->value, 1, 0.05); /* the peak lies ahead */
+    close_run(&run);
+}
+
+static void a_run_that_ends_late_in_the_rebound_has_a_remark(void **state) {
+    sound_run run = open_run(*state, (fixture_options){.end_time = 0.95 * FIXTURE_DURATION});
+    assert_int_equal(judge(&run), SF_GRADE_REMARKS);
+    assert_close(row(&run, "ended_in_contact")->value, sin(M_PI * 0.95), 0.01);
+    close_run(&run);
+}
+
+static void failed_interrupted_and_untouched_runs_are_graded(void **state) {
+    const struct {
+        fixture_options options;
+        sf_grade grade;
+        const char *says;
+    } cases[] = {
+        {{.status = "domain 12 collapsed"}, SF_GRADE_DO_NOT_USE, "failed"},
+        {{.status = "interrupted"}, SF_GRADE_REMARKS, "interrupted"},
+        {{.no_summary = true}, SF_GRADE_REMARKS, "no end"},
+        {{.untouched = true}, SF_GRADE_DO_NOT_USE, "never touched"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        sound_run run = open_run(*state, cases[k].options);
+        char line[2048];
+        assert_int_equal(judge(&run), cases[k].grade);
+        sf_verdict_line(&run.verdict, line, sizeof line);
+        if (!strstr(line, cases[k].says))
+            fail_msg("\"%s\" is missing in: %s", cases[k].says, line);
+        close_run(&run);
+    }
+}
+
+static void what_a_run_does_not_define_is_not_judged(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0});
+    run.figures.max_mean_strain = NAN;
+    assert_int_equal(judge(&run), SF_GRADE_VALID);
+    assert_non_null(strstr(row(&run, "anvil")->text, "not defined"));
+    close_run(&run);
+}
+
+static void limits_pass_and_fail_beside_the_verdict(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0}); /* 100 g, HIC 1658 */
+    assert_int_equal(judge(&run), SF_GRADE_VALID);
+    assert_int_equal(run.verdict.limit_count, 2);
+    assert_true(run.verdict.limits[0].passed);
+    assert_false(run.verdict.limits[1].passed);
+    const sf_limits limits = {99, 1700};
+    sf_verdict_compute(&run.results, &run.figures, &limits, &run.verdict);
+    assert_false(run.verdict.limits[0].passed);
+    assert_true(run.verdict.limits[1].passed);
+    close_run(&run);
+}
+
+/* ---- softfall-post ---- */
+
+static void assert_prints(program_place *p, const char *expression, const char *expected) {
+    program_result r = program_shell(p,
+                                     "python3 -c \"import json; s = json.load(open('out/summary.json')); "
+                                     "v = s['verdict']; c = {r['key']: r for r in v['checks']}; print(%s)\"",
+                                     expression);
+    r.out[strcspn(r.out, "\n")] = '\0';
+    if (r.code != 0 || strcmp(r.out, expected) != 0)
+        fail_msg("%s: \"%s\", expected \"%s\" %s", expression, r.out, expected, r.err);
+}
+
+static void softfall_post_shows_the_verdict_first_and_in_summary_json(void **state) {
+    program_place *p = *state;
+    write_fixture(p, (fixture_options){.end_time = 0.95 * FIXTURE_DURATION});
+    program_result r = program_succeed(p, "post", "results.h5 -o out --force --limit-hic=1700 --limit-g=50");
+    const char *first = "Verdict: valid with remarks: deceleration left at the end";
+    if (strncmp(r.out, first, strlen(first)) != 0)
+        fail_msg("%s", r.out);
+    assert_non_null(strstr(r.out, sf_good_run_rule_get(SF_CHECK_ended_in_contact)->why));
+    assert_non_null(strstr(r.out, "limit of a_max     50: failed (100)"));
+    assert_prints(p, "v['grade']", "valid with remarks");
+    assert_prints(p, "c['ended_in_contact']['grade'], c['energy_error']['grade']",
+                  "valid with remarks valid");
+    assert_prints(p, "c['energy_error']['bound'], c['energy_error']['use_bound'], c['notes']['use_bound']",
+                  "0.01 0.05 None");
+    assert_prints(p, "all(r['why'] and r['unit'] and r['finding'] for r in v['checks'])", "True");
+    assert_prints(p, "[(l['key'], l['bound'], l['passed']) for l in v['limits']]",
+                  "[('a_max_g', 50, False), ('hic', 1700, True)]");
+    assert_int_equal(
+        program_shell(p, "grep -q 'valid with remarks' out/acceleration.gp && grep -q 'limit 50: failed' "
+                         "out/acceleration.gp && grep -q 'first 50 to' out/acceleration.gp")
+            .code,
+        0);
+}
+
+static void the_exit_status_of_strict_is_the_verdict(void **state) {
+    program_place *p = *state;
+    const struct {
+        fixture_options options;
+        int code;
+    } cases[] = {
+        {{0}, 0}, {{.end_time = 0.95 * FIXTURE_DURATION}, 8}, {{.end_time = 0.4 * FIXTURE_DURATION}, 9}};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        write_fixture(p, cases[k].options);
+        program_shell(p, "rm -rf out");
+        assert_int_equal(program_run(p, "post", "results.h5 -o out --strict").code, cases[k].code);
+        assert_int_equal(program_shell(p, "test -s out/summary.json -a -s out/history.csv").code, 0);
+        assert_int_equal(program_run(p, "post", "results.h5 -o out --force").code, 0);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sound_run_is_valid_in_every_row),
+        cmocka_unit_test(a_figure_beyond_its_bound_is_a_remark_and_far_beyond_not_to_be_used),
+        cmocka_unit_test(a_raw_peak_beyond_the_filtered_one_is_a_remark),
+        cmocka_unit_test(a_local_strain_below_the_mean_shows_a_coarse_mesh),
+        cmocka_unit_test(a_run_that_ends_on_the_way_down_is_not_to_be_used),
+        cmocka_unit_test(a_run_that_ends_late_in_the_rebound_has_a_remark),
+        cmocka_unit_test(failed_interrupted_and_untouched_runs_are_graded),
+        cmocka_unit_test(what_a_run_does_not_define_is_not_judged),
+        cmocka_unit_test(limits_pass_and_fail_beside_the_verdict),
+        cmocka_unit_test(softfall_post_shows_the_verdict_first_and_in_summary_json),
+        cmocka_unit_test(the_exit_status_of_strict_is_the_verdict),
+    };
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+}
