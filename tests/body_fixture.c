@@ -30,7 +30,7 @@ void body_build(body *b, double reach, sf_missile_surface *out) {
     b->model.surface_triangle_count = b->surface.triangle_count;
     b->model.surface_position = b->surface.position;
     b->model.surface_triangle = b->surface.triangle;
-    assert_int_equal(sf_missile_surface_build(&b->model, out, &err), SF_OK);
+    assert_int_equal(sf_missile_surface_build(&b->model, b->model.missile.direction, out, &err), SF_OK);
 }
 
 void body_free(body *b, sf_missile_surface *s) {

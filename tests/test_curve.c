@@ -182,8 +182,8 @@ static void rule_h1_without_exponent_is_a_pure_power(void **state) {
         assert_close(curve.start, e, 0);
         end_of_table(&curve, &stress, &slope);
         double n = (1 - e) * slope / stress;
-        assert_relative(curve.exponent, n, 1e-6);
-        assert_close(curve.constant, 0, 1e-9 * stress);
+        assert_relative(curve.beyond.exponent, n, 1e-6);
+        assert_close(curve.beyond.constant, 0, 1e-9 * stress);
         for (double strain = e; strain < 0.995; strain += 0.01)
             assert_relative(stress_at(&curve, strain), stress * pow((1 - e) / (1 - strain), n), 1e-5);
         sf_curve_free(&curve);

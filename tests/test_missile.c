@@ -183,7 +183,7 @@ static void the_surface_goes_with_the_pose(void **state) {
     m.missile.sphere_radius = 0.08;
     m.missile.sphere_cap_cosine = -1;
     sf_missile_surface surface;
-    assert_int_equal(sf_missile_surface_build(&m, &surface, &err), SF_OK);
+    assert_int_equal(sf_missile_surface_build(&m, m.missile.direction, &surface, &err), SF_OK);
     sf_missile missile;
     sf_missile_begin(&m, &missile);
     missile.displacement = 0.02;

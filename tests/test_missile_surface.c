@@ -42,7 +42,7 @@ static sf_missile_surface sphere(double cap_cosine) {
                                   .sphere_radius = 0.08,
                                   .sphere_cap_cosine = cap_cosine,
                                   .direction = {0, 0.6, -0.8}}};
-    assert_int_equal(sf_missile_surface_build(&model, &s, &err), SF_OK);
+    assert_int_equal(sf_missile_surface_build(&model, model.missile.direction, &s, &err), SF_OK);
     return s;
 }
 

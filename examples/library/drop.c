@@ -14,10 +14,10 @@ static void tell(void *user, softfall_severity severity, const char *sentence) {
 }
 
 /* Follows the drop: the host may look at anything here, or end it. */
-static int observe(void *user, const softfall_observation *now) {
-    double *deepest = user;
-    if (now->indentation > *deepest)
-        *deepest = now->indentation;
+static int observe(void *user, const softfall_drop *drop) {
+    double *deepest = user, now = softfall_drop_latest(drop, "indentation");
+    if (now > *deepest)
+        *deepest = now;
     return 0;
 }
 
@@ -26,7 +26,7 @@ int main(int argc, char **argv) {
     softfall_model *model = NULL;
     softfall_drop *drop = NULL;
     softfall_error error = {SOFTFALL_OK, ""};
-    softfall_figures figures;
+    softfall_figures *figures = NULL;
     const softfall_sink sink = {tell, NULL};
     const softfall_drop_options options = {.threads = 2};
     double deepest = 0;
@@ -41,7 +41,9 @@ int main(int argc, char **argv) {
         softfall_drop_figures(drop, 1000, &figures, &error))
         fprintf(stderr, "drop: %s\n", error.text);
     else
-        printf("a_max %.9g g\nHIC %.9g\nindentation %.9g mm\n", figures.a_max_g, figures.hic, 1e3 * deepest);
+        printf("a_max %.9g g\nHIC %.9g\nindentation %.9g mm\n", softfall_figure(figures, "a_max_g"),
+               softfall_figure(figures, "hic"), 1e3 * deepest);
+    softfall_figures_free(figures);
     softfall_drop_free(drop);
     softfall_model_free(model);
     softfall_case_free(c);

@@ -125,21 +125,7 @@ typedef enum softfall_ending {
     SOFTFALL_FINISHED = 2 /* the end time is reached */
 } softfall_ending;
 
-/* Of one time step; the names are those of the history's columns. */
-typedef struct softfall_observation {
-    int64_t step;
-    double time;                /* s */
-    double time_step;           /* s, the one that follows */
-    double acceleration;        /* m/s2, of the missile, against its direction of motion */
-    double velocity;            /* m/s, along its direction of motion */
-    double displacement;        /* m, likewise, since t = 0 */
-    double indentation;         /* m, depth of its first touching point below the undeformed top */
-    double contact_force;       /* N, on the missile, against its direction of motion */
-    double largest_compression; /* 1, 1 - smallest principal stretch */
-    double energy_error;        /* 1, of the energy balance */
-} softfall_observation;
-
-/* A column of the history, or a field over the nodes; static storage. */
+/* A column of the history, a field over the nodes, or a figure; static storage. */
 typedef struct softfall_quantity {
     const char *name, *units, *description;
     int components; /* 1, 3 or 9 (row-major) */
@@ -161,12 +147,13 @@ SOFTFALL_API softfall_status softfall_drop_step(softfall_drop *drop, softfall_en
 /* Steps until the drop ends, or until `observe` (may be NULL), which is called after each step, returns
  * nonzero: then `ending` is SOFTFALL_RUNNING and the drop can be continued. */
 SOFTFALL_API softfall_status softfall_drop_run(softfall_drop *drop,
-                                               int (*observe)(void *user,
-                                                              const softfall_observation *observation),
+                                               int (*observe)(void *user, const softfall_drop *drop),
                                                void *user, softfall_ending *ending, softfall_error *error);
 
-/* The last step. Before the first: all zero, but step = -1. */
-SOFTFALL_API softfall_observation softfall_drop_observe(const softfall_drop *drop);
+/* Steps that the drop has, that of t = 0 included: 0 before the first. */
+SOFTFALL_API int64_t softfall_drop_steps(const softfall_drop *drop);
+/* Value of a column of the history in the last step; NaN before the first, or if there is no such column. */
+SOFTFALL_API double softfall_drop_latest(const softfall_drop *drop, const char *name);
 
 /* The history, a value for each step: `columns` [count] lists its columns. The values of a column are owned
  * by the drop and valid until its next step; the result is their number, -1 if there is no such column. */
@@ -182,43 +169,25 @@ SOFTFALL_API softfall_status softfall_drop_field(const softfall_drop *drop, cons
 
 /* ---- Figures ---- */
 
-/* A figure that the run does not define (the missile never touched, contact had not ended, its motion was
+/* The numbers of summary.json that are computed from the history (docs/formats.md), by their keys there and
+ * in the units that the keys name: "a_max_g", "hic", "hic_t1_ms", "max_indentation_mm", "rebounded" (0 or 1).
+ * A figure that the run does not define (the missile never touched, contact had not ended, its motion was
  * prescribed) is NaN. Indicative, not a certification. */
-typedef struct softfall_figures {
-    int touched;                          /* 1: the missile touched the pad */
-    int rebounded;                        /* 1: contact had ended before the last step, upwards */
-    double a_max_g;                       /* g, largest deceleration of the filtered curve */
-    double a_max_time;                    /* s */
-    double hic;                           /* 1, head injury criterion of the filtered curve */
-    double hic_t1, hic_t2;                /* s, its window */
-    double hic15, hic36;                  /* 1, windows limited to 15 and 36 ms */
-    double gadd;                          /* 1, Gadd severity index */
-    double clip_3ms_g;                    /* g, exceeded for 3 ms without a break */
-    double a_max_raw_g;                   /* g, of the unfiltered curve */
-    double v0, v_rebound;                 /* m/s, at contact and upwards after it */
-    double absorbed_energy;               /* J, lost by the missile */
-    double max_indentation;               /* m */
-    double max_mean_strain;               /* 1, over the thickness */
-    double max_local_strain;              /* 1 */
-    double energy_error;                  /* 1, largest; docs/formats.md has the limits of a good run */
-    double stabilisation_energy_fraction; /* 1, of the internal energy at its peak */
-    double contact_energy_fraction;       /* 1, likewise */
-    double peak_force;                    /* N, largest contact force (prescribed motion, like the next) */
-    double peak_stress;                   /* Pa, that force over the pad's mean cross-section */
-    double work;                          /* J, largest work of the motion on the pad */
-} softfall_figures;
+typedef struct softfall_figures softfall_figures;
 
 /* Of a drop so far (three steps at least), or of a results.h5 of softfall-solve. `filter`: channel frequency
- * class (SAE J211) 60, 180, 600 or 1000; softfall-post takes 1000 by default. */
+ * class (SAE J211) 60, 180, 600 or 1000; softfall-post takes 1000 by default. `out` is owned by the caller.
+ */
 SOFTFALL_API softfall_status softfall_drop_figures(const softfall_drop *drop, double filter,
-                                                   softfall_figures *figures, softfall_error *error);
-SOFTFALL_API softfall_status softfall_results_figures(const char *path, double filter,
-                                                      softfall_figures *figures, softfall_error *error);
+                                                   softfall_figures **out, softfall_error *error);
+SOFTFALL_API softfall_status softfall_results_figures(const char *path, double filter, softfall_figures **out,
+                                                      softfall_error *error);
+SOFTFALL_API void softfall_figures_free(softfall_figures *figures);
 
-/* Any number of summary.json that is computed from the history (docs/formats.md), by its key and in the unit
- * that the key names, for example "max_indentation_mm". SOFTFALL_INPUT for another key. */
-SOFTFALL_API softfall_status softfall_drop_figure(const softfall_drop *drop, double filter, const char *key,
-                                                  double *value, softfall_error *error);
+/* The list of figures [count]: name (the key) and description; the unit stands in the key. */
+SOFTFALL_API const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count);
+/* NaN also if there is no such figure. */
+SOFTFALL_API double softfall_figure(const softfall_figures *figures, const char *key);
 
 #ifdef __cplusplus
 }

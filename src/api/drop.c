@@ -76,15 +76,13 @@ softfall_status softfall_drop_step(softfall_drop *d, softfall_ending *ending, so
     return softfall_return(&d->failure, error);
 }
 
-softfall_status softfall_drop_run(softfall_drop *d,
-                                  int (*observe)(void *user, const softfall_observation *observation),
+softfall_status softfall_drop_run(softfall_drop *d, int (*observe)(void *user, const softfall_drop *drop),
                                   void *user, softfall_ending *ending, softfall_error *error) {
     softfall_status status = softfall_return(&d->failure, error);
     bool stopped = false;
     while (status == SOFTFALL_OK && d->ending == SOFTFALL_RUNNING && !stopped) {
         status = softfall_drop_step(d, NULL, error);
-        const softfall_observation now = softfall_drop_observe(d);
-        stopped = status == SOFTFALL_OK && observe && observe(user, &now) != 0;
+        stopped = status == SOFTFALL_OK && observe && observe(user, d) != 0;
     }
     if (ending)
         *ending = d->ending;

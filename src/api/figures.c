@@ -3,6 +3,16 @@
 #include "api/drop.h"
 
 #include "post/figures.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ONE(...) +1
+struct softfall_figures {
+    int count;
+    softfall_quantity figure[SF_FIGURES(ONE)];
+    double value[SF_FIGURES(ONE)];
+};
 
 static sf_status check_filter(double filter, sf_error *err) {
     if (filter == 60 || filter == 180 || filter == 600 || filter == 1000)
@@ -11,37 +21,38 @@ static sf_status check_filter(double filter, sf_error *err) {
                    filter);
 }
 
-static softfall_figures show(const sf_figures *f) {
-    return (softfall_figures){.touched = f->touched,
-                              .rebounded = f->rebounded,
-                              .a_max_g = f->injury.a_max_g,
-                              .a_max_time = f->injury.a_max_time,
-                              .hic = f->injury.hic.value,
-                              .hic_t1 = f->injury.hic.t1,
-                              .hic_t2 = f->injury.hic.t2,
-                              .hic15 = f->injury.hic15.value,
-                              .hic36 = f->injury.hic36.value,
-                              .gadd = f->injury.gadd,
-                              .clip_3ms_g = f->injury.clip_contiguous_g,
-                              .a_max_raw_g = f->injury_raw.a_max_g,
-                              .v0 = f->v0,
-                              .v_rebound = f->v_rebound,
-                              .absorbed_energy = f->absorbed_energy,
-                              .max_indentation = f->max_indentation,
-                              .max_mean_strain = f->max_mean_strain,
-                              .max_local_strain = f->max_local_strain,
-                              .energy_error = f->energy_error,
-                              .stabilisation_energy_fraction = f->stabilisation_energy_fraction,
-                              .contact_energy_fraction = f->contact_energy_fraction,
-                              .peak_force = f->peak_force,
-                              .peak_stress = f->peak_stress,
-                              .work = f->work};
+/* Does sf_figures hold it as a number? */
+static bool is_offered(const sf_figure *figure) {
+    return !figure->fact && figure->type != SF_FIGURE_TEXT;
 }
 
-static sf_status compute(const sf_results *results, double filter, softfall_figures *out, sf_error *err) {
+static double value_of(const sf_figure *figure, const sf_figures *f) {
+    const char *place = (const char *)f + figure->offset;
+    switch (figure->type) {
+    case SF_FIGURE_DOUBLE:
+        return *(const double *)place * figure->factor;
+    case SF_FIGURE_INTEGER:
+        return (double)*(const int64_t *)place;
+    case SF_FIGURE_BOOL:
+        return *(const bool *)place;
+    case SF_FIGURE_TEXT:
+        break;
+    }
+    return NAN;
+}
+
+static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
     sf_figures f = {0};
-    if (check_filter(filter, err) == SF_OK && sf_figures_compute(results, filter, &f, err) == SF_OK)
-        *out = show(&f);
+    if (check_filter(filter, err) != SF_OK || sf_figures_compute(results, filter, &f, err) != SF_OK)
+        return err->status;
+    softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
+    for (size_t k = 0; made && k < count; k++)
+        if (is_offered(&list[k])) {
+            made->figure[made->count] = (softfall_quantity){list[k].key, "", list[k].meaning, 1};
+            made->value[made->count++] = value_of(&list[k], &f);
+        }
     sf_figures_free(&f);
     return err->status;
 }
@@ -64,43 +75,39 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
     return SF_OK;
 }
 
-softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, softfall_figures *figures,
+softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, softfall_figures **out,
                                       softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     sf_results r;
-    *figures = (softfall_figures){0};
+    *out = NULL;
     if (view(drop, &r, &err) == SF_OK)
-        compute(&r, filter, figures, &err);
+        compute(&r, filter, out, &err);
     return softfall_return(&err, error);
 }
 
-static sf_status take_figure(const sf_figures *f, const char *key, double *value, sf_error *err) {
-    const sf_figure *figure = sf_figure_find(key);
-    if (!figure || figure->fact || figure->type != SF_FIGURE_DOUBLE)
-        return SF_FAIL(err, SF_ERR_INPUT, "\"%.80s\" is no number of summary.json that a drop computes", key);
-    *value = *(const double *)((const char *)f + figure->offset) * figure->factor;
-    return SF_OK;
-}
-
-softfall_status softfall_drop_figure(const softfall_drop *drop, double filter, const char *key, double *value,
-                                     softfall_error *error) {
-    sf_error err = SF_ERROR_INIT;
-    sf_results r;
-    sf_figures f = {0};
-    if (view(drop, &r, &err) == SF_OK && check_filter(filter, &err) == SF_OK &&
-        sf_figures_compute(&r, filter, &f, &err) == SF_OK)
-        take_figure(&f, key, value, &err);
-    sf_figures_free(&f);
-    return softfall_return(&err, error);
-}
-
-softfall_status softfall_results_figures(const char *path, double filter, softfall_figures *figures,
+softfall_status softfall_results_figures(const char *path, double filter, softfall_figures **out,
                                          softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     sf_results r = {0};
-    *figures = (softfall_figures){0};
+    *out = NULL;
     if (sf_results_open(path, &r, &err) == SF_OK)
-        compute(&r, filter, figures, &err);
+        compute(&r, filter, out, &err);
     sf_results_close(&r);
     return softfall_return(&err, error);
+}
+
+void softfall_figures_free(softfall_figures *figures) {
+    free(figures);
+}
+
+const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count) {
+    *count = figures->count;
+    return figures->figure;
+}
+
+double softfall_figure(const softfall_figures *figures, const char *key) {
+    for (int k = 0; k < figures->count; k++)
+        if (strcmp(figures->figure[k].name, key) == 0)
+            return figures->value[k];
+    return NAN;
 }

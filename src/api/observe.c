@@ -3,24 +3,9 @@
 #include "api/drop.h"
 
 #include "solver/run/frame.h"
+#include <math.h>
 #include <omp.h>
-#include <stddef.h>
 #include <string.h>
-
-static const struct {
-    const char *column;
-    size_t offset;
-} observed[] = {
-    {"time", offsetof(softfall_observation, time)},
-    {"time_step", offsetof(softfall_observation, time_step)},
-    {"acceleration", offsetof(softfall_observation, acceleration)},
-    {"velocity", offsetof(softfall_observation, velocity)},
-    {"displacement", offsetof(softfall_observation, displacement)},
-    {"indentation", offsetof(softfall_observation, indentation)},
-    {"contact_force", offsetof(softfall_observation, contact_force)},
-    {"largest_compression", offsetof(softfall_observation, largest_compression)},
-    {"energy_error", offsetof(softfall_observation, energy_error)},
-};
 
 void softfall_drop_list(softfall_drop *d) {
     for (int k = 0; k < SF_HISTORY_COUNT; k++) {
@@ -33,15 +18,14 @@ void softfall_drop_list(softfall_drop *d) {
     }
 }
 
-softfall_observation softfall_drop_observe(const softfall_drop *d) {
-    softfall_observation now = {.step = d->recorder.history.rows - 1};
-    for (size_t k = 0; k < sizeof observed / sizeof observed[0] && now.step >= 0; k++) {
-        const double *values = NULL;
-        int64_t rows = softfall_drop_history(d, observed[k].column, &values);
-        if (rows > 0)
-            *(double *)((char *)&now + observed[k].offset) = values[rows - 1];
-    }
-    return now;
+int64_t softfall_drop_steps(const softfall_drop *d) {
+    return d->recorder.history.rows;
+}
+
+double softfall_drop_latest(const softfall_drop *d, const char *name) {
+    const double *values = NULL;
+    int64_t rows = softfall_drop_history(d, name, &values);
+    return rows > 0 ? values[rows - 1] : NAN;
 }
 
 const softfall_quantity *softfall_drop_columns(const softfall_drop *d, int *count) {

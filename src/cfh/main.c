@@ -73,12 +73,13 @@ static sf_status write_output(sf_staging *output, const sf_cfh_report *report, s
     printf("Written: %s/report.md, cfh.json, cfh.csv%s\n", output->directory,
            warning[0] ? "" : ", cfh.png (cfh.gp)");
     fflush(stdout);
+    const sf_sink sink = sf_program_sink("softfall-cfh");
     for (int k = 0; k < report->points->count; k++)
         if (report->points->point[k].note[0])
-            fprintf(stderr, "softfall-cfh: warning: at %.3f m: %s\n", report->points->point[k].height,
-                    report->points->point[k].note);
+            sf_sink_tell(&sink, SF_WARNING, "at %.3f m: %s", report->points->point[k].height,
+                         report->points->point[k].note);
     if (warning[0])
-        fprintf(stderr, "softfall-cfh: warning: %s\n", warning);
+        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
     return SF_OK;
 }
 

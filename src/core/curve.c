@@ -4,22 +4,36 @@
 #include <math.h>
 #include <stdlib.h>
 
+double sf_densification_natural_exponent(double start, double limit, double stress, double slope) {
+    return (limit - start) * slope / stress;
+}
+
+sf_densification sf_densification_join(double start, double limit, double exponent, double stress,
+                                       double slope, double energy) {
+    double room = limit - start;
+    return (sf_densification){.start = start,
+                              .limit = limit,
+                              .exponent = exponent,
+                              .constant = stress - slope * room / exponent,
+                              .factor = slope * pow(room, exponent + 1) / exponent,
+                              .start_energy = energy};
+}
+
 /* The law beyond the data, C1 at (start, stress) with the given slope. */
-static sf_status build_densification(const sf_foam_card *foam, double stress, double slope, sf_curve *curve,
-                                     sf_error *err) {
-    curve->limit = foam->densification_limit;
-    if (!(curve->limit > curve->start))
-        return SF_FAIL(err, SF_ERR_INPUT, "the densification limit %g is not beyond its start %g",
-                       curve->limit, curve->start);
+static sf_status build_densification(const sf_foam_card *foam, double stress, double slope, double energy,
+                                     sf_curve *curve, sf_error *err) {
+    double start = curve->start, limit = foam->densification_limit, exponent = foam->densification_exponent;
+    if (!(limit > start))
+        return SF_FAIL(err, SF_ERR_INPUT, "the densification limit %g is not beyond its start %g", limit,
+                       start);
     if (!(slope > 0 && stress > 0))
         return SF_FAIL(err, SF_ERR_INPUT,
                        "the compression curve is flat (stress %g Pa, slope %g Pa) at the strain %g where "
                        "densification starts",
-                       stress, slope, curve->start);
-    double room = curve->limit - curve->start;
-    curve->exponent = foam->densification_exponent > 0 ? foam->densification_exponent : room * slope / stress;
-    curve->factor = slope * pow(room, curve->exponent + 1) / curve->exponent;
-    curve->constant = stress - slope * room / curve->exponent;
+                       stress, slope, start);
+    if (!(exponent > 0))
+        exponent = sf_densification_natural_exponent(start, limit, stress, slope);
+    curve->beyond = sf_densification_join(start, limit, exponent, stress, slope, energy);
     return SF_OK;
 }
 
@@ -78,8 +92,8 @@ static void sample_pieces(const double *x, const double *y, const double *slope,
     }
 }
 
-/* Hermite pieces through the sampled stresses and slopes. */
-static void build_pieces(double end_stress, double end_slope, sf_curve *curve) {
+/* Hermite pieces through the sampled stresses and slopes; returns the energy (J m-3) at their end. */
+static double build_pieces(double end_stress, double end_slope, sf_curve *curve) {
     double energy = 0;
     for (int k = 0; k < SF_CURVE_INTERVALS; k++) {
         bool last = k + 1 == SF_CURVE_INTERVALS;
@@ -93,7 +107,7 @@ static void build_pieces(double end_stress, double end_slope, sf_curve *curve) {
         energy += h * (p->c[0] + h * (p->c[1] / 2 + h * (p->c[2] / 3 + h * p->c[3] / 4)));
         curve->largest_slope = fmax(curve->largest_slope, fmax(d0, d1));
     }
-    curve->start_energy = energy;
+    return energy;
 }
 
 sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curve, sf_error *err) {
@@ -113,8 +127,8 @@ sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curv
         double stress, slope;
         steffen_slopes(count, x, y, slopes);
         sample_pieces(x, y, slopes, curve, &stress, &slope);
-        build_pieces(stress, slope, curve);
-        build_densification(foam, stress, slope, curve, err);
+        double energy = build_pieces(stress, slope, curve);
+        build_densification(foam, stress, slope, energy, curve, err);
     }
     free(slopes);
     if (err->status != SF_OK)
@@ -127,26 +141,26 @@ void sf_curve_free(sf_curve *curve) {
     *curve = (sf_curve){0};
 }
 
-static void evaluate_densification(const sf_curve *curve, double strain, double *stress, double *slope,
-                                   double *energy) {
-    double left = curve->limit - strain, room = curve->limit - curve->start, m = curve->exponent;
+void sf_densification_evaluate(const sf_densification *law, double strain, double *stress, double *slope,
+                               double *energy) {
+    double left = law->limit - strain, room = law->limit - law->start, m = law->exponent;
     if (!(left > 0)) {
         *stress = *slope = *energy = INFINITY;
         return;
     }
-    double singular = curve->factor * pow(left, -m);
-    *stress = curve->constant + singular;
+    double singular = law->factor * pow(left, -m);
+    *stress = law->constant + singular;
     *slope = m * singular / left;
-    *energy = curve->start_energy + curve->constant * (strain - curve->start);
+    *energy = law->start_energy + law->constant * (strain - law->start);
     if (fabs(m - 1) < 1e-9)
-        *energy += curve->factor * log(room / left);
+        *energy += law->factor * log(room / left);
     else
-        *energy += (singular * left - curve->factor * pow(room, 1 - m)) / (m - 1);
+        *energy += (singular * left - law->factor * pow(room, 1 - m)) / (m - 1);
 }
 
 void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, double *slope, double *energy) {
     if (!(strain < curve->start)) {
-        evaluate_densification(curve, strain, stress, slope, energy);
+        sf_densification_evaluate(&curve->beyond, strain, stress, slope, energy);
         return;
     }
     int k = (int)(strain / curve->step);
@@ -181,5 +195,5 @@ SF_KERNEL void sf_curve_evaluate_lanes(const sf_curve *curve, const double strai
         return;
     for (int l = 0; l < SF_LANES; l++) /* few points at any time */
         if (strain[l] >= start)
-            evaluate_densification(curve, strain[l], &stress[l], &slope[l], &energy[l]);
+            sf_densification_evaluate(&curve->beyond, strain[l], &stress[l], &slope[l], &energy[l]);
 }

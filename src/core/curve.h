@@ -22,17 +22,32 @@ typedef struct sf_curve_piece {
     double c[4];
 } sf_curve_piece;
 
+/* The law beyond the data. */
+typedef struct sf_densification {
+    double start;        /* -, eps_e */
+    double limit;        /* -, eps_L */
+    double exponent;     /* -, m */
+    double constant;     /* Pa, A */
+    double factor;       /* Pa, B (with (eps_L - eps) dimensionless) */
+    double start_energy; /* J m-3, energy at eps_e */
+} sf_densification;
+
 typedef struct sf_curve {
     double step;           /* -, width of a piece */
     double start;          /* -, eps_e */
-    double limit;          /* -, eps_L */
-    double exponent;       /* -, m */
-    double constant;       /* Pa, A */
-    double factor;         /* Pa, B (with (eps_L - eps) dimensionless) */
-    double start_energy;   /* J m-3, energy at eps_e */
     double largest_slope;  /* Pa, of the table */
     sf_curve_piece *piece; /* [SF_CURVE_INTERVALS] owned */
+    sf_densification beyond;
 } sf_curve;
+
+/* The law from `start` to `limit` that continues stress (Pa), slope (Pa) and energy (J m-3) at the start. */
+sf_densification sf_densification_join(double start, double limit, double exponent, double stress,
+                                       double slope, double energy);
+/* m that makes A vanish. */
+double sf_densification_natural_exponent(double start, double limit, double stress, double slope);
+/* Stress (Pa), slope (Pa) and energy (J m-3) at a strain from the start on; INFINITY from the limit on. */
+void sf_densification_evaluate(const sf_densification *law, double strain, double *stress, double *slope,
+                               double *energy);
 
 /* Builds curve `index` of the card. Errors: fewer than 3 points, strains that do not ascend, densification
  * start beyond the data, a slope at the start that is not positive, eps_L not beyond the start. */

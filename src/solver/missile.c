@@ -34,6 +34,10 @@ static void move_back(const sf_model *m, const sf_missile *missile, const double
         out[r] = x[r] - missile->displacement * m->missile.direction[r];
 }
 
+const double *sf_missile_direction(const sf_model *m) {
+    return m->missile.direction;
+}
+
 void sf_missile_translation(const sf_model *m, const sf_missile *missile, double out[3]) {
     scale(missile->displacement, m->missile.direction, out);
 }

@@ -40,6 +40,9 @@ void sf_missile_begin(const sf_model *model, sf_missile *missile);
 
 /* ---- pose and velocity ---- */
 
+/* Unit vector [3] of its motion, owned by the model. */
+const double *sf_missile_direction(const sf_model *model);
+
 /* Translation (m) since t = 0. */
 void sf_missile_translation(const sf_model *model, const sf_missile *missile, double out[3]);
 /* Velocity (m s-1), at the present time, of the missile's material point at x. */

@@ -2,6 +2,7 @@
 #include "solver/operators.h"
 
 #include "core/stability.h"
+#include "solver/missile.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,7 +30,7 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
     if (sf_constraint_build(m, &op->constraint, err) != SF_OK ||
         sf_contact_gram_build(m, &op->gram, err) != SF_OK)
         return err->status;
-    return sf_missile_surface_build(m, &op->surface, err);
+    return sf_missile_surface_build(m, sf_missile_direction(m), &op->surface, err);
 }
 
 sf_status sf_operators_build(const sf_model *m, sf_operators *op, sf_error *err) {

@@ -78,16 +78,17 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
 static sf_status run(const options *o, sf_error *err) {
     sf_compression_config config = {0};
     sf_compression_fit fit = {0};
+    const sf_sink sink = sf_program_sink("softfall-fit");
     if (sf_compression_config_read(o->path, &config, err) == SF_OK &&
         sf_compression_fit_run(&config, &fit, err) == SF_OK)
-        sf_compression_output(&fit, o->path, o->directory, o->force, &o->cube, err);
+        sf_compression_output(&fit, o->path, o->directory, o->force, &o->cube, &sink, err);
     sf_compression_fit_free(&fit);
     sf_compression_config_free(&config);
     return err->status;
 }
 
 int sf_fit_compression_main(int argc, char **argv) {
-    options o = {0};
+    options o = {.cube.log = stdout};
     sf_error err = SF_ERROR_INIT;
     sf_process_handle_signals();
     if (parse_command(argc, argv, &o, &err) == SF_OK)

@@ -169,10 +169,12 @@ sf_status sf_compression_simulate(const sf_compression_fit *fit, const sf_foam_c
     for (int k = 0; k < c->test_count; k++) {
         if (simulate(fit, card, options, folder, k, &tests[k], err) != SF_OK)
             return err->status;
-        printf("simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g %% "
-               "unloading\n",
-               c->test[k].rate, tests[k].percent[0], tests[k].percent[1]);
-        fflush(stdout);
+        fprintf(
+            options->log,
+            "simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g %% "
+            "unloading\n",
+            c->test[k].rate, tests[k].percent[0], tests[k].percent[1]);
+        fflush(options->log);
     }
     return SF_OK;
 }

@@ -6,6 +6,7 @@
 #define SF_FIT_COMPRESSION_CUBE_H
 
 #include "fit/compression/fit.h"
+#include <stdio.h>
 
 enum { SF_CUBE_BLOCKS = 160 }; /* of a branch */
 
@@ -13,6 +14,7 @@ typedef struct sf_cube_options {
     const char
         *case_path; /* of a cube between platens (missile.motion, geometry.parameters.side); NULL: none */
     const char *friction; /* of the upper platen, in place of the case's; NULL: the case's */
+    FILE *log;            /* progress */
 } sf_cube_options;
 
 /* One simulated test, as means over blocks of equal time. */
@@ -27,7 +29,7 @@ typedef struct sf_cube_test {
     double energy_error; /* of the simulation */
 } sf_cube_test;
 
-/* Simulates every test in folders of `folder` (which exists), with a line on stdout for each. `tests`
+/* Simulates every test in folders of `folder` (which exists), with a line in options->log for each. `tests`
  * [config->test_count]. SF_ERR_INPUT if the specimen's side and thickness are not given and equal, as the
  * geometry is a cube. */
 sf_status sf_compression_simulate(const sf_compression_fit *fit, const sf_foam_card *card,

@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double MAXWELL_STEP = 0.0025; /* of strain: the law is exact for a constant rate of the Green
+                                              strain, whose change over such a step is of no account */
+
 /* The parameters in their own units. */
 typedef struct numbers {
     double coefficient[SF_COMPRESSION_TESTS][SF_SPLINE_COEFFICIENTS]; /* Pa */
@@ -75,13 +78,12 @@ static void unpack(const sf_compression_model *model, const gsl_vector *paramete
 
 /* ---- the curve and its densification ---- */
 
-/* Excess of the densification over its tangentless start, per unit of the slope there: stress = s + s' D,
- * energy = W + s (strain - start) + s' (integral of D). */
+/* The densification for a unit slope at its start and no stress or energy there, by which stress = s + s' D,
+ * energy = W + s (strain - start) + s' (integral of D): out = {D, its integral}. */
 static void densification(double start, double exponent, double limit, double strain, double out[2]) {
-    double room = limit - start, left = limit - strain, m = exponent, power = pow(room / left, m);
-    double area = fabs(m - 1) < 1e-7 ? room * log(room / left) : (left * power - room) / (m - 1);
-    out[0] = room / m * (power - 1);
-    out[1] = room / m * (area - (strain - start));
+    const sf_densification unit = sf_densification_join(start, limit, exponent, 0, 1, 0);
+    double slope;
+    sf_densification_evaluate(&unit, strain, &out[0], &slope, &out[1]);
 }
 
 static double product(int count, const double *row, const double *coefficient) {
@@ -98,7 +100,7 @@ static double natural_exponent(const sf_compression_model *model, const double *
            d = product(n, model->start_row[1], c);
     for (int j = 0; j < n && by; j++)
         by[j] = room * (model->start_row[1][j] / s - d * model->start_row[0][j] / (s * s));
-    return room * d / s;
+    return sf_densification_natural_exponent(model->data->start, 1, s, d);
 }
 
 static void evaluate_beyond(const sf_compression_model *model, const double *c, double exponent, double limit,
@@ -149,23 +151,29 @@ static void evaluate(const sf_compression_model *model, const double *c, const n
 
 /* ---- rate ---- */
 
-/* x + exp(-x) - 1 */
-static double beyond_linear(double x) {
-    return fabs(x) < 1e-3 ? x * x * (0.5 - x * (1.0 / 6 - x / 24)) : x + expm1(-x);
+/* Takes `held` (Pa, second Piola-Kirchhoff stress of a branch of 1 Pa) from one strain to another at a
+ * constant rate, by steps of the law. */
+static double maxwell_leg(double decay_rate, double rate, double from, double to, double held) {
+    int steps = 1 + (int)(fabs(to - from) / MAXWELL_STEP);
+    double dt = fabs(to - from) / rate / steps, old = 1 - from;
+    for (int k = 1; k <= steps && dt > 0; k++) {
+        double now = 1 - (from + (to - from) * k / steps);
+        held = sf_foam_maxwell(1, decay_rate, dt, 0.5 * (now * now - old * old) / dt, held);
+        old = now;
+    }
+    return held;
 }
 
-/* Second Piola-Kirchhoff stress of the branch after `time` from its initial value, at a constant rate of the
- * stretch (the convolution of E' = stretch stretch'). */
-static double maxwell_leg(double decay_rate, double velocity, double held, double from, double time) {
-    double x = decay_rate * time, per = velocity / decay_rate;
-    return held * exp(-x) + per * (-from * expm1(-x) + per * beyond_linear(x));
-}
-
-double sf_compression_maxwell(double decay_rate, double rate, double turn, double strain, bool unloading) {
-    double s = maxwell_leg(decay_rate, -rate, 0, 1, (unloading ? turn : strain) / rate);
-    if (unloading)
-        s = maxwell_leg(decay_rate, rate, s, 1 - turn, (turn - strain) / rate);
-    return -(1 - strain) * s;
+double sf_compression_maxwell(double decay_rate, double rate, double turn, double strain, bool unloading,
+                              sf_compression_walk *walk) {
+    if (unloading && !walk->unloading) {
+        walk->held = maxwell_leg(decay_rate, rate, walk->strain, turn, walk->held);
+        walk->strain = turn;
+    }
+    walk->held = maxwell_leg(decay_rate, rate, walk->strain, strain, walk->held);
+    walk->strain = strain;
+    walk->unloading = unloading;
+    return -(1 - strain) * walk->held;
 }
 
 static double rate_logarithm(const sf_compression_model *model, int test) {
@@ -203,21 +211,29 @@ static void add_densification(const sf_compression_model *model, const gsl_vecto
     add_number(model, parameters, SF_NUMBER_LIMIT, by_limit, gradient);
 }
 
+/* Walks along a test with three decay rates: the one wanted, and one on either side for its derivative. */
+typedef struct branch {
+    int test;
+    sf_compression_walk walk[3];
+} branch;
+
 static double predict_maxwell(const sf_compression_model *model, const gsl_vector *parameters,
-                              const numbers *n, int i, double *gradient) {
+                              const numbers *n, int i, branch *m, double *gradient) {
     const sf_compression_data *d = model->data;
     const sf_compression_test *t = &d->config->test[d->test[i]];
-    double modulus = n->value[SF_NUMBER_ED], beta = n->value[SF_NUMBER_BETA1], h = 1e-5;
-    double unit = sf_compression_maxwell(beta, t->rate, t->largest_strain, d->strain[i], d->unloading[i]);
+    double modulus = n->value[SF_NUMBER_ED], beta = n->value[SF_NUMBER_BETA1], h = 1e-5, unit[3] = {0};
+    const double rate[3] = {beta, beta * (1 + h), beta * (1 - h)};
+    if (m->test != d->test[i])
+        *m = (branch){.test = d->test[i]};
+    for (int k = 0; k < (gradient ? 3 : 1); k++)
+        unit[k] = sf_compression_maxwell(rate[k], t->rate, t->largest_strain, d->strain[i], d->unloading[i],
+                                         &m->walk[k]);
     if (gradient) {
-        double up =
-            sf_compression_maxwell(beta * (1 + h), t->rate, t->largest_strain, d->strain[i], d->unloading[i]);
-        double down =
-            sf_compression_maxwell(beta * (1 - h), t->rate, t->largest_strain, d->strain[i], d->unloading[i]);
-        add_number(model, parameters, SF_NUMBER_ED, unit, gradient);
-        add_number(model, parameters, SF_NUMBER_BETA1, modulus * (up - down) / (2 * h * beta), gradient);
+        add_number(model, parameters, SF_NUMBER_ED, unit[0], gradient);
+        add_number(model, parameters, SF_NUMBER_BETA1, modulus * (unit[1] - unit[2]) / (2 * h * beta),
+                   gradient);
     }
-    return modulus * unit;
+    return modulus * unit[0];
 }
 
 static double predict_loading(const sf_compression_model *model, const gsl_vector *parameters,
@@ -273,6 +289,7 @@ static double predict_unloading(const sf_compression_model *model, const gsl_vec
 void sf_compression_predict(const sf_compression_model *model, const gsl_vector *parameters, double *stress,
                             gsl_matrix *jacobian) {
     const sf_compression_data *d = model->data;
+    branch maxwell = {.test = -1};
     numbers n;
     unpack(model, parameters, &n);
     if (jacobian)
@@ -282,7 +299,7 @@ void sf_compression_predict(const sf_compression_model *model, const gsl_vector 
         stress[i] = d->unloading[i] ? predict_unloading(model, parameters, &n, i, gradient)
                                     : predict_loading(model, parameters, &n, i, gradient);
         if (model->form.rate == SF_RATE_MAXWELL)
-            stress[i] += predict_maxwell(model, parameters, &n, i, gradient);
+            stress[i] += predict_maxwell(model, parameters, &n, i, &maxwell, gradient);
     }
 }
 

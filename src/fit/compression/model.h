@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The foam law of solver/material/foam.c at a material point in uniaxial compression at a constant nominal
  * rate (lateral stretches 1), as a function of the parameters that compression tests identify, with its
- * derivatives. The loading curve is a cubic spline whose coefficients ascend, and beyond the densification
- * start the law of theory eq. (23), joined with its slope; the hysteresis is eq. (14), the Maxwell stress the
- * closed form of eq. (19). DAMP is left out: it is negligible at the rates of these tests.
+ * derivatives. The loading curve is a cubic spline whose coefficients ascend. What lies beyond it is the
+ * law's own: the densification (core/curve.h), the factor of unloading and the Maxwell branch
+ * (solver/material/foam.h); only the derivatives by the parameters are added here. DAMP is left out: it is
+ * negligible at the rates of these tests.
  *
  * A parameter vector holds for every curve the logarithms of the coefficients' increments, then the other
  * parameters mapped from their bounds to the real line. */
@@ -77,7 +78,15 @@ double sf_compression_exponent(const sf_compression_model *model, const gsl_vect
 double sf_compression_curve(sf_compression_model *model, const gsl_vector *parameters, int test,
                             double strain, double *gradient);
 
-/* Compressive nominal stress (Pa) of a Maxwell branch of 1 Pa at a strain of a test that turns at `turn`. */
-double sf_compression_maxwell(double decay_rate, double rate, double turn, double strain, bool unloading);
+/* A Maxwell branch of 1 Pa along a test; begins as zeros. */
+typedef struct sf_compression_walk {
+    double strain;  /* - */
+    double held;    /* Pa, second Piola-Kirchhoff stress */
+    bool unloading; /* the test has turned */
+} sf_compression_walk;
+
+/* Compressive nominal stress (Pa) of the branch at the next strain of a test that turns at `turn`. */
+double sf_compression_maxwell(double decay_rate, double rate, double turn, double strain, bool unloading,
+                              sf_compression_walk *walk);
 
 #endif

@@ -133,34 +133,41 @@ static sf_status write_simulation(const sf_staging *output, const sf_compression
 /* ---- the summary ---- */
 
 static void print_summary(const sf_compression_fit *fit, const sf_compression_check *check,
-                          const char *directory, const char *warning) {
+                          const char *directory, FILE *log) {
     const sf_compression_config *c = fit->data.config;
-    printf("%s: %d test%s, %d points, strain to %.4g\n", c->name, c->test_count, c->test_count > 1 ? "s" : "",
-           fit->data.count, fit->data.end);
-    printf("  rate dependence  %s\n", sf_compression_rate_phrase(fit->model.form.rate));
-    printf("  densification    %s, from strain %.4g\n", sf_compression_rule_phrase(fit->model.form.rule),
-           fit->data.start);
+    fprintf(log, "%s: %d test%s, %d points, strain to %.4g\n", c->name, c->test_count,
+            c->test_count > 1 ? "s" : "", fit->data.count, fit->data.end);
+    fprintf(log, "  rate dependence  %s\n", sf_compression_rate_phrase(fit->model.form.rate));
+    fprintf(log, "  densification    %s, from strain %.4g\n",
+            sf_compression_rule_phrase(fit->model.form.rule), fit->data.start);
     for (int k = 0; k < SF_ESTIMATES; k++)
         if (fit->estimate[k].present)
-            put_estimate(stdout, fit, &fit->estimate[k]);
-    printf("  scatter of the data: %.3g kPa and %.3g %% of the stress; misfit (1 is scatter alone) %.3g\n",
-           1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative, fit->misfit);
-    printf("  card in the solver's law against the fit: largest difference %.2g %%\n", check->card_percent);
-    printf("Files in %s: material.cfg and its curves, report.md, fit.png, fit.json, fit.csv, "
-           "loading_curve.csv\n",
-           directory);
-    fflush(stdout);
+            put_estimate(log, fit, &fit->estimate[k]);
+    fprintf(log,
+            "  scatter of the data: %.3g kPa and %.3g %% of the stress; misfit (1 is scatter alone) %.3g\n",
+            1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative, fit->misfit);
+    fprintf(log, "  card in the solver's law against the fit: largest difference %.2g %%\n",
+            check->card_percent);
+    fprintf(log,
+            "Files in %s: material.cfg and its curves, report.md, fit.png, fit.json, fit.csv, "
+            "loading_curve.csv\n",
+            directory);
+    fflush(log);
+}
+
+static void warn(const sf_compression_fit *fit, const char *plot, const sf_sink *sink) {
     if (fit->misfit > 2)
-        fprintf(stderr,
-                "softfall-fit: warning: the law misses the data by %.3g times their scatter (fit.png, lower "
-                "panel); the intervals are widened by as much\n",
-                sqrt(fit->misfit));
-    if (*warning)
-        fprintf(stderr, "softfall-fit: warning: %s\n", warning);
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "the law misses the data by %.3g times their scatter (fit.png, lower panel); the intervals "
+            "are widened by as much",
+            sqrt(fit->misfit));
+    if (*plot)
+        sf_sink_tell(sink, SF_WARNING, "%s", plot);
 }
 
 sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *directory,
-                                bool force, const sf_cube_options *cube, sf_error *err) {
+                                bool force, const sf_cube_options *cube, const sf_sink *sink, sf_error *err) {
     sf_compression_check check = {.card_percent = 0};
     sf_foam_card card;
     sf_staging output;
@@ -175,8 +182,10 @@ sf_status sf_compression_output(const sf_compression_fit *fit, const char *path,
             sf_compression_write_json(&output, fit, &check, path, err) == SF_OK &&
             sf_compression_write_plot(&output, fit, warning, sizeof warning, err) == SF_OK &&
             sf_compression_write_report(&output, fit, &check, path, err) == SF_OK &&
-            sf_staging_commit(&output, err) == SF_OK)
-            print_summary(fit, &check, directory, warning);
+            sf_staging_commit(&output, err) == SF_OK) {
+            print_summary(fit, &check, directory, cube->log);
+            warn(fit, warning, sink);
+        }
         sf_staging_end(&output);
     }
     sf_compression_card_free(&card);

@@ -4,13 +4,14 @@
 #ifndef SF_FIT_COMPRESSION_OUTPUT_H
 #define SF_FIT_COMPRESSION_OUTPUT_H
 
+#include "core/sink.h"
 #include "fit/compression/cube.h"
 #include "fit/compression/fit.h"
 #include <stdbool.h>
 
-/* Writes into `directory` (sf_staging) and prints the summary. `path`: FIT.cfg, as given. Simulates the tests
- * first if `cube` names a case. */
+/* Writes into `directory` (sf_staging), and the summary to cube->log; warnings go to `sink`. `path`: FIT.cfg,
+ * as given. Simulates the tests first if `cube` names a case. */
 sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *directory,
-                                bool force, const sf_cube_options *cube, sf_error *err);
+                                bool force, const sf_cube_options *cube, const sf_sink *sink, sf_error *err);
 
 #endif

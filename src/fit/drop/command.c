@@ -90,10 +90,11 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_st
     printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.md, fit.json, fit.png\n",
            (long long)runner.simulated, (long long)runner.reused, o->directory, in->material_name);
     fflush(stdout);
+    const sf_sink sink = sf_program_sink("softfall-fit");
     if (*warning)
-        fprintf(stderr, "softfall-fit: warning: %s\n", warning);
+        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
     if (!fit->result.converged)
-        fprintf(stderr, "softfall-fit: warning: not converged after %d iterations\n", fit->result.iterations);
+        sf_sink_tell(&sink, SF_WARNING, "not converged after %d iterations", fit->result.iterations);
     return SF_OK;
 }
 

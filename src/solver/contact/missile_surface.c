@@ -132,13 +132,14 @@ static sf_status build_bins(sf_missile_surface *s, int64_t nodes, int64_t triang
     return err->status;
 }
 
-sf_status sf_missile_surface_build(const sf_model *m, sf_missile_surface *s, sf_error *err) {
+sf_status sf_missile_surface_build(const sf_model *m, const double axis[3], sf_missile_surface *s,
+                                   sf_error *err) {
     memset(s, 0, sizeof *s);
     s->shape = m->missile.shape;
     s->radius = m->missile.sphere_radius;
     s->cap_cosine = m->missile.sphere_cap_cosine;
     memcpy(s->centre, m->missile.sphere_centre, sizeof s->centre);
-    memcpy(s->direction, m->missile.direction, sizeof s->direction);
+    memcpy(s->axis, axis, sizeof s->axis);
     if (s->shape == SF_SHAPE_SPHERE)
         return SF_OK;
     int64_t triangles = m->surface_triangle_count;
@@ -177,7 +178,7 @@ static bool sphere_gap(const sf_missile_surface *s, const double x[3], double *g
     double r[3];
     subtract(x, s->centre, r);
     double distance = sqrt(sf_dot3(r, r));
-    if (!(distance > 0) || sf_dot3(r, s->direction) < (s->cap_cosine - 1e-9) * distance)
+    if (!(distance > 0) || sf_dot3(r, s->axis) < (s->cap_cosine - 1e-9) * distance)
         return false;
     *gap = distance - s->radius;
     for (int k = 0; k < 3; k++)

@@ -10,7 +10,8 @@
 
 typedef struct sf_missile_surface {
     int64_t shape; /* SF_SHAPE_* */
-    double centre[3], radius, cap_cosine, direction[3];
+    double centre[3], radius, cap_cosine;
+    double axis[3]; /* unit vector from the centre to the middle of the cap */
 
     /* Triangles binned on a grid over (x, y); SF_SHAPE_SURFACE only. */
     const double *position;  /* borrowed from the model */
@@ -28,7 +29,9 @@ typedef struct sf_missile_surface {
     int32_t *member; /* triangles whose box, grown by reach, meets the bin */
 } sf_missile_surface;
 
-sf_status sf_missile_surface_build(const sf_model *model, sf_missile_surface *surface, sf_error *err);
+/* `axis`: the missile's direction. */
+sf_status sf_missile_surface_build(const sf_model *model, const double axis[3], sf_missile_surface *surface,
+                                   sf_error *err);
 void sf_missile_surface_free(sf_missile_surface *surface);
 
 /* Can sf_missile_surface_gap be less than `margin` (m, from 0) at `x`? False is certain. */

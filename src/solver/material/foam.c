@@ -226,8 +226,7 @@ double sf_foam_uniaxial(const sf_foam *foam, double dt, double strain, sf_uniaxi
         stress += sf_foam_overstress(foam, strain, *rate, &slope, &rate_slope);
     }
     if (foam->maxwell > 0)
-        *maxwell = exp(-foam->maxwell_rate * dt) * *maxwell -
-                   foam->maxwell / foam->maxwell_rate * expm1(-foam->maxwell_rate * dt) * green_rate;
+        *maxwell = sf_foam_maxwell(foam->maxwell, foam->maxwell_rate, dt, green_rate, *maxwell);
     point->strain = strain;
     return stress - stretch * (*maxwell + foam->kelvin * green_rate);
 }

@@ -56,6 +56,13 @@ static inline double sf_foam_unloading(double hu, double shape, double ratio) {
     return 1 - (1 - hu) * (1 - (shape == 1 ? ratio : pow(ratio, shape)));
 }
 
+/* Stress (Pa, second Piola-Kirchhoff) of a Maxwell branch after a step of dt (s) at a constant rate of the
+ * Green strain (s-1), from `held` before it: exact. */
+static inline double sf_foam_maxwell(double modulus, double decay_rate, double dt, double green_rate,
+                                     double held) {
+    return exp(-decay_rate * dt) * held - modulus / decay_rate * expm1(-decay_rate * dt) * green_rate;
+}
+
 /* Rate overstress sigma(eps, rate) - sigma(eps, slowest curve) in Pa, interpolated over the logarithm of the
  * rate (s-1), with its derivatives by strain and rate. Needs two curves or more. */
 double sf_foam_overstress(const sf_foam *foam, double strain, double rate, double *slope, double *rate_slope);

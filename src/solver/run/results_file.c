@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/results_file.h"
 
+#include "solver/missile.h"
+
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     int64_t driven = sf_missile_is_driven(m);
     const double density = sf_material_density(&m->material[0]);
@@ -56,7 +58,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
          SF_H5_F64,
          1,
          {3, 0},
-         m->missile.direction},
+         sf_missile_direction(m)},
     };
     for (size_t k = 0; k < sizeof item / sizeof item[0]; k++)
         if (sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err) !=
