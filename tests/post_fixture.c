@@ -163,6 +163,8 @@ static sf_status put_frame(sf_h5 *file, const cloud *c, const char *group, int k
         for (int i = 0; i < FIXTURE_NODES; i++)
             for (int j = 0; j < info->components; j++)
                 field[i * info->components + j] = 1000 * k + 10 * i + j;
+        for (int i = 0; i < FIXTURE_NODES && f == SF_FRAME_LARGEST_COMPRESSION; i++)
+            field[i] = 0.7 - 1e-3 * i;
         for (int i = 0; i < FIXTURE_NODES && f == SF_FRAME_DISPLACEMENT; i++) {
             field[3 * i] = field[3 * i + 1] = 0;
             field[3 * i + 2] = lowered[2] * (c->position[i][2] + FIXTURE_THICKNESS) / FIXTURE_THICKNESS;

@@ -5,7 +5,7 @@
  * 0.1 (29 nodes). Missile: a square pyramid, point down, its pole at the origin (5 nodes, 4 triangles),
  * moving along -z. History: a half-sine of FIXTURE_PEAK_G over FIXTURE_DURATION, then free flight for 2 ms;
  * unevenly spaced rows. Frame k of FIXTURE_FRAMES, at k FIXTURE_DURATION / 4: displacement u_z = -0.005 k (z
- * + 0.05) / 0.05, von Mises 1000 k + 10 node Pa, missile lowered by 0.005 k m. /peak is like frame 2. */
+ * + 0.05) / 0.05, von Mises 1000 k + 10 node Pa, largest compression 0.7 - node / 1000, missile lowered by 0.005 k m. /peak is like frame 2. */
 #ifndef SF_TESTS_POST_FIXTURE_H
 #define SF_TESTS_POST_FIXTURE_H
 

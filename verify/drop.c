@@ -22,7 +22,7 @@ static const struct {
     KEY(v_rebound_m_s),
     KEY(max_indentation_mm),
     KEY(max_local_strain),
-    KEY(local_strain_excess),
+    KEY(local_collapse),
     KEY(energy_error),
     KEY(momentum_error),
     KEY(stabilisation_energy_fraction),
@@ -35,7 +35,7 @@ static const struct {
 };
 
 static sf_status read_summary(const char *path, sf_drop *out, sf_error *err) {
-    char text[16384];
+    char text[65536];
     FILE *file = fopen(path, "r");
     if (!file)
         return SF_FAIL(err, SF_ERR_IO, "%s is missing", path);

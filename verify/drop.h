@@ -8,7 +8,7 @@
 typedef struct sf_drop {
     double a_max_g, a_max_raw_g, hic, hic_t1_ms, hic_t2_ms, v_rebound_m_s, max_indentation_mm,
         max_local_strain;
-    double local_strain_excess, energy_error, momentum_error, stabilisation_energy_fraction,
+    double local_collapse, energy_error, momentum_error, stabilisation_energy_fraction,
         contact_energy_fraction;
     double constraint_residual_m_s, nodes, steps, wall_s;
 } sf_drop;

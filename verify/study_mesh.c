@@ -75,8 +75,8 @@ static void check_bounds(sf_study *study, const char *name, const sf_drop *drop)
     sf_study_check(study, d->momentum_error, -INFINITY, 1e-6, "%s: momentum against impulse", name);
     sf_study_check(study, d->constraint_residual_m_s / v0, -INFINITY, 1e-10,
                    "%s: constraint residual over v0", name);
-    sf_study_check(study, d->local_strain_excess, -INFINITY, good->local_strain_excess,
-                   "%s: local compression beyond indentation/thickness", name);
+    sf_study_check(study, d->local_collapse, -INFINITY, good->local_collapse,
+                   "%s: compression of a node above the median of its neighbours", name);
 }
 
 static void tabulate(sf_study *study, FILE *data, const char *name, const sf_drop *drop) {

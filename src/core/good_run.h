@@ -33,8 +33,8 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
     X(coarse, 0, INFINITY, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
       "-`local_strain_excess`, at least 0",                                                                            \
       "the mesh is too coarse to show the strain below the missile")                                                   \
-    X(local_strain_excess, 0.12, INFINITY, SF_AS_NUMBER, "largest local strain above the mean", "`local_strain_excess`", \
-      "the foam collapses locally")                                                                                    \
+    X(local_collapse, 0.1, 0.3, SF_AS_NUMBER, "strain of a node above its neighbours", "`local_collapse`",                \
+      "single nodes collapse or carry the missile alone: the foam is unstable or the mesh too coarse")                  \
     X(anvil, 0.9, 0.95, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \
       "the missile reaches the anvil; its stiffness is not in the model")                                              \
     X(notes, 0, INFINITY, SF_AS_NUMBER, "notes of the programs", "number of `notes`",                                  \

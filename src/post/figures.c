@@ -2,6 +2,8 @@
 #include "post/figures.h"
 
 #include "core/units.h"
+#include "post/results_check.h"
+#include "post/strain_field.h"
 #include <math.h>
 #include <string.h>
 
@@ -90,6 +92,21 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
         f->smallest_jacobian = fmin(f->smallest_jacobian, h->smallest_jacobian[i]);
 }
 
+/* Of the fields at the peak, if the file has them. What a failed run left of them may be damaged. */
+static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *err) {
+    sf_error problem = SF_ERROR_INIT;
+    sf_frame peak;
+    if (!r->has_peak)
+        return SF_OK;
+    if (sf_frame_read_fields(r, &r->peak, SF_FIELD_LARGEST_COMPRESSION, &peak, &problem) != SF_OK)
+        return sf_results_ended_well(r) ? SF_FAIL(err, problem.status, "%s", problem.text) : SF_OK;
+    const double *compression = peak.field[SF_FRAME_LARGEST_COMPRESSION];
+    if (compression)
+        sf_strain_field_collapse(r, compression, &f->local_collapse, err);
+    sf_frame_free(&peak);
+    return err->status;
+}
+
 static void compute_compression(const sf_results *r, sf_figures *f) {
     const sf_history *h = &r->history;
     const double *work = h->energy_external;
@@ -137,6 +154,8 @@ sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *
         goto done;
     compute_energies(results, f);
     compute_extremes(results, f);
+    if (compute_fields(results, f, err) != SF_OK)
+        goto done;
     if (f->driven) {
         compute_compression(results, f);
         goto done;

@@ -47,6 +47,7 @@
     X(NUMBER, max_local_strain, "max_local_strain", 1, "largest of largest_compression in the history")                \
     X(NUMBER, max_local_strain_time, "max_local_strain_time_ms", 1e3, "its time")                                      \
     X(NUMBER, local_strain_excess, "local_strain_excess", 1, "max_local_strain - max_mean_strain")                     \
+    X(NUMBER, local_collapse, "local_collapse", 1, "largest excess of a node's compression over the median of its neighbours (nodes of a common cell), at /peak") \
     X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F")                                             \
     X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point")                    \
     X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next two")                    \

@@ -79,6 +79,9 @@ void sf_results_close(sf_results *results);
 
 /* Every field that the group holds, checked for shape and finiteness; release with sf_frame_free. */
 sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame, sf_error *err);
+/* Of them those in `fields`, bits SF_FIELD_*. */
+sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
+                               sf_frame *frame, sf_error *err);
 void sf_frame_free(sf_frame *frame);
 
 /* Component of a vector along the missile's direction of motion. */

@@ -224,12 +224,17 @@ void sf_results_close(sf_results *results) {
 
 sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame,
                         sf_error *err) {
+    return sf_frame_read_fields(results, head, SF_FIELD_ALL, frame, err);
+}
+
+sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
+                               sf_frame *frame, sf_error *err) {
     *frame = (sf_frame){0};
     for (int f = 0; f < SF_FRAME_FIELDS; f++) {
         const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
         char path[80];
         snprintf(path, sizeof path, "%s/%s", head->group, info->name);
-        if (!sf_h5_exists(results->file, path))
+        if (!(fields >> f & 1) || !sf_h5_exists(results->file, path))
             continue;
         int64_t rows = results->node_count;
         if (read_array(results, path, SF_H5_F64, &rows, info->components, &frame->field[f], err) != SF_OK ||

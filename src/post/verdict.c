@@ -58,9 +58,9 @@ static double coarse_value(const sf_results *r, const sf_figures *f) {
     return isnan(f->local_strain_excess) ? NAN : fmax(0, -f->local_strain_excess);
 }
 
-static double local_strain_excess_value(const sf_results *r, const sf_figures *f) {
+static double local_collapse_value(const sf_results *r, const sf_figures *f) {
     (void)r;
-    return isnan(f->local_strain_excess) ? NAN : fmax(0, f->local_strain_excess);
+    return f->local_collapse;
 }
 
 static double anvil_value(const sf_results *r, const sf_figures *f) {

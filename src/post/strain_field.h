@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Figures of the strain over the pad at the peak, from the fields of /peak. */
+#ifndef SF_POST_STRAIN_FIELD_H
+#define SF_POST_STRAIN_FIELD_H
+
+#include "post/results.h"
+
+/* Largest excess of a node's compression (1 - smallest principal stretch) over the median of its neighbours,
+ * the nodes that share a cell with it, counted once per cell. Where the strain is smooth it is small, below a
+ * missile in a pad of any thickness, and so it is along a straight edge of the loaded area; single nodes,
+ * rows or layers that collapse alone stand out. A node without cells has no excess. compression:
+ * [node_count]. */
+sf_status sf_strain_field_collapse(const sf_results *results, const double *compression, double *collapse,
+                                   sf_error *err);
+
+#endif

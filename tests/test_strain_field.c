@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Local collapse on a lattice of hexahedra: smooth strain of a thin and a thick pad is none, and neither is
+ * the edge or corner of a flat missile; a node, a row, a layer and a checkerboard are. */
+#include "post/strain_field.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "core/good_run.h"
+#include "post_check.h"
+
+enum { N = 13, NODES = N * N * N, CELLS = (N - 1) * (N - 1) * (N - 1) };
+
+static int32_t at(int i, int j, int k) {
+    return i + N * (j + N * k);
+}
+
+static int set_up(void **state) {
+    static sf_results r;
+    r = (sf_results){.node_count = NODES, .cell_count = CELLS, .cell_nnz = 8 * CELLS};
+    r.cell_ptr = calloc(CELLS + 1, sizeof *r.cell_ptr);
+    r.cell_node = calloc((size_t)r.cell_nnz, sizeof *r.cell_node);
+    assert_true(r.cell_ptr && r.cell_node);
+    int64_t used = 0, cell = 0;
+    for (int k = 0; k < N - 1; k++)
+        for (int j = 0; j < N - 1; j++)
+            for (int i = 0; i < N - 1; i++) {
+                for (int corner = 0; corner < 8; corner++)
+                    r.cell_node[used++] = at(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2));
+                r.cell_ptr[++cell] = used;
+            }
+    *state = &r;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    sf_results *r = *state;
+    free(r->cell_ptr);
+    free(r->cell_node);
+    return 0;
+}
+
+static double collapse(void **state, double (*strain)(int i, int j, int k)) {
+    static double value[NODES];
+    double result = NAN;
+    sf_error err = SF_ERROR_INIT;
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++)
+            for (int i = 0; i < N; i++)
+                value[at(i, j, k)] = strain(i, j, k);
+    if (sf_strain_field_collapse(*state, value, &result, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    return result;
+}
+
+/* Below a sphere: a bell over the radius. */
+static double bell(int i, int j) {
+    return exp(-(i * i + j * j) / 30.0);
+}
+static double thin(int i, int j, int k) {
+    (void)k;
+    return 0.8 * bell(i, j);
+}
+static double thick(int i, int j, int k) { /* top three times the base */
+    return 0.6 * bell(i, j) * (1 + 2.0 * k / (N - 1)) / 3;
+}
+static double punch(int i, int j, int k) { /* flat, with a corner at (6, 6) */
+    (void)k;
+    return i <= 6 && j <= 6 ? 0.7 : 0.05;
+}
+static double node(int i, int j, int k) {
+    return thick(i, j, k) + (i == 3 && j == 4 && k == 5 ? 0.4 : 0);
+}
+static double top_node(int i, int j, int k) {
+    return thick(i, j, k) + (i == 0 && j == 0 && k == N - 1 ? 0.4 : 0);
+}
+static double line(int i, int j, int k) {
+    (void)i;
+    return j == 3 && k == 5 ? 0.6 : 0.2;
+}
+static double layer(int i, int j, int k) {
+    (void)i, (void)j;
+    return k == N - 2 ? 0.6 : 0.2;
+}
+static double top_layer(int i, int j, int k) {
+    (void)i, (void)j;
+    return k == N - 1 ? 0.6 : 0.2;
+}
+static double checkerboard(int i, int j, int k) {
+    return (i + j + k) % 2 ? 0.6 : 0.2;
+}
+
+static void smooth_strain_is_no_collapse_in_a_pad_of_any_thickness(void **state) {
+    double bound = sf_good_run_limits()->local_collapse;
+    assert_true(collapse(state, thin) < bound);
+    assert_true(collapse(state, thick) < bound);
+}
+
+static void edge_and_corner_of_a_flat_missile_are_no_collapse(void **state) {
+    assert_close(collapse(state, punch), 0, 1e-12);
+}
+
+static void nodes_that_collapse_alone_stand_out(void **state) {
+    assert_close(collapse(state, node), 0.4, 0.02);
+    assert_close(collapse(state, top_node), 0.4, 0.1);
+    assert_close(collapse(state, line), 0.4, 1e-12);
+    assert_close(collapse(state, layer), 0.4, 1e-12);
+    assert_close(collapse(state, top_layer), 0.4, 1e-12);
+    assert_close(collapse(state, checkerboard), 0.4, 1e-12);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(smooth_strain_is_no_collapse_in_a_pad_of_any_thickness),
+        cmocka_unit_test(edge_and_corner_of_a_flat_missile_are_no_collapse),
+        cmocka_unit_test(nodes_that_collapse_alone_stand_out),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
