@@ -142,8 +142,8 @@ static sf_status build(const options *o, double spacing, bool full, sf_model *mo
     snprintf(fine, sizeof fine, "geometry.parameters.fine_spacing=%g", spacing);
     snprintf(coarse, sizeof coarse, "geometry.parameters.outer_spacing=%g", 2 * spacing);
     snprintf(end, sizeof end, "solver.end_time=%g ms", o->end_time);
-    const char *const overrides[] = {fine, coarse, end};
-    if (sf_case_read(path, 3, overrides, NULL, &c, err) == SF_OK && sf_gmsh_begin(&session, err) == SF_OK &&
+    const char *const overrides[] = {fine, coarse, end, "pad.mesh_error_limit=1e6"};
+    if (sf_case_read(path, 4, overrides, NULL, &c, err) == SF_OK && sf_gmsh_begin(&session, err) == SF_OK &&
         sf_gmsh_load(session, &c.pad, err) == SF_OK &&
         sf_gmsh_read_mesh(session, c.pad_group, c.length_unit, &mesh, err) == SF_OK &&
         (!c.missile.path || sf_gmsh_load(session, &c.missile, err) == SF_OK) &&

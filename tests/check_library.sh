@@ -46,7 +46,7 @@ cmake -G Ninja -S . -B "$place/build" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_CO
 
 case=$source/examples/eva50-v4.5/case.cfg
 coarse=(geometry.parameters.fine_spacing=20.0 geometry.parameters.outer_spacing=20.0
-    geometry.missile_parameters.element_size=20.0)
+    geometry.missile_parameters.element_size=20.0 pad.mesh_error_limit=1)
 cd "$place"
 "$prefix/bin/softfall-pre" "$case" -o model.h5 "${coarse[@]/#/--set=}" >pre.log
 "$prefix/bin/softfall-solve" model.h5 -o results.h5 --threads 1 >solve.log

@@ -133,7 +133,7 @@ const char *program_coarse(double spacing) {
     static char options[256];
     snprintf(options, sizeof options,
              "--set geometry.parameters.fine_spacing=%.1f --set geometry.parameters.outer_spacing=20.0 "
-             "--set geometry.missile_parameters.element_size=20.0",
+             "--set geometry.missile_parameters.element_size=20.0 --set pad.mesh_error_limit=1",
              spacing);
     return options;
 }

@@ -46,8 +46,8 @@ program_result program_run(const program_place *place, const char *name, const c
 program_result program_succeed(const program_place *place, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* --set options that make the example case coarse: `spacing` mm in the zone, 20 mm outside; valid until the
- * next call. */
+/* --set options that make the example case coarse, and allow it: `spacing` mm in the zone, 20 mm outside;
+ * valid until the next call. */
 const char *program_coarse(double spacing);
 
 /* folder/name of HDF5, open for reading. */

@@ -17,7 +17,9 @@ static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
 static const char *const coarse[] = {"geometry.parameters.fine_spacing=20.0",
                                      "geometry.parameters.outer_spacing=20.0",
                                      "geometry.missile_parameters.element_size=20.0",
-                                     "kernel.support_ratio=2.0", "output.frame_interval=\"30 ms\""};
+                                     "pad.mesh_error_limit=1",
+                                     "kernel.support_ratio=2.0",
+                                     "output.frame_interval=\"30 ms\""};
 enum { COARSE = sizeof coarse / sizeof coarse[0] };
 
 typedef struct place {

@@ -595,12 +595,13 @@ static void run_drop(const program_place *p, const char *folder, sf_runner_resul
     snprintf(path, sizeof path, "%s", program_path(p, folder));
     snprintf(source, sizeof source, "%s", fixture_source(EXAMPLE));
     sf_runner runner = {.folder = path, .threads = 1};
-    sf_runner_drop drop = {
-        .case_path = source,
-        .label = "drop",
-        .override_count = 4,
-        .overrides = {"geometry.parameters.fine_spacing=20.0", "geometry.parameters.outer_spacing=20.0",
-                      "geometry.missile_parameters.element_size=20.0", "solver.step_safety=0.1"}};
+    sf_runner_drop drop = {.case_path = source,
+                           .label = "drop",
+                           .override_count = 5,
+                           .overrides = {"geometry.parameters.fine_spacing=20.0",
+                                         "geometry.parameters.outer_spacing=20.0",
+                                         "geometry.missile_parameters.element_size=20.0",
+                                         "solver.step_safety=0.1", "pad.mesh_error_limit=1"}};
     sf_runner_run(&runner, &drop, result, err);
 }
 

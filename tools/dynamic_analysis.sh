@@ -26,7 +26,8 @@ coarse_drop() {
         cd "$place"
         set -x
         "$@" "$bin/softfall-pre" "$example" -o model.h5 --set geometry.parameters.fine_spacing=20.0 \
-            --set geometry.parameters.outer_spacing=20.0 --set geometry.missile_parameters.element_size=20.0
+            --set geometry.parameters.outer_spacing=20.0 --set geometry.missile_parameters.element_size=20.0 \
+            --set pad.mesh_error_limit=1
         "$@" "$bin/softfall-solve" model.h5 -o results.h5
         "$@" "$bin/softfall-post" results.h5 -o out
     ) >/dev/null

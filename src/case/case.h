@@ -48,6 +48,7 @@ typedef struct sf_case {
     bool symmetry_given;
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
+    double mesh_error_limit;               /* -, expected error of a_max above which the case is refused */
     int shape_rule;               /* 0 "auto": sphere if the surface is one, 1 "sphere", 2 "surface" */
     double support_ratio;         /* R/h */
     double condition_limit;       /* of the moment matrix */

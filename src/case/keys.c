@@ -38,6 +38,9 @@ static const sf_key keys[] = {
     {"pad", "symmetry", SF_KEY_NAMES, "[\"symmetry_x\", \"symmetry_y\"]", AT(symmetry_group),
      "physical surfaces that are symmetry planes; those of the default may be absent from the geometry",
      .count_offset = offsetof(sf_case, symmetry_count)},
+    {"pad", "mesh_error_limit", SF_KEY_NUMBER, "0.1", AT(mesh_error_limit),
+     "expected relative error of a_max from the spacing above which the case is refused; a larger value allows a coarser mesh",
+     .high = 1e6},
     /* material: the law; its parameters follow (solver/material) */
     {"material", "law", SF_KEY_LAW, "", AT(material.law), "material law; its parameters follow"},
     /* missile */

@@ -70,6 +70,8 @@ static const sf_model_field fields[] = {
     ARRAY(frame_time, F64, frame_time_count, 0, 1, "/run/frame_time", "s", "times of further frames"),
     SCALAR(symmetry_factor, I64, "/model/symmetry_factor", "1", "modelled parts that make the whole"),
     SCALAR(thickness, F64, "/model/thickness", "m", "pad thickness"),
+    OPTIONAL_SCALAR(expected_mesh_error, F64, "/model/expected_mesh_error", "1",
+                    "expected relative error of a_max from the spacing, 0: not estimated"),
     SCALAR(material_count, I64, "/material/count", "1", "number of materials"),
     SCALAR(missile.mass, F64, "/missile/mass", "kg", "mass of the whole missile"),
     SCALAR(missile.speed, F64, "/missile/speed", "m s-1", "speed at t = 0"),

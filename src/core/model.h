@@ -117,10 +117,11 @@ typedef struct sf_model {
     int64_t frame_time_count;
     double *frame_time; /* [frame_time_count] s, ascending */
 
-    int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
-    double thickness;        /* m, of the pad along z */
-    int64_t material_count;  /* 1 to SF_MATERIAL_MAX */
-    sf_material *material;   /* [material_count] owned */
+    int64_t symmetry_factor;    /* 1, 2 or 4: how many times the modelled part makes the whole */
+    double thickness;           /* m, of the pad along z */
+    double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; 0 = not estimated */
+    int64_t material_count;     /* 1 to SF_MATERIAL_MAX */
+    sf_material *material;      /* [material_count] owned */
     sf_missile_card missile;
     sf_run_options run;
 } sf_model;

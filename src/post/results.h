@@ -48,6 +48,7 @@ typedef struct sf_results {
     int64_t symmetry_factor;
     double thickness;            /* m */
     double density;              /* kg m-3 */
+    double expected_mesh_error;  /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
     double missile_mass;         /* kg; 0 with a prescribed motion, like the speed */
     double missile_speed;        /* m s-1 */
     bool driven;                 /* the missile had a prescribed motion; else it was free */

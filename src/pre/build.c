@@ -299,6 +299,11 @@ static sf_status first_step(const sf_model *m, double *step, sf_error *err) {
     return SF_OK;
 }
 
+static void estimate_mesh_error(sf_model *m, sf_build_report *report) {
+    sf_contact_zone_measure(m, &report->zone);
+    m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
+}
+
 sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *m, sf_build_report *report,
                          const sf_sink *sink, sf_error *err) {
     memset(m, 0, sizeof *m);
@@ -306,9 +311,11 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     double *contact_area = NULL;
     if (build_cloud(c, mesh, m, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, contact_area, m, report, err) == SF_OK &&
-        build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK &&
-        sf_drop_check(c, mesh, m, sink, err) == SF_OK && sf_model_check(m, err) == SF_OK)
-        first_step(m, &report->first_step, err);
+        build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
+        estimate_mesh_error(m, report);
+        if (sf_drop_check(c, mesh, m, &report->zone, sink, err) == SF_OK && sf_model_check(m, err) == SF_OK)
+            first_step(m, &report->first_step, err);
+    }
     free(contact_area);
     if (err->status != SF_OK)
         sf_model_free(m);

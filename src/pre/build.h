@@ -9,6 +9,7 @@
 #include "case/case.h"
 #include "pre/cloud/invariants.h"
 #include "pre/mesh/mesh.h"
+#include "pre/mesh_error.h"
 
 /* Results of the build, for the table that softfall-pre prints. */
 typedef struct sf_build_report {
@@ -22,6 +23,7 @@ typedef struct sf_build_report {
     double worst_position[3]; /* m */
     double first_step;        /* s, before any safety factor */
     bool contact_held;        /* every contact point is held: nothing to drop on */
+    sf_contact_zone zone;
     sf_invariants invariants;
 } sf_build_report;
 

@@ -188,10 +188,30 @@ static void tell_free_planes(const sf_case *c, const sf_mesh *mesh, const sf_sin
                          mesh->set[k].name);
 }
 
-sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_sink *sink,
-                        sf_error *err) {
+/* ---- spacing ---- */
+
+static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_contact_zone *zone,
+                               const sf_sink *sink, sf_error *err) {
+    char reason[256];
+    if (!(m->expected_mesh_error >= SF_MESH_ERROR_WARNING))
+        return SF_OK;
+    snprintf(
+        reason, sizeof reason,
+        "the nodal spacing under the missile is %.3g mm, in a pad of %.4g mm with a contact zone of %.3g mm "
+        "half width: expected error of a_max about %.2g %%, mostly too low",
+        1e3 * zone->spacing, 1e3 * m->thickness, 1e3 * zone->half_width, 100 * m->expected_mesh_error);
+    if (m->expected_mesh_error > c->mesh_error_limit)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s, over pad.mesh_error_limit (%.3g %%): take a finer mesh, or raise that key",
+                       reason, 100 * c->mesh_error_limit);
+    sf_sink_tell(sink, SF_WARNING, "%s", reason);
+    return SF_OK;
+}
+
+sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
+                        const sf_sink *sink, sf_error *err) {
     if (check_thickness(m, err) != SF_OK || check_mass(m, err) != SF_OK ||
-        check_symmetry(c, mesh, m, err) != SF_OK)
+        check_symmetry(c, mesh, m, err) != SF_OK || check_spacing(c, m, zone, sink, err) != SF_OK)
         return err->status;
     tell_free_planes(c, mesh, sink);
     return SF_OK;

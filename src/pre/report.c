@@ -78,6 +78,16 @@ static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r)
         fprintf(out, "%-26s%lld triangles\n", "missile contact", (long long)m->surface_triangle_count);
 }
 
+static void print_mesh_error(FILE *out, const sf_model *m, const sf_contact_zone *zone) {
+    fprintf(out, "%-26s%.4g mm; contact zone %.4g cm2, half width %.4g mm\n", "spacing under missile",
+            1e3 * zone->spacing, 1e4 * zone->area, 1e3 * zone->half_width);
+    if (m->expected_mesh_error > 0)
+        fprintf(out, "%-26sabout %.2g %% of a_max, from the spacing\n", "expected mesh error",
+                100 * m->expected_mesh_error);
+    else
+        fprintf(out, "%-26snot estimated\n", "expected mesh error");
+}
+
 static void print_cost(FILE *out, const sf_model *m, const sf_build_report *r) {
     double step = fmin(m->run.step_safety * r->first_step, m->run.step_limit);
     double steps = TYPICAL * m->run.end_time / step, n = (double)m->node_count;
@@ -111,6 +121,7 @@ void sf_report_print(FILE *out, const sf_model *m, const sf_build_report *r) {
     fprintf(out, "%-26s%lld held, %lld may be touched\n", "boundary nodes", (long long)m->fixed_count,
             (long long)m->contact_count);
     print_masses(out, m, r);
+    print_mesh_error(out, m, &r->zone);
     print_cost(out, m, r);
     fprintf(out, "%-26s%s\n", "mesh hash", r->mesh_hash);
 }

@@ -127,22 +127,23 @@ static double triangle_travel(const double *a, const double *b, const double *c,
     return -sf_dot3(v, q) / determinant; /* x = point of the triangle + travel * direction */
 }
 
+double sf_missile_travel(const sf_surface *surface, const sf_missile_card *card, const double x[3]) {
+    if (card->shape == SF_SHAPE_SPHERE)
+        return sphere_travel(card, x);
+    double travel = INFINITY;
+    for (int64_t t = 0; t < surface->triangle_count; t++) {
+        const int32_t *v = &surface->triangle[3 * t];
+        travel = fmin(travel, triangle_travel(&surface->position[3 * v[0]], &surface->position[3 * v[1]],
+                                              &surface->position[3 * v[2]], card->direction, x));
+    }
+    return travel;
+}
+
 sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *card, const double *position,
                               int64_t count, const int32_t *node, double *distance, sf_error *err) {
     *distance = INFINITY;
-    for (int64_t k = 0; k < count; k++) {
-        const double *x = &position[3 * (int64_t)node[k]];
-        if (card->shape == SF_SHAPE_SPHERE) {
-            *distance = fmin(*distance, sphere_travel(card, x));
-            continue;
-        }
-        for (int64_t t = 0; t < surface->triangle_count; t++) {
-            const int32_t *v = &surface->triangle[3 * t];
-            *distance =
-                fmin(*distance, triangle_travel(&surface->position[3 * v[0]], &surface->position[3 * v[1]],
-                                                &surface->position[3 * v[2]], card->direction, x));
-        }
-    }
+    for (int64_t k = 0; k < count; k++)
+        *distance = fmin(*distance, sf_missile_travel(surface, card, &position[3 * (int64_t)node[k]]));
     if (!isfinite(*distance))
         return SF_FAIL(err, SF_ERR_MODEL,
                        "the missile, moving along (%g, %g, %g), never touches the contact group: check its "

@@ -21,4 +21,7 @@ sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_c
 sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *card, const double *position,
                               int64_t count, const int32_t *node, double *distance, sf_error *err);
 
+/* The same distance to one point; infinity if the path misses it. */
+double sf_missile_travel(const sf_surface *surface, const sf_missile_card *card, const double x[3]);
+
 #endif
