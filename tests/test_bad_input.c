@@ -94,7 +94,7 @@ static void files_that_are_missing_or_of_another_kind_are_refused(void **state) 
 static void places_that_cannot_be_written_are_refused(void **state) {
     const program_place *p = *state;
     char pre[512];
-    snprintf(pre, sizeof pre, "good.cfg %s", program_coarse(20));
+    snprintf(pre, sizeof pre, "good.cfg --set geometry.parameters.thickness=70 %s", program_coarse(10));
     const struct {
         const char *program, *words;
     } inputs[] = {{"pre", pre}, {"solve", "model.h5"}, {"post", "results.h5"}};

@@ -32,7 +32,7 @@ typedef struct place {
 static void count_warnings(void *user, softfall_severity severity, const char *sentence) {
     int *count = user;
     assert_int_equal(severity, SOFTFALL_WARNING);
-    assert_non_null(strstr(sentence, "kernel.support_ratio"));
+    assert_true(strstr(sentence, "kernel.support_ratio") || strstr(sentence, "expected error of a_max"));
     ++*count;
 }
 
@@ -74,7 +74,7 @@ static void warnings_go_to_the_sink_and_errors_to_the_caller(void **state) {
     softfall_case *c = NULL;
     softfall_model *m = NULL;
     softfall_error error;
-    assert_int_equal(p->warnings, 1);
+    assert_int_equal(p->warnings, 2);
     assert_int_equal(softfall_case_read("absent.cfg", NULL, 0, NULL, &c, &error), SOFTFALL_INPUT);
     assert_null(c);
     assert_int_equal(error.status, SOFTFALL_INPUT);

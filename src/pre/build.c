@@ -300,6 +300,8 @@ static sf_status first_step(const sf_model *m, double *step, sf_error *err) {
 }
 
 static void estimate_mesh_error(sf_model *m, sf_build_report *report) {
+    if (report->contact_held)
+        return;
     sf_contact_zone_measure(m, &report->zone);
     m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
 }
