@@ -175,8 +175,7 @@ void fixture_block_mesh(const fixture_block *b, sf_mesh *mesh) {
 
 void fixture_plate(double side, double x, double y, sf_surface *s) {
     static const int32_t triangle[6] = {0, 2, 1, 0, 3, 2};
-    s->node_count = 4;
-    s->triangle_count = 2;
+    *s = (sf_surface){.node_count = 4, .triangle_count = 2};
     s->position = allocate(12, sizeof *s->position);
     s->triangle = allocate(6, sizeof *s->triangle);
     memcpy(s->triangle, triangle, sizeof triangle);
@@ -189,8 +188,8 @@ void fixture_plate(double side, double x, double y, sf_surface *s) {
 
 void fixture_dome(double radius, int rings, double x, double y, sf_surface *s) {
     int around = 4 * rings;
-    s->node_count = 1 + (int64_t)rings * around;
-    s->triangle_count = (int64_t)around * (2 * rings - 1);
+    *s = (sf_surface){.node_count = 1 + (int64_t)rings * around,
+                      .triangle_count = (int64_t)around * (2 * rings - 1)};
     s->position = allocate(3 * (size_t)s->node_count, sizeof *s->position);
     s->triangle = allocate(3 * (size_t)s->triangle_count, sizeof *s->triangle);
     int32_t *t = s->triangle;

@@ -9,6 +9,7 @@
 #include "pre/cloud/dual.h"
 #include "pre/cloud/surface_area.h"
 #include "pre/mesh/missile_shape.h"
+#include "pre/mesh/surface_orient.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,6 +62,29 @@ static void take_domains(sf_domains *d, sf_dual *dual, sf_model *m, sf_build_rep
     dual->edge_node = NULL;
 }
 
+/* The surface that the missile may touch is the pad's upper side, and only that. */
+static sf_status check_facing(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual,
+                              const sf_node_set *contact, sf_error *err) {
+    static const double LEAST = 1e-3, MOST_AWAY = 1e-2; /* of the area */
+    sf_surface_sides sides;
+    if (sf_surface_look(mesh, dual, contact, c->missile_card.direction, &sides, err) != SF_OK)
+        return err->status;
+    if (!(sides.facing > LEAST * sides.area))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "pad.contact: the surface group \"%s\" does not face the missile, which moves along (%g, "
+            "%g, %g): are pad.contact and pad.fixed exchanged, or is the pad upside down?",
+            contact->name, c->missile_card.direction[0], c->missile_card.direction[1],
+            c->missile_card.direction[2]);
+    if (sides.away > MOST_AWAY * sides.area)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "pad.contact: %.3g %% of the surface group \"%s\" face away from the missile: it may hold "
+            "the pad's upper side only",
+            100 * sides.away / sides.area, contact->name);
+    return SF_OK;
+}
+
 /* Spacing, supports, domains, masses, and contact_area [node_count], m2; the mesh is whole until take_mesh.
  */
 static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, double **contact_area,
@@ -80,7 +104,8 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, doubl
         goto done;
     sf_cloud_spacing(mesh, &dual, m->spacing);
     const sf_node_set *contact = sf_mesh_find_set(mesh, c->contact_group);
-    if (contact && sf_surface_area(mesh, &dual, contact, *contact_area, err) != SF_OK)
+    if (contact && (sf_surface_area(mesh, &dual, contact, *contact_area, err) != SF_OK ||
+                    check_facing(c, mesh, &dual, contact, err) != SF_OK))
         goto done;
     for (int64_t i = 0; i < n; i++)
         m->support[i] = c->support_ratio * m->spacing[i];
@@ -236,7 +261,8 @@ done:
 static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
     double distance = 0;
     m->missile = c->missile_card;
-    if (sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
+    if (sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
+        sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
         sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
                             err) != SF_OK)
         return err->status;
@@ -249,7 +275,9 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     m->surface_triangle_count = surface->triangle_count;
     m->surface_position = surface->position;
     m->surface_triangle = surface->triangle;
-    *surface = (sf_surface){0};
+    surface->position = NULL;
+    surface->triangle = NULL;
+    sf_surface_free(surface);
     return SF_OK;
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/drop_check.h"
 
+#include "core/mat3.h"
+#include "pre/mesh/missile_shape.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,6 +30,39 @@ static sf_status check_mass(const sf_model *m, sf_error *err) {
                    "missile.mass: %g kg, of which the model has 1/%lld, is not more than the heaviest node "
                    "of the contact surface (%g kg)",
                    m->missile.mass, (long long)m->symmetry_factor, heaviest);
+}
+
+/* ---- the missile's place ---- */
+
+static const double TOUCHING = 1e-3; /* of the thickness */
+
+/* The missile is placed at its gap from the contact group; no other part of the pad may be nearer. Only nodes
+ * above the missile's leading point can be. */
+static sf_status check_outside(const sf_case *c, const sf_model *m, sf_error *err) {
+    const sf_surface missile = {.node_count = m->surface_node_count,
+                                .position = m->surface_position,
+                                .triangle_count = m->surface_triangle_count,
+                                .triangle = m->surface_triangle};
+    const double *d = m->missile.direction, slack = TOUCHING * m->thickness;
+    double lead = -INFINITY;
+    for (int64_t k = 0; k < m->surface_node_count; k++)
+        lead = fmax(lead, sf_dot3(&m->surface_position[3 * k], d));
+    if (m->missile.shape == SF_SHAPE_SPHERE)
+        lead = fmax(lead, sf_dot3(m->missile.sphere_centre, d) + m->missile.sphere_radius);
+    for (int64_t i = 0; i < m->node_count; i++) {
+        const double *x = &m->position[3 * i];
+        if (sf_dot3(x, d) >= lead + m->missile.gap - slack)
+            continue;
+        double travel = sf_missile_travel(&missile, &m->missile, x);
+        if (travel < m->missile.gap - slack)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "the missile starts inside the pad: at its gap from the group \"%s\" it has passed the "
+                "pad's node at (%.4g, %.4g, %.4g) mm by %.4g mm: is every surface that it meets in "
+                "pad.contact?",
+                c->contact_group, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], 1e3 * (m->missile.gap - travel));
+    }
+    return SF_OK;
 }
 
 /* ---- symmetry ---- */
@@ -211,7 +246,8 @@ static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_con
 sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                         const sf_sink *sink, sf_error *err) {
     if (check_thickness(m, err) != SF_OK || check_mass(m, err) != SF_OK ||
-        check_symmetry(c, mesh, m, err) != SF_OK || check_spacing(c, m, zone, sink, err) != SF_OK)
+        check_outside(c, m, err) != SF_OK || check_symmetry(c, mesh, m, err) != SF_OK ||
+        check_spacing(c, m, zone, sink, err) != SF_OK)
         return err->status;
     tell_free_planes(c, mesh, sink);
     return SF_OK;

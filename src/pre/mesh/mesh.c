@@ -20,6 +20,7 @@ void sf_mesh_free(sf_mesh *mesh) {
 void sf_surface_free(sf_surface *surface) {
     free(surface->position);
     free(surface->triangle);
+    free(surface->solid);
     memset(surface, 0, sizeof *surface);
 }
 

@@ -31,6 +31,7 @@ typedef struct sf_surface {
     double *position; /* [node_count][3] m */
     int64_t triangle_count;
     int32_t *triangle; /* [triangle_count][3] turned outwards (away from the missile's volume) */
+    uint8_t *solid;    /* [triangle_count] 1: a cell of the missile lies behind it; NULL: none */
 } sf_surface;
 
 void sf_mesh_free(sf_mesh *mesh);

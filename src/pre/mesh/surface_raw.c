@@ -38,6 +38,7 @@ typedef struct surface_builder {
     const sf_raw_mesh *raw;
     sf_tag_index *nodes;
     face_key *keys;  /* [face_count] sorted */
+    uint8_t *known;  /* [face_count] 1: a cell is behind it */
     double *outward; /* [face_count][3] vector from inside to the face; zero: unknown */
 } surface_builder;
 
@@ -50,6 +51,7 @@ static sf_status prepare(surface_builder *b, sf_error *err) {
     const sf_raw_mesh *raw = b->raw;
     b->nodes = sf_raw_mesh_index(raw, err);
     b->keys = sf_alloc(err, raw->face_count, sizeof *b->keys, "surface faces");
+    b->known = sf_alloc(err, raw->face_count, 1, "face marks");
     b->outward = sf_alloc(err, 3 * raw->face_count, sizeof *b->outward, "outward vectors");
     if (err->status != SF_OK)
         return err->status;
@@ -136,13 +138,10 @@ static double side(const surface_builder *b, size_t face) {
 
 /* 1 where a face must be reversed. With a cell behind it each face decides for itself; without, those of a
  * part (which the generator turns alike) decide together, so that hollows are not turned inside out. */
-static sf_status decide(surface_builder *b, uint8_t *reverse, sf_error *err) {
+static void decide(surface_builder *b, uint8_t *reverse) {
     const sf_raw_mesh *raw = b->raw;
-    uint8_t *known = sf_alloc(err, raw->face_count, 1, "face marks");
-    if (!known)
-        return err->status;
     for (size_t k = 0; k < raw->face_count; k++)
-        known[b->keys[k].face] = b->keys[k].behind > 0;
+        b->known[b->keys[k].face] = b->keys[k].behind > 0;
     for (size_t f = 0; f < raw->face_count;) {
         /* Faces of a part stand together. */
         size_t end = f;
@@ -150,10 +149,8 @@ static sf_status decide(surface_builder *b, uint8_t *reverse, sf_error *err) {
         for (; end < raw->face_count && raw->face_part[end] == raw->face_part[f]; end++)
             sum += side(b, end);
         for (; f < end; f++)
-            reverse[f] = known[f] ? side(b, f) < 0.0 : sum < 0.0;
+            reverse[f] = b->known[f] ? side(b, f) < 0.0 : sum < 0.0;
     }
-    free(known);
-    return SF_OK;
 }
 
 /* Numbers the nodes of the faces in the order of `tag` and writes positions and triangles. */
@@ -171,6 +168,8 @@ static sf_status write_surface(const surface_builder *b, const uint8_t *reverse,
     surface->position = sf_alloc(err, 3 * (size_t)surface->node_count, sizeof(double), "surface positions");
     surface->triangle =
         sf_alloc(err, 3 * (size_t)surface->triangle_count, sizeof(int32_t), "surface triangles");
+    surface->solid = sf_alloc(err, (size_t)surface->triangle_count, 1, "surface triangles");
+    uint8_t *solid = surface->solid;
     int32_t *out = surface->triangle;
     for (size_t n = 0; err->status == SF_OK && n < raw->node_count; n++)
         for (size_t i = 0; number[n] >= 0 && i < 3; i++)
@@ -183,6 +182,7 @@ static sf_status write_surface(const surface_builder *b, const uint8_t *reverse,
             *out++ = node[0];
             *out++ = node[t + (reverse[f] ? 2 : 1)];
             *out++ = node[t + (reverse[f] ? 1 : 2)];
+            *solid++ = b->known[f];
         }
     }
     free(number);
@@ -197,13 +197,16 @@ sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *s
         goto done;
     find_outward(&b);
     reverse = sf_alloc(err, raw->face_count, 1, "face marks");
-    if (reverse && decide(&b, reverse, err) == SF_OK)
-        write_surface(&b, reverse, unit, surface, err);
+    if (!reverse)
+        goto done;
+    decide(&b, reverse);
+    write_surface(&b, reverse, unit, surface, err);
 done:
     free(reverse);
     free(b.nodes);
     free(b.keys);
     free(b.outward);
+    free(b.known);
     if (err->status != SF_OK)
         sf_surface_free(surface);
     return err->status;
