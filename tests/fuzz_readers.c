@@ -66,12 +66,18 @@ static sf_status read_motion(const char *path, sf_error *err) {
 }
 
 static sf_status read_reference(const char *path, sf_error *err) {
-    sf_series curve;
+    sf_reference_options options = {
+        .path = path, .column_option = "x", .unfiltered_option = "y", .invert_option = "z"};
+    sf_reference reference;
+    sf_error coarse = SF_ERROR_INIT;
     double instant;
-    if (sf_reference_read(path, &curve, err) != SF_OK)
+    if (sf_reference_read(&options, &reference, err) != SF_OK)
         return err->status;
-    sf_contact_instant(&curve, path, &instant, err);
-    sf_series_free(&curve);
+    sf_contact_instant(&reference.curve, path, &instant, err);
+    sf_reference_free(&reference);
+    options.cfc = 60;
+    if (sf_reference_read(&options, &reference, &coarse) == SF_OK)
+        sf_reference_free(&reference);
     return err->status;
 }
 
@@ -96,7 +102,9 @@ static sf_status read_compression(const char *path, sf_error *err) {
 
 static sf_status read_pressing(const char *path, sf_error *err) {
     sf_compression_test test;
-    if (sf_compression_test_read(path, 0.1, &test, err) == SF_OK)
+    const sf_compression_source source = {
+        .path = path, .rate = 0.1, .area = 25e-4, .thickness = 0.05, .toe = true};
+    if (sf_compression_test_read(&source, &test, err) == SF_OK)
         sf_compression_test_free(&test);
     return err->status;
 }

@@ -43,7 +43,15 @@ static sf_status read_text(const char *text, sf_series *curve, sf_error *err) {
     char path[256];
     write_text(path, text);
     *err = (sf_error)SF_ERROR_INIT;
-    sf_status status = sf_reference_read(path, curve, err);
+    sf_reference reference;
+    const sf_reference_options options = {.path = path,
+                                          .column_option = "--reference-column",
+                                          .unfiltered_option = "--reference-filter none",
+                                          .invert_option = "--reference-invert"};
+    sf_status status = sf_reference_read(&options, &reference, err);
+    *curve = reference.curve;
+    reference.curve = (sf_series){0};
+    sf_reference_free(&reference);
     unlink(path);
     return status;
 }
@@ -53,7 +61,8 @@ static void identical_curves_fit_perfectly(void **state) {
     sf_error err = SF_ERROR_INIT;
     sf_fit fit;
     sf_series curve = half_sine(60, 0.01, 0.015);
-    assert_int_equal(sf_compare_fit(&curve, &curve, 0, (sf_region){0.01, 0.025}, 0.25e-3, &fit, &err), SF_OK);
+    assert_int_equal(sf_compare_fit(&curve, &curve, true, 0, (sf_region){0.01, 0.025}, 0.25e-3, &fit, &err),
+                     SF_OK);
     assert_int_equal(fit.count, 61);
     assert_close(fit.r2, 1, 1e-15);
     assert_close(fit.rmse_g, 0, 1e-15);
@@ -70,8 +79,9 @@ static void r2_and_rmse_of_a_scaled_half_sine(void **state) {
         sf_error err = SF_ERROR_INIT;
         sf_fit fit;
         double interval = k ? 0.5e-3 : 0.25e-3, n = k ? 30 : 60;
-        assert_int_equal(sf_compare_fit(&measured, &model, 0, (sf_region){0.01, 0.025}, interval, &fit, &err),
-                         SF_OK);
+        assert_int_equal(
+            sf_compare_fit(&measured, &model, true, 0, (sf_region){0.01, 0.025}, interval, &fit, &err),
+            SF_OK);
         double residual = (1 - scale) * (1 - scale) * peak * peak * n / 2;
         double sum = peak / tan(M_PI / (2 * n));
         double total = peak * peak * n / 2 - sum * sum / (n + 1);
@@ -114,7 +124,12 @@ static void alignment_undoes_a_shifted_clock(void **state) {
     sf_error err = SF_ERROR_INIT;
     sf_series model = half_sine(60, 0.002, 0.015);
     sf_region regions[2] = {{0.0, 0.012}, {0.012, 0.030}};
-    sf_compare_options options = {path, NAN, {NAN, NAN}, regions, 2};
+    sf_compare_options options = {.reference = {.path = path},
+                                  .shift = NAN,
+                                  .window = {NAN, NAN},
+                                  .regions = regions,
+                                  .region_count = 2,
+                                  .left = true};
     sf_comparison c;
     assert_int_equal(sf_compare_run(&options, &model, &c, &err), SF_OK);
     assert_close(c.shift, -0.0085, 1e-6);
@@ -143,19 +158,31 @@ static void alignment_undoes_a_shifted_clock(void **state) {
     unlink(path);
 }
 
-static void model_that_ends_in_contact_gives_no_figure(void **state) {
+/* The model's curve is never cut or made longer silently: after a rebound it is free flight, which the fit
+ * counts; in contact the region is refused. */
+static void region_beyond_the_model_is_refused_or_counted(void **state) {
     (void)state;
     sf_error err = SF_ERROR_INIT;
     sf_fit fit;
     sf_series measured = half_sine(60, 0.01, 0.015), model = half_sine(60, 0.01, 0.015);
     model.count = 351; /* stops at 17.5 ms, at the peak */
-    assert_int_equal(sf_compare_fit(&measured, &model, 0, (sf_region){0.01, 0.025}, 0.25e-3, &fit, &err),
-                     SF_OK);
-    assert_true(isnan(fit.r2) && isnan(fit.rmse_g));
+    assert_int_equal(
+        sf_compare_fit(&measured, &model, false, 0, (sf_region){0.01, 0.025}, 0.25e-3, &fit, &err),
+        SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "ends in contact at 17.5 ms"));
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(
+        sf_compare_fit(&measured, &model, false, 0, (sf_region){0.01, 0.0175}, 0.25e-3, &fit, &err), SF_OK);
+    assert_int_equal(fit.flight, 0);
     model.count = 501; /* stops with the pulse: free flight after it */
-    assert_int_equal(sf_compare_fit(&measured, &model, 0, (sf_region){0.01, 0.035}, 0.25e-3, &fit, &err),
-                     SF_OK);
+    assert_int_equal(
+        sf_compare_fit(&measured, &model, true, 0, (sf_region){0.01, 0.035}, 0.25e-3, &fit, &err), SF_OK);
     assert_close(fit.r2, 1, 1e-12);
+    assert_int_equal(fit.flight, 40);
+    assert_int_equal(
+        sf_compare_fit(&measured, &model, true, 0, (sf_region){0.026, 0.035}, 0.25e-3, &fit, &err),
+        SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "lies outside the model's curve"));
     sf_series_free(&measured);
     sf_series_free(&model);
 }
@@ -167,7 +194,8 @@ static void still_measurement_has_rmse_but_no_r2(void **state) {
     sf_series measured = half_sine(60, 0.01, 0.015), model = half_sine(60, 0.01, 0.015);
     for (int64_t i = 0; i < model.count; i++)
         model.value[i] += 2;
-    assert_int_equal(sf_compare_fit(&measured, &model, 0, (sf_region){0, 0.008}, 0.25e-3, &fit, &err), SF_OK);
+    assert_int_equal(sf_compare_fit(&measured, &model, true, 0, (sf_region){0, 0.008}, 0.25e-3, &fit, &err),
+                     SF_OK);
     assert_true(isnan(fit.r2));
     assert_close(fit.rmse_g, 2, 1e-12);
     sf_series_free(&measured);
@@ -179,12 +207,12 @@ static void region_outside_the_measurement_is_refused(void **state) {
     sf_error err = SF_ERROR_INIT;
     sf_fit fit;
     sf_series curve = half_sine(60, 0.01, 0.015);
-    assert_int_equal(sf_compare_fit(&curve, &curve, 0, (sf_region){0.05, 0.06}, 0.25e-3, &fit, &err),
+    assert_int_equal(sf_compare_fit(&curve, &curve, true, 0, (sf_region){0.05, 0.06}, 0.25e-3, &fit, &err),
                      SF_ERR_INPUT);
-    err = (sf_error)SF_ERROR_INIT;
-    assert_int_equal(sf_compare_fit(&curve, &curve, 0, (sf_region){0.03, 0.06}, 0.25e-3, &fit, &err), SF_OK);
-    assert_int_equal(fit.count, 41); /* the part that was measured: 30 to 40 ms */
-    assert_close(fit.last, 0.04, 1e-9);
+    err = (sf_error)SF_ERROR_INIT; /* nor is the part that was measured taken for the whole */
+    assert_int_equal(sf_compare_fit(&curve, &curve, true, 0, (sf_region){0.03, 0.06}, 0.25e-3, &fit, &err),
+                     SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "30 to 60 ms does not lie within the measured curve (0 to 40 ms)"));
     sf_series_free(&curve);
 }
 
@@ -228,6 +256,112 @@ static void reference_units_are_taken_from_the_heading(void **state) {
     sf_series_free(&curve);
 }
 
+/* The same drop in four laboratories' forms. */
+static void laboratory_forms_are_one_curve(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *understood;
+    } forms[] = {
+        {"\xef\xbb\xbfTime (ms);Acceleration (m/s\xc2\xb2)\r\n0,0;0\r\n0,5;98,0665\r\n1,0;0\r\n",
+         "separator \";\", decimal comma, time in ms, acceleration in m/s\xc2\xb2, 3 samples at 2 kHz, 0 to 1 ms"},
+        {"Lab 3\t\nOperator\tsomebody\nZeit\tBeschleunigung\n[s]\t[m/s^2]\n0\t0\n0.0005\t98.0665\n.001\t0\n",
+         "separator tab, decimal point, time in s, acceleration in m/s^2, heading in line 3, 3 samples"},
+        {"t / us   a [g]\n  0   0\n500 10\n1000  0\n",
+         "separator blanks, decimal point, time in us, acceleration in g"},
+        {"\"Time [s]\",\"Head\",\"Acc X [km/s\xb2]\"\n\"0\",x,0\n0.5e-3,,0.0980665\n1e-3,y,0\n",
+         "separator \",\", decimal point, time in s, acceleration in km/s\xc2\xb2"},
+        {"Time;CH1\nms;g\n0;0\n0,5;10\n1;0\n", "time in ms, acceleration in g (\"CH1\")"},
+    };
+    for (size_t k = 0; k < sizeof forms / sizeof *forms; k++) {
+        char path[256];
+        sf_reference reference;
+        sf_error err = SF_ERROR_INIT;
+        write_text(path, forms[k].text);
+        const sf_reference_options options = {.path = path};
+        if (sf_reference_read(&options, &reference, &err) != SF_OK)
+            fail_msg("%zu: %s", k, err.text);
+        unlink(path);
+        assert_int_equal(reference.curve.count, 3);
+        assert_close(reference.curve.time[1], 0.5e-3, 1e-15);
+        assert_close(reference.curve.value[1], 10, 1e-12);
+        if (!strstr(reference.understood, forms[k].understood))
+            fail_msg("%zu: %s", k, reference.understood);
+        sf_reference_free(&reference);
+    }
+}
+
+/* Half-sine of 40 g over 15 ms with a disturbance of 10 g at 4 kHz, every `step` ms. */
+static void write_noisy(char *path, double step, double sign) {
+    static char text[400000];
+    size_t used = (size_t)sprintf(text, "time_ms,acceleration_g\n");
+    for (int i = 0; i * step <= 30; i++) {
+        double t = i * step, x = (t - 5) / 15;
+        used += (size_t)sprintf(text + used, "%.4f,%.9f\n", t,
+                                sign * ((x > 0 && x < 1 ? 40 * sin(M_PI * x) : 0) + 10 * sin(8 * M_PI * t)));
+    }
+    write_text(path, text);
+}
+
+/* A measurement is filtered like the model: otherwise its noise would stand against a smooth model. At 4 kHz
+ * the four poles of CFC 1000 (corner 2077.5 Hz) leave 1 / (1 + (4 / 2.0775)^4) = 0.068 of it. */
+static void measurement_is_filtered_with_the_class(void **state) {
+    (void)state;
+    char path[256];
+    sf_error err = SF_ERROR_INIT;
+    write_noisy(path, 0.02, 1);
+    const double classes[] = {0, 1000, 180}, excess[] = {9, 0.7, 0.02};
+    for (int k = 0; k < 3; k++) {
+        const sf_reference_options options = {.path = path, .cfc = classes[k]};
+        sf_reference reference;
+        double away = 0, raw = 0;
+        assert_int_equal(sf_reference_read(&options, &reference, &err), SF_OK);
+        assert_int_equal(reference.curve.count, k ? 3001 : 1501); /* 100 kHz, or as it is */
+        for (double t = 0.008; t < 0.017; t += 1e-5) { /* where the pulse itself passes the filter */
+            double pulse = 40 * sin(M_PI * (t - 0.005) / 0.015);
+            away = fmax(away, fabs(sf_series_at(&reference.curve, t) - pulse));
+            raw = fmax(raw, fabs(sf_series_at(&reference.raw, t) - pulse));
+        }
+        assert_true(raw > 9);
+        if (k == 0)
+            assert_true(away > excess[0]);
+        else if (!(away < excess[k]))
+            fail_msg("CFC %g: %g g away", classes[k], away);
+        sf_reference_free(&reference);
+    }
+    unlink(path);
+}
+
+static void coarse_or_inverted_measurement_is_refused(void **state) {
+    (void)state;
+    char path[256];
+    sf_error err = SF_ERROR_INIT;
+    sf_reference reference;
+    write_noisy(path, 0.2, 1);
+    sf_reference_options options = {
+        .path = path, .cfc = 1000, .unfiltered_option = "--none", .invert_option = "--turn"};
+    assert_int_equal(sf_reference_read(&options, &reference, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, ":3: samples 0.2 ms apart are too coarse for CFC 1000"));
+    assert_non_null(strstr(err.text, "--none"));
+    assert_null(reference.raw.time);
+    unlink(path);
+    write_noisy(path, 0.02, -1);
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_reference_read(&options, &reference, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "looks inverted"));
+    assert_non_null(strstr(err.text, "--turn"));
+    err = (sf_error)SF_ERROR_INIT;
+    options.invert = true;
+    assert_int_equal(sf_reference_read(&options, &reference, &err), SF_OK);
+    assert_close(sf_series_at(&reference.curve, 0.0125), 40, 1);
+    assert_non_null(strstr(reference.understood, "inverted"));
+    sf_reference_free(&reference);
+    unlink(path);
+    write_noisy(path, 0.02, 1); /* already the right way round */
+    assert_int_equal(sf_reference_read(&options, &reference, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "leave --turn out"));
+    unlink(path);
+}
+
 static void bad_references_name_file_and_line(void **state) {
     (void)state;
     const struct {
@@ -241,6 +375,17 @@ static void bad_references_name_file_and_line(void **state) {
         {"time_ms,acceleration_g\n0,1\n1,nan\n", ":3: acceleration \"nan\" is not finite"},
         {"time_ms,acceleration_g\n0,1\n1,2\n1,3\n", ":4: time 1 ms does not follow 1 ms"},
         {"time_ms,acceleration_g\n0,1\n1,2\n", "2 points"},
+        {"time_ms,acceleration_g,acceleration_m_s2\n0,1,2\n",
+         ":1: two acceleration columns (\"acceleration_g\" and \"acceleration_m_s2\"): name one with "
+         "--reference-column"},
+        {"Time (ms);Acc X (g);Acc Y (g)\n0;1;2\n",
+         "two acceleration columns (\"Acc X (g)\" and \"Acc Y (g)\")"},
+        {"Time (mm);Acc (g)\n0;1\n",
+         ":1: the header has no column time_s, time_ms or time_us (or \"Time (ms)\"): "
+         "\"Time (mm)\" is in \"mm\", which is not a unit of a time"},
+        {"Time;Acc (g)\n0;1\n", "\"Time\" names no unit"},
+        {"Time (ms);Acc (g)\ns;g\n0;1\n", "give different units"},
+        {"0;1\n1;2\n2;3\n", ":1: the header has no column"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         sf_error err;
@@ -250,8 +395,9 @@ static void bad_references_name_file_and_line(void **state) {
         assert_null(curve.time);
     }
     sf_error err = SF_ERROR_INIT;
-    sf_series curve;
-    assert_int_equal(sf_reference_read("/nonexistent/measured.csv", &curve, &err), SF_ERR_INPUT);
+    sf_reference reference;
+    const sf_reference_options none = {.path = "/nonexistent/measured.csv"};
+    assert_int_equal(sf_reference_read(&none, &reference, &err), SF_ERR_INPUT);
 }
 
 int main(void) {
@@ -260,11 +406,14 @@ int main(void) {
         cmocka_unit_test(r2_and_rmse_of_a_scaled_half_sine),
         cmocka_unit_test(contact_of_a_ramp_is_where_it_leaves_zero),
         cmocka_unit_test(alignment_undoes_a_shifted_clock),
-        cmocka_unit_test(model_that_ends_in_contact_gives_no_figure),
+        cmocka_unit_test(region_beyond_the_model_is_refused_or_counted),
         cmocka_unit_test(still_measurement_has_rmse_but_no_r2),
         cmocka_unit_test(region_outside_the_measurement_is_refused),
         cmocka_unit_test(regions_are_parsed_in_ms),
         cmocka_unit_test(reference_units_are_taken_from_the_heading),
+        cmocka_unit_test(laboratory_forms_are_one_curve),
+        cmocka_unit_test(measurement_is_filtered_with_the_class),
+        cmocka_unit_test(coarse_or_inverted_measurement_is_refused),
         cmocka_unit_test(bad_references_name_file_and_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -79,12 +79,19 @@ static const char *write_sheet(const char *name, const sheet *s) {
     return path;
 }
 
+static sf_status read_sheet(const sheet *s, sf_compression_source source, sf_compression_test *test,
+                            sf_error *err) {
+    source.path = write_sheet("good.csv", s);
+    return sf_compression_test_read(&source, test, err);
+}
+
 static void assert_refused(const sheet *s, const char *part, int line) {
     char where[600];
     sf_compression_test test;
     sf_error err = SF_ERROR_INIT;
     const char *path = write_sheet("bad.csv", s);
-    assert_int_equal(sf_compression_test_read(path, 1, &test, &err), SF_ERR_INPUT);
+    assert_int_equal(sf_compression_test_read(&(sf_compression_source){.path = path, .rate = 1}, &test, &err),
+                     SF_ERR_INPUT);
     snprintf(where, sizeof where, line ? "%s:%d: " : "%s: ", path, line);
     if (!strstr(err.text, part) || !strstr(err.text, where))
         fail_msg("\"%s\" and \"%s\" are expected in: %s", where, part, err.text);
@@ -149,7 +156,7 @@ static void scatter_about_zero_and_percent_are_read(void **state) {
         s.stress[i] *= 1e-3;
     }
     s.stress[2 * POINTS - 1] = -1e-4;
-    assert_int_equal(sf_compression_test_read(write_sheet("good.csv", &s), 2, &test, &err), SF_OK);
+    assert_int_equal(read_sheet(&s, (sf_compression_source){.rate = 2}, &test, &err), SF_OK);
     assert_int_equal(test.loading, POINTS);
     assert_int_equal(test.count, 2 * POINTS);
     assert_close(test.largest_strain, 0.8, 1e-12);
@@ -171,7 +178,8 @@ static void long_branches_are_condensed_to_means(void **state) {
         fprintf(out, "%.12g,%.12g\n", e, 100 * e);
     }
     assert_int_equal(fclose(out), 0);
-    assert_int_equal(sf_compression_test_read(path, 2, &test, &err), SF_OK);
+    assert_int_equal(sf_compression_test_read(&(sf_compression_source){.path = path, .rate = 2}, &test, &err),
+                     SF_OK);
     assert_int_equal(test.loading, 401);
     assert_int_equal(test.count, 801);
     assert_close(test.strain[400], 0.6, 1e-12);

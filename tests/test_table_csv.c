@@ -3,6 +3,7 @@
 #include "program_fixture.h"
 
 #include "io/table_csv.h"
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +18,7 @@ static sf_status check(const sf_table_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_table_name names[] = {{"a_m", 0, 1}, {"a_mm", 0, 1e-3}, {"b", 1, 1}};
+static const sf_table_name names[] = {{"a_m", 0, 1, NULL}, {"a_mm", 0, 1e-3, NULL}, {"b", 1, 1, NULL}};
 static const sf_table_layout strict = {.what = "thing",
                                        .column = {"place", "value"},
                                        .wanted = {"a_m or a_mm", "b"},
@@ -70,18 +71,109 @@ static void faults_are_named_with_line_and_cell(void **state) {
     }
 }
 
-static void measured_tables_may_be_ragged_and_repeat_a_column(void **state) {
+static void rows_of_measured_tables_may_be_short(void **state) {
     sf_table_layout loose = strict;
     sf_table table;
     sf_error err;
-    loose.first = loose.ragged = true;
-    read_text(*state, "a_m,b,a_mm\n1,2\n3,4,5,6\n", &loose, &table, &err);
+    loose.ragged = true;
+    read_text(*state, "a_m,b,c\n1,2\n3,4,5,,\n,,\n", &loose, &table, &err);
     assert_int_equal(err.status, SF_OK);
     assert_int_equal(table.count, 2);
     assert_true(table.value[0][1] == 3 && table.value[1][1] == 4);
     sf_table_free(&table);
     read_text(*state, "a_m,b\n1\n", &loose, &table, &err);
     assert_non_null(strstr(err.text, ":2: 1 values"));
+    read_text(*state, "a_m,b\n1,5,2,5\n", &loose, &table, &err); /* 1.5 and 2.5, not 1 and 5 */
+    assert_non_null(strstr(err.text, ":2: 4 values where the header has 2 columns (with decimal commas"));
+}
+
+static const sf_table_layout measured = {.what = "thing",
+                                         .column = {"time", "force"},
+                                         .wanted = {"time_s", "force_N"},
+                                         .names = NULL,
+                                         .words = {"time|t|*zeit", "force|*kraft"},
+                                         .kind = {SF_TIME, SF_FORCE},
+                                         .ragged = true};
+
+static void laboratory_tables_are_read_and_told(void **state) {
+    static const struct {
+        const char *text, *understood;
+    } cases[] = {
+        {"Time (ms);Force (kN)\n1,5;0,25\n", "separator \";\", decimal comma, time in ms, force in kN"},
+        {"\xEF\xBB\xBFTime [ms]\tForce [N]\r\n1.5\t250\r\n",
+         "separator tab, decimal point, time in ms, force in N"},
+        {"t/ms Kraft/kN\n1.5 0.25\n", "separator blanks, decimal point, time in ms, force in kN"},
+        {"Messzeit;Standardkraft\nms;N\n1,5;250\n", "decimal comma, time in ms, force in N"},
+        {"time_ms,force_kN,x\n1.5,0.25,a\n", "separator \",\", decimal point, time in ms, force in kN"},
+        {"Machine 7;;\nDate;1.2.2024;\n\nTime (s);Pos;Force (N)\n0,0015;1;250\n", "heading in line 4"},
+        {"Time (ms);Channel 1 (N)\n1,5;250\n", "force in N (\"Channel 1 (N)\")"},
+        {"Time in ms;\"Force, N\"\r1,5;250\r", "decimal comma"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        sf_table table;
+        sf_error err;
+        read_text(*state, cases[k].text, &measured, &table, &err);
+        if (err.status != SF_OK || !strstr(table.understood, cases[k].understood))
+            fail_msg("%zu: %s%s", k, err.text, table.understood);
+        assert_int_equal(table.count, 1);
+        assert_true(fabs(table.value[0][0] - 1.5e-3) < 1e-15 && fabs(table.value[1][0] - 250) < 1e-9);
+        sf_table_free(&table);
+    }
+}
+
+/* What could mean two things is not guessed. */
+static void ambiguous_tables_are_refused(void **state) {
+    static const struct {
+        const char *text, *part;
+    } cases[] = {
+        {"time_s,force_N\n1,\"1,234\"\n", ":2: force \"1,234\" holds a comma, which separates the columns"},
+        {"time_s;force_N\n1;1,234\n2;5,678\n",
+         ":2: \"1,234\" and every other number with a comma could hold"},
+        {"time_s;force_N\n1.5;2\n2;5,67\n",
+         ":3: force \"5,67\" has a comma where the file has decimal points"},
+        {"time_s;force_N\n1,5;2\n2;5.67\n",
+         ":3: force \"5.67\" has a decimal point after numbers with a decimal"},
+        {"time_s;force_N\n1,5;1.234,5\n", ":2: force \"1.234,5\""},
+        {"time_s;force_N\n1;1,234,567\n", "\"1,234,567\" is not a number"},
+        {"Time (s);Force\n1;2\n", "\"Force\" names no unit"},
+        {"Time (s);Force (N);Force (kN)\n1;2;3\n", "two force columns"},
+        {"Time (s);Force (mm)\n1;2\n", "\"Force (mm)\" is in \"mm\", which is not a unit of a force"},
+        {"Time;Force\ns;kg\n1;2\n", "is in \"kg\", which is not a unit of a force"},
+        {"1;2\nTime (s);Force (N)\n1;2\n", ":1: the header has no column"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        sf_table table;
+        sf_error err;
+        read_text(*state, cases[k].text, &measured, &table, &err);
+        if (err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].part))
+            fail_msg("%zu: status %d, expected \"%s\": %s", k, err.status, cases[k].part, err.text);
+        assert_true(table.count == 0 && !table.value[0]);
+    }
+}
+
+static void column_can_be_chosen(void **state) {
+    sf_table_layout chosen = measured;
+    sf_table table;
+    sf_error err;
+    chosen.chosen[1] = "Force 2";
+    read_text(*state, "Time (s);Force 1 (N);Force 2 (kN)\n1;2;3\n", &chosen, &table, &err);
+    assert_int_equal(err.status, SF_OK);
+    assert_true(table.value[1][0] == 3000);
+    sf_table_free(&table);
+}
+
+static void text_in_utf16_is_refused(void **state) {
+    const program_place *p = *state;
+    static const char bytes[] = "\xFF\xFEt\0_\0s\0";
+    const char *path = program_path(p, "wide.csv");
+    sf_table table;
+    sf_error err = SF_ERROR_INIT;
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fwrite(bytes, 1, sizeof bytes - 1, file);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(sf_table_read(path, &strict, &table, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "not a text in UTF-8"));
 }
 
 static void what_is_no_plain_file_is_refused(void **state) {
@@ -99,7 +191,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(columns_are_found_by_name_and_scaled),
         cmocka_unit_test(faults_are_named_with_line_and_cell),
-        cmocka_unit_test(measured_tables_may_be_ragged_and_repeat_a_column),
+        cmocka_unit_test(rows_of_measured_tables_may_be_short),
+        cmocka_unit_test(laboratory_tables_are_read_and_told),
+        cmocka_unit_test(ambiguous_tables_are_refused),
+        cmocka_unit_test(column_can_be_chosen),
+        cmocka_unit_test(text_in_utf16_is_refused),
         cmocka_unit_test(what_is_no_plain_file_is_refused),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

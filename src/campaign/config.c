@@ -110,6 +110,16 @@ sf_status sf_config_number(const sf_config *config, const config_setting_t *grou
     return SF_OK;
 }
 
+sf_status sf_config_flag(const sf_config *config, const config_setting_t *group, const char *name, bool *out,
+                         sf_error *err) {
+    const config_setting_t *s = find(config, group, name, false, err);
+    if (s && config_setting_type(s) != CONFIG_TYPE_BOOL)
+        return sf_config_refuse(config, s, err, "%s must be true or false", name);
+    if (s)
+        *out = config_setting_get_bool(s);
+    return SF_OK;
+}
+
 sf_status sf_config_text(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, const char **out, sf_error *err) {
     const config_setting_t *s = find(config, group, name, required, err);

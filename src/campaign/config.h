@@ -33,6 +33,9 @@ sf_status sf_config_number(const sf_config *config, const config_setting_t *grou
 /* SI value, from `low` on; `low` 0: above zero. */
 sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
                              sf_quantity kind, bool required, double low, double *out, sf_error *err);
+/* true or false; `*out` is left alone if the key is absent. */
+sf_status sf_config_flag(const sf_config *config, const config_setting_t *group, const char *name, bool *out,
+                         sf_error *err);
 /* Borrowed from the configuration. */
 sf_status sf_config_text(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, const char **out, sf_error *err);

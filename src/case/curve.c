@@ -5,17 +5,20 @@
 #include <string.h>
 
 sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
-    static const sf_table_name names[] = {{"strain", 0, 1.0},
-                                          {"strain_percent", 0, 0.01},
-                                          {"stress_Pa", 1, 1.0},
-                                          {"stress_kPa", 1, 1e3},
-                                          {"stress_MPa", 1, 1e6}};
+    static const sf_table_name names[] = {{"strain", 0, 1.0, "1"},
+                                          {"strain_percent", 0, 0.01, "%"},
+                                          {"stress_Pa", 1, 1.0, "Pa"},
+                                          {"stress_kPa", 1, 1e3, "kPa"},
+                                          {"stress_MPa", 1, 1e6, "MPa"}};
     return (sf_table_layout){
         .what = what,
         .column = {"strain", "stress"},
         .wanted = {"\"strain\" or \"strain_percent\"", "\"stress_Pa\", \"stress_kPa\" or \"stress_MPa\""},
         .names = names,
         .name_count = sizeof names / sizeof *names,
+        .words = {"strain|*dehnung|*stauchung|deformation|déformation|deformación|deformazione",
+                  "stress|*spannung|contrainte|tensión|esfuerzo|sforzo|tensione"},
+        .kind = {SF_TABLE_RATIO, SF_PRESSURE},
         .check = check,
     };
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A compression curve from a CSV file: lines that begin with '#' are comments; a header names the columns
- * `strain` or `strain_percent` and `stress_Pa`, `stress_kPa` or `stress_MPa` (others are ignored); then one
- * point per line. Engineering strain and nominal stress, positive in compression. */
+/* A compression curve from a CSV file (io/table_csv.h): columns `strain` or `strain_percent` and `stress_Pa`,
+ * `stress_kPa` or `stress_MPa`, or a strain and a stress with units; then one point per line. Engineering
+ * strain and nominal stress, positive in compression. */
 #ifndef SF_CASE_CURVE_H
 #define SF_CASE_CURVE_H
 

@@ -29,8 +29,10 @@ static sf_status check_point(const sf_table_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_table_name names[] = {
-    {"time_s", 0, 1.0}, {"time_ms", 0, 1e-3}, {"displacement_m", 1, 1.0}, {"displacement_mm", 1, 1e-3}};
+static const sf_table_name names[] = {{"time_s", 0, 1.0, "s"},
+                                      {"time_ms", 0, 1e-3, "ms"},
+                                      {"displacement_m", 1, 1.0, "m"},
+                                      {"displacement_mm", 1, 1e-3, "mm"}};
 
 static const sf_table_layout layout = {
     .what = "motion",
@@ -38,6 +40,10 @@ static const sf_table_layout layout = {
     .wanted = {"\"time_s\" or \"time_ms\"", "\"displacement_m\" or \"displacement_mm\""},
     .names = names,
     .name_count = sizeof names / sizeof *names,
+    .words =
+        {"time|t|*zeit|temps|tiempo|tempo",
+         "displacement|extension|crosshead|position|travel|stroke|*weg|desplazamiento|déplacement|spostamento"},
+    .kind = {SF_TIME, SF_LENGTH},
     .check = check_point,
 };
 

@@ -52,8 +52,11 @@ static sf_status check_pair(const sf_table_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_table_name names[] = {
-    {"height_m", 0, 1}, {"h_m", 0, 1}, {"h_m_m", 0, 1}, {"speed_m_s", 1, 1}, {"v_test_m_s", 1, 1}};
+static const sf_table_name names[] = {{"height_m", 0, 1, "m"},
+                                      {"h_m", 0, 1, "m"},
+                                      {"h_m_m", 0, 1, "m"},
+                                      {"speed_m_s", 1, 1, "m/s"},
+                                      {"v_test_m_s", 1, 1, "m/s"}};
 
 static const sf_table_layout layout = {
     .what = "rig",
@@ -61,6 +64,9 @@ static const sf_table_layout layout = {
     .wanted = {"height_m, h_m or h_m_m", "speed_m_s or v_test_m_s"},
     .names = names,
     .name_count = sizeof names / sizeof *names,
+    .words = {"height|h|*höhe|*hoehe|hauteur|altura|altezza",
+              "speed|velocity|v|*geschwindigkeit|vitesse|velocidad|velocità"},
+    .kind = {SF_LENGTH, SF_SPEED},
     .ragged = true,
     .check = check_pair,
 };

@@ -25,6 +25,8 @@ static const quantity_info quantities[SF_QUANTITY_COUNT] = {
     [SF_PRESSURE] = {"a pressure or modulus", "Pa", "0.4136 MPa"},
     [SF_RATE] = {"a rate", "s-1", "5000 1/s"},
     [SF_VISCOSITY] = {"a viscosity", "Pa s", "690 Pa s"},
+    [SF_AREA] = {"an area", "m2", "25 cm2"},
+    [SF_FORCE] = {"a force", "N", "2.5 kN"},
 };
 
 struct sf_units {

@@ -23,6 +23,8 @@ typedef enum sf_quantity {
     SF_PRESSURE,
     SF_RATE,
     SF_VISCOSITY,
+    SF_FORCE,
+    SF_AREA,
     SF_QUANTITY_COUNT,
 } sf_quantity;
 

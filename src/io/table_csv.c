@@ -1,25 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/table_csv.h"
 
+#include "io/table_heading.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MAX_COLUMNS = 256 };
+enum { PREAMBLE = 200 }; /* lines among which the heading must stand */
+static const char SEPARATORS[] = ";\t, ";
 
-/* The file being read: data for the messages and the growing arrays. */
+/* The file being read: its text, data for the messages and the growing arrays. */
 typedef struct csv {
     const char *path;
     const sf_table_layout *layout;
-    int line;
-    int columns;     /* in the header */
-    int place[2];    /* of the two columns, -1: not seen yet */
-    double scale[2]; /* that makes them SI */
+    char *text;  /* whole file, zero-terminated; owned */
+    char *next;  /* the line that follows */
+    int line;    /* number of the last one */
+    bool passed; /* lines without a column stand before the heading */
+    char separator;
+    sf_table_heading heading;
+    bool point, comma; /* marks that numbers held */
+    bool decimal;      /* a comma that can only be a decimal one */
+    int comma_line;    /* first number with a comma */
+    char comma_text[32];
+    sf_units *units; /* NULL until needed; owned */
     sf_table *table;
 } csv;
 
@@ -30,64 +39,253 @@ void sf_table_free(sf_table *table) {
     memset(table, 0, sizeof *table);
 }
 
-static bool is_margin(char c) {
-    return isspace((unsigned char)c) || c == '"';
-}
+/* ---- lines ---- */
 
-/* Splits at commas in place, trimming blanks and quotes; returns the number of cells (MAX_COLUMNS + 1 if
- * there are more). */
-static int split(char *line, char *cell[MAX_COLUMNS]) {
-    int count = 0;
-    for (char *rest = line; rest; count++) {
-        if (count == MAX_COLUMNS)
-            return MAX_COLUMNS + 1;
-        char *text = rest;
-        rest = strchr(rest, ',');
-        if (rest)
-            *rest++ = '\0';
-        while (is_margin(*text))
-            text++;
-        for (char *end = text + strlen(text); end > text && is_margin(end[-1]);)
-            *--end = '\0';
-        cell[count] = text;
-    }
-    return count;
-}
-
-static sf_status read_header(csv *file, char *line, sf_error *err) {
-    const sf_table_layout *layout = file->layout;
-    char *cell[MAX_COLUMNS];
-    file->columns = split(line, cell);
-    file->place[0] = file->place[1] = -1;
-    if (file->columns > MAX_COLUMNS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: more than %d columns", file->path, file->line, MAX_COLUMNS);
-    for (int i = 0; i < file->columns; i++) {
-        for (int k = 0; k < layout->name_count; k++) {
-            const sf_table_name *name = &layout->names[k];
-            if (strcmp(cell[i], name->name) != 0)
-                continue;
-            int *place = &file->place[name->column];
-            if (*place >= 0 && layout->first)
-                continue;
-            if (*place >= 0)
-                return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: two %s columns (\"%s\" and \"%s\")", file->path,
-                               file->line, layout->column[name->column], cell[*place], cell[i]);
-            *place = i;
-            file->scale[name->column] = file->table->scale[name->column] = name->scale;
+static sf_status load(csv *file, sf_error *err) {
+    const char *what = file->layout->what;
+    struct stat info;
+    if (stat(file->path, &info) == 0 && !S_ISREG(info.st_mode))
+        return SF_FAIL(err, SF_ERR_INPUT, "the %s %s is not a plain file", what, file->path);
+    FILE *stream = fopen(file->path, "r");
+    if (!stream)
+        return SF_FAIL(err, SF_ERR_INPUT, "the %s %s cannot be read: %s", what, file->path, strerror(errno));
+    size_t length = 0, size = 0, got;
+    do {
+        size = size ? 2 * size : 65536;
+        char *grown = realloc(file->text, size + 1);
+        if (!grown) {
+            SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", what, file->path);
+            break;
         }
-    }
-    for (int c = 0; c < 2; c++)
-        if (file->place[c] < 0)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: the header has no column %s", file->path, file->line,
-                           layout->wanted[c]);
+        file->text = grown;
+        got = fread(grown + length, 1, size - length, stream);
+        length += got;
+    } while (length == size);
+    if (err->status == SF_OK && ferror(stream))
+        SF_FAIL(err, SF_ERR_IO, "reading the %s %s failed: %s", what, file->path, strerror(errno));
+    fclose(stream);
+    if (err->status != SF_OK)
+        return err->status;
+    file->text[length] = '\0';
+    if (strlen(file->text) < length)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "the %s %s holds zero bytes: it is not a text in UTF-8 (save it as CSV UTF-8)", what,
+                       file->path);
+    file->next = file->text + (strncmp(file->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0); /* byte order mark */
     return SF_OK;
 }
 
-static sf_status read_number(const csv *file, const char *name, const char *text, double *value,
-                             sf_error *err) {
-    char *end = NULL;
-    *value = strtod(text, &end);
-    if (end == text || *end)
+/* The next line, ended in place; NULL after the last. */
+static char *next_line(csv *file) {
+    char *line = file->next;
+    if (!line || !*line)
+        return NULL;
+    char *end = line + strcspn(line, "\r\n");
+    file->next = *end == '\r' && end[1] == '\n' ? end + 2 : *end ? end + 1 : end;
+    *end = '\0';
+    file->line++;
+    return line;
+}
+
+static bool is_empty(const char *line) {
+    const char *text = line + strspn(line, " \t");
+    return *text == '\0' || *text == '#';
+}
+
+/* The next line that is neither empty nor a comment. */
+static char *next_content(csv *file) {
+    char *line;
+    while ((line = next_line(file)) && is_empty(line))
+        ;
+    return line;
+}
+
+/* A copy of the next such line, which stays. */
+static char *peek_content(const csv *file) {
+    for (const char *line = file->next; line && *line;) {
+        size_t length = strcspn(line, "\r\n");
+        char *copy = strndup(line, length);
+        if (!copy || !is_empty(copy))
+            return copy;
+        free(copy);
+        line += length + (line[length] != '\0');
+    }
+    return NULL;
+}
+
+/* ---- heading ---- */
+
+static bool is_utf8(const char *text) {
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        int more = *c < 0x80                 ? 0
+                   : *c >= 0xC2 && *c < 0xE0 ? 1
+                   : *c >= 0xE0 && *c < 0xF0 ? 2
+                   : *c >= 0xF0 && *c < 0xF5 ? 3
+                                             : -1;
+        if (more < 0)
+            return false;
+        for (c++; more > 0; more--, c++)
+            if ((*c & 0xC0) != 0x80)
+                return false;
+    }
+    return true;
+}
+
+/* A copy in UTF-8: what is not is taken for Latin-1. NULL of NULL, and without memory. */
+static char *copy_utf8(const char *text) {
+    if (!text || is_utf8(text))
+        return text ? strdup(text) : NULL;
+    char *copy = malloc(2 * strlen(text) + 1), *to = copy;
+    for (const unsigned char *c = (const unsigned char *)text; copy && *c; c++) {
+        if (*c >= 0x80)
+            *to++ = (char)(0xC0 | *c >> 6);
+        *to++ = (char)(*c < 0x80 ? *c : 0x80 | (*c & 0x3F));
+    }
+    if (copy)
+        *to = '\0';
+    return copy;
+}
+
+/* Two numbers begin the line: data, which no heading follows. */
+static bool is_data(const char *line) {
+    bool data = false;
+    for (const char *s = SEPARATORS; *s && !data; s++) {
+        sf_table_cells cells;
+        char *copy = strdup(line);
+        if (!copy)
+            return false;
+        sf_table_split(copy, *s, false, &cells);
+        data = cells.count > 1 && cells.count <= SF_TABLE_COLUMNS && sf_table_is_number(cells.cell[0]) &&
+               sf_table_is_number(cells.cell[1]);
+        free(copy);
+    }
+    return data;
+}
+
+/* Reads the line as a heading of the layout, split at the separator. */
+static sf_status try_heading(csv *file, const char *line, const char *below, char separator,
+                             const sf_table_layout *layout, sf_table_heading *heading, sf_error *err) {
+    sf_table_cells cells, below_cells = {0};
+    char *text = copy_utf8(line), *under = copy_utf8(below);
+    *heading = (sf_table_heading){.place = {-1, -1}};
+    if (!text || (below && !under)) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
+    } else {
+        sf_table_split(text, separator, true, &cells);
+        if (under)
+            sf_table_split(under, separator, false, &below_cells);
+        if (cells.count > SF_TABLE_COLUMNS)
+            snprintf(heading->problem, sizeof heading->problem, "more than %d columns", SF_TABLE_COLUMNS);
+        else
+            sf_table_heading_read(layout, &cells, below_cells.count <= SF_TABLE_COLUMNS ? &below_cells : NULL,
+                                  &file->units, heading, err);
+    }
+    free(text);
+    free(under);
+    return err->status;
+}
+
+/* The best heading that the line can be, of any layout and separator. */
+static sf_status try_line(csv *file, const char *line, const sf_table_layout *layouts, int count, int *which,
+                          sf_table_heading *best, char *separator, sf_error *err) {
+    char *below = peek_content(file);
+    *best = (sf_table_heading){.found = -1};
+    for (const char *s = SEPARATORS; *s && err->status == SF_OK; s++)
+        for (int k = 0; k < count && err->status == SF_OK; k++) {
+            sf_table_heading heading;
+            if (*s != ',' && !strchr(line, *s) && !(*s == ' ' && strchr(line, '\t')))
+                continue;
+            if (try_heading(file, line, below, *s, &layouts[k], &heading, err) != SF_OK)
+                break;
+            bool good = heading.found == 2 && !heading.problem[0];
+            bool best_good = best->found == 2 && !best->problem[0];
+            if (heading.found > best->found || (heading.found == best->found && good && !best_good)) {
+                *best = heading;
+                *which = k;
+                *separator = *s;
+            }
+        }
+    free(below);
+    return err->status;
+}
+
+/* The first line that is a heading; else what is wrong with the line that is most like one. */
+static sf_status find_heading(csv *file, const sf_table_layout *layouts, int count, int *which,
+                              sf_error *err) {
+    sf_table_heading best = {.found = -1};
+    int best_line = 0, lines = 0;
+    char *line;
+    while (lines++ < PREAMBLE && (line = next_content(file))) {
+        sf_table_heading heading;
+        if (try_line(file, line, layouts, count, which, &heading, &file->separator, err) != SF_OK)
+            return err->status;
+        if (heading.found == 2 && !heading.problem[0]) {
+            file->heading = heading;
+            file->layout = &layouts[*which];
+            file->passed = lines > 1;
+            return SF_OK;
+        }
+        if (heading.found > best.found) {
+            best = heading;
+            best_line = file->line;
+        }
+        if (is_data(line))
+            break;
+    }
+    return best_line ? SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", file->path, best_line, best.problem) : SF_OK;
+}
+
+/* ---- numbers and rows ---- */
+
+/* A comma with other than three digits after it, or none but zeros before it, is no mark of thousands. */
+static bool is_decimal(const char *text) {
+    const char *comma = strchr(text, ','), *first = text + strspn(text, "+-");
+    return first == comma || *first == '0' || strspn(comma + 1, "0123456789") != 3 || comma - first > 3;
+}
+
+/* Takes the marks of the number into account and writes it with a decimal point. */
+static sf_status unify(csv *file, const char *name, const char *text, char copy[64], sf_error *err) {
+    char *comma = strchr(copy, ',');
+    file->point = file->point || strchr(copy, '.');
+    if (!comma)
+        return file->point && file->comma
+                   ? SF_FAIL(err, SF_ERR_INPUT,
+                             "%s:%d: %s \"%s\" has a decimal point after numbers with a "
+                             "decimal comma (line %d, \"%s\")",
+                             file->path, file->line, name, text, file->comma_line, file->comma_text)
+                   : SF_OK;
+    if (file->separator == ',')
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s:%d: %s \"%s\" holds a comma, which separates the columns here: write a decimal point, "
+            "or separate by semicolons",
+            file->path, file->line, name, text);
+    if (file->point)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s:%d: %s \"%s\" has a comma where the file has decimal points: it could be a decimal "
+            "comma or a mark of thousands",
+            file->path, file->line, name, text);
+    if (!file->comma) {
+        file->comma_line = file->line;
+        snprintf(file->comma_text, sizeof file->comma_text, "%.31s", text);
+    }
+    file->comma = true;
+    file->decimal = file->decimal || is_decimal(copy);
+    *comma = '.';
+    return SF_OK;
+}
+
+static sf_status read_number(csv *file, const char *name, const char *text, double *value, sf_error *err) {
+    char *end = NULL, copy[64];
+    bool fits = snprintf(copy, sizeof copy, "%s", text) < (int)sizeof copy;
+    if (!fits || !sf_table_is_number(text))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number", file->path, file->line, name,
+                       text);
+    if (unify(file, name, text, copy, err) != SF_OK)
+        return err->status;
+    *value = strtod(copy, &end);
+    if (end == copy || *end)
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number", file->path, file->line, name,
                        text);
     if (!isfinite(*value))
@@ -120,63 +318,119 @@ static sf_status append(csv *file, const double value[2], sf_error *err) {
     return SF_OK;
 }
 
+/* Empty cells at the end of a row do not count beyond the heading. */
+static int count_cells(const csv *file, const sf_table_cells *cells) {
+    int count = cells->count <= SF_TABLE_COLUMNS ? cells->count : SF_TABLE_COLUMNS + 1;
+    while (count > file->heading.columns && count <= SF_TABLE_COLUMNS && !cells->cell[count - 1][0])
+        count--;
+    return count;
+}
+
+static bool is_blank_row(const sf_table_cells *cells) {
+    for (int i = 0; i < cells->count && i < SF_TABLE_COLUMNS; i++)
+        if (cells->cell[i][0])
+            return false;
+    return cells->count > 1;
+}
+
+static sf_status check_count(const csv *file, int count, sf_error *err) {
+    const int *place = file->heading.place;
+    int needed = place[0] > place[1] ? place[0] : place[1];
+    if (count == file->heading.columns ||
+        (file->layout->ragged && count > needed && count < file->heading.columns))
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %d values where the header has %d columns%s", file->path,
+                   file->line, count, file->heading.columns,
+                   file->separator == ',' && count > file->heading.columns
+                       ? " (with decimal commas, separate the columns by semicolons)"
+                       : "");
+}
+
 static sf_status read_point(csv *file, char *line, sf_error *err) {
-    char *cell[MAX_COLUMNS];
+    sf_table_cells cells;
     const sf_table *table = file->table;
     sf_table_point point = {.path = file->path, .line = file->line, .index = table->count};
-    int count = split(line, cell);
-    int needed = file->place[0] > file->place[1] ? file->place[0] : file->place[1];
-    if (count != file->columns && !(file->layout->ragged && count > needed))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %d values where the header has %d columns", file->path,
-                       file->line, count, file->columns);
+    sf_table_split(line, file->separator, false, &cells);
+    if (is_blank_row(&cells))
+        return SF_OK;
+    if (check_count(file, count_cells(file, &cells), err) != SF_OK)
+        return err->status;
     for (int c = 0; c < 2; c++) {
-        point.text[c] = cell[file->place[c]];
+        double scale = file->heading.scale[c];
+        point.text[c] = cells.cell[file->heading.place[c]];
         if (read_number(file, file->layout->column[c], point.text[c], &point.value[c], err) != SF_OK)
             return err->status;
-        point.value[c] *= file->scale[c];
+        point.value[c] *= scale;
         if (table->count == 0)
             continue;
         point.before[c] = table->value[c][table->count - 1];
-        point.last[c] = point.before[c] / file->scale[c];
+        point.last[c] = point.before[c] / scale;
     }
-    return file->layout->check(&point, err) == SF_OK ? append(file, point.value, err) : err->status;
+    if (file->layout->check && file->layout->check(&point, err) != SF_OK)
+        return err->status;
+    return append(file, point.value, err);
 }
 
-static sf_status read_lines(csv *file, FILE *stream, sf_error *err) {
-    char *line = NULL;
-    size_t size = 0;
-    bool header = false;
-    sf_status status = SF_OK;
-    while (status == SF_OK && getline(&line, &size, stream) >= 0) {
-        file->line++;
-        char *text = line;
-        if (file->line == 1 && strncmp(text, "\xEF\xBB\xBF", 3) == 0)
-            text += 3; /* spreadsheets write a byte order mark */
-        text += strspn(text, " \t\r\n");
-        if (*text == '\0' || *text == '#')
-            continue;
-        status = header ? read_point(file, text, err) : read_header(file, text, err);
-        header = true;
+/* ---- the whole ---- */
+
+static void describe(const csv *file) {
+    const sf_table_heading *h = &file->heading;
+    const char *separator = file->separator == '\t' ? "tab" : file->separator == ' ' ? "blanks" : NULL;
+    char *out = file->table->understood;
+    size_t size = SF_TABLE_UNDERSTOOD;
+    int used = separator ? snprintf(out, size, "separator %s", separator)
+                         : snprintf(out, size, "separator \"%c\"", file->separator);
+    used += snprintf(out + used, size - (size_t)used, ", decimal %s", file->comma ? "comma" : "point");
+    for (int c = 0; c < 2; c++) {
+        used += snprintf(out + used, size - (size_t)used, ", %s", file->layout->column[c]);
+        if (h->unit[c][0])
+            used += snprintf(out + used, size - (size_t)used, " in %s", h->unit[c]);
+        if (h->title[c][0])
+            used += snprintf(out + used, size - (size_t)used, " (\"%s\")", h->title[c]);
     }
-    free(line);
+}
+
+static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, int *which, sf_error *err) {
+    char *line;
+    if (load(file, err) != SF_OK || find_heading(file, layouts, count, which, err) != SF_OK)
+        return err->status;
+    int heading_line = file->line;
+    if (file->heading.unit_line)
+        next_content(file);
+    for (int c = 0; c < 2; c++)
+        file->table->scale[c] = file->heading.scale[c];
+    while ((line = next_content(file)))
+        if (read_point(file, line, err) != SF_OK)
+            return err->status;
+    if (file->comma && !file->decimal)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s:%d: \"%s\" and every other number with a comma could hold a decimal comma or a mark of "
+            "thousands: write decimal points",
+            file->path, file->comma_line, file->comma_text);
+    if (file->heading.columns > 0)
+        describe(file);
+    size_t used = strlen(file->table->understood);
+    if (file->passed)
+        snprintf(file->table->understood + used, SF_TABLE_UNDERSTOOD - used, ", heading in line %d",
+                 heading_line);
+    return SF_OK;
+}
+
+sf_status sf_table_read_any(const char *path, const sf_table_layout *layouts, int count, int *which,
+                            sf_table *table, sf_error *err) {
+    memset(table, 0, sizeof *table);
+    *which = 0;
+    csv file = {.path = path, .layout = layouts, .table = table};
+    sf_status status = read_all(&file, layouts, count, which, err);
+    sf_units_close(&file.units);
+    free(file.text);
+    if (status != SF_OK)
+        sf_table_free(table);
     return status;
 }
 
 sf_status sf_table_read(const char *path, const sf_table_layout *layout, sf_table *table, sf_error *err) {
-    memset(table, 0, sizeof *table);
-    struct stat info;
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-        return SF_FAIL(err, SF_ERR_INPUT, "the %s %s is not a plain file", layout->what, path);
-    FILE *stream = fopen(path, "r");
-    if (!stream)
-        return SF_FAIL(err, SF_ERR_INPUT, "the %s %s cannot be read: %s", layout->what, path,
-                       strerror(errno));
-    csv file = {.path = path, .layout = layout, .table = table};
-    sf_status status = read_lines(&file, stream, err);
-    if (status == SF_OK && ferror(stream))
-        status = SF_FAIL(err, SF_ERR_IO, "reading the %s %s failed: %s", layout->what, path, strerror(errno));
-    fclose(stream);
-    if (status != SF_OK)
-        sf_table_free(table);
-    return status;
+    int which;
+    return sf_table_read_any(path, layout, 1, &which, table, err);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/compare.h"
 
-#include "post/reference.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,34 +98,52 @@ static double peak_of(const sf_series *curve) {
     return peak;
 }
 
-/* The model at `time`: free flight before its start, and after its end if contact is over by then; NaN
- * otherwise. */
-static double model_at(const sf_series *model, double peak, double time) {
-    double slack = 1e-9;
-    if (time < model->time[0] - slack)
-        return 0;
-    if (time > model->time[model->count - 1] + slack)
-        return fabs(model->value[model->count - 1]) < 0.05 * peak ? 0 : NAN;
-    return sf_series_at(model, time);
+static const double SLACK = 1e-5; /* s, of ends: one sample of a filtered curve */
+
+/* A region must lie within the measured curve, and meet the model's, which must not break off in contact. */
+static sf_status check_region(const sf_series *measured, const sf_series *model, bool left, double shift,
+                              sf_region region, sf_error *err) {
+    double begin = measured->time[0], end = measured->time[measured->count - 1];
+    double model_begin = model->time[0] - shift, model_end = model->time[model->count - 1] - shift;
+    if (!(region.end > region.begin) || region.begin < begin - SLACK || region.end > end + SLACK)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "the region %g to %g ms does not lie within the measured curve (%g to %g ms)",
+                       region.begin * 1e3, region.end * 1e3, begin * 1e3, end * 1e3);
+    if (region.end <= model_begin || region.begin >= model_end)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the region %g to %g ms lies outside the model's curve (%g to %g ms of the measured time)",
+            region.begin * 1e3, region.end * 1e3, model_begin * 1e3, model_end * 1e3);
+    if (!left && region.end > model_end + SLACK)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the region %g to %g ms goes beyond the model's curve, which ends in contact at %g ms of the "
+            "measured time: compare a shorter one (--window), or continue the run (softfall-solve "
+            "--restart --end-time)",
+            region.begin * 1e3, region.end * 1e3, model_end * 1e3);
+    return SF_OK;
 }
 
-sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, double shift, sf_region region,
-                         double interval, sf_fit *fit, sf_error *err) {
+/* The model at `time`; 0 in the free flight before and after its curve. */
+static double model_at(const sf_series *model, double time, int64_t *flight) {
+    if (time >= model->time[0] - SLACK && time <= model->time[model->count - 1] + SLACK)
+        return sf_series_at(model, time);
+    ++*flight;
+    return 0;
+}
+
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double shift,
+                         sf_region region, double interval, sf_fit *fit, sf_error *err) {
     *fit =
         (sf_fit){.region = region, .first = NAN, .last = NAN, .interval = interval, .r2 = NAN, .rmse_g = NAN};
-    double begin = measured->time[0], end = measured->time[measured->count - 1], slack = 1e-9;
-    if (!(region.end > begin) || !(region.begin < end))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "the region %g to %g ms lies outside the measured curve (%g to %g ms)",
-                       region.begin * 1e3, region.end * 1e3, begin * 1e3, end * 1e3);
-    double peak = peak_of(model), sum = 0, squares = 0, residual = 0, origin = 0;
+    if (check_region(measured, model, left, shift, region, err) != SF_OK)
+        return err->status;
+    double sum = 0, squares = 0, residual = 0, origin = 0, slack = 1e-9;
     int64_t samples = (int64_t)floor((region.end - region.begin) / interval + slack) + 1;
     for (int64_t k = 0; k < samples; k++) {
         double time = region.begin + (double)k * interval;
-        if (time < begin - slack || time > end + slack)
-            continue;
         double a = sf_series_at(measured, time);
-        double difference = a - model_at(model, peak, time + shift);
+        double difference = a - model_at(model, time + shift, &fit->flight);
         if (fit->count++ == 0) {
             fit->first = time;
             origin = a; /* keeps the sum of squares free of cancellation */
@@ -139,7 +156,7 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, doub
     double total = squares - sum * sum / (double)fit->count;
     if (fit->count < 2)
         return SF_OK;
-    fit->rmse_g = sqrt(residual / (double)fit->count); /* NaN if the model ends too early */
+    fit->rmse_g = sqrt(residual / (double)fit->count);
     if (total > 1e-12 * squares)
         fit->r2 = 1 - residual / total;
     return SF_OK;
@@ -158,28 +175,40 @@ static sf_status fit_all(const sf_compare_options *options, const sf_series *mod
     for (int64_t k = -1; k < options->region_count; k++) {
         sf_region region = k < 0 ? window : options->regions[k];
         for (int j = 0; j < 2; j++)
-            if (sf_compare_fit(&c->measured, model, c->shift, region, intervals[j], &c->fits[c->fit_count++],
-                               err))
+            if (sf_compare_fit(&c->measured, model, options->left, c->shift, region, intervals[j],
+                               &c->fits[c->fit_count++], err))
                 return err->status;
     }
     return SF_OK;
 }
 
+/* The measured curve, as it is compared. */
+static sf_status read_measured(const sf_compare_options *options, sf_comparison *c, sf_error *err) {
+    sf_reference reference;
+    if (sf_reference_read(&options->reference, &reference, err) != SF_OK)
+        return err->status;
+    c->measured = reference.curve;
+    c->raw = reference.raw;
+    c->cfc = options->reference.cfc;
+    c->inverted = options->reference.invert;
+    memcpy(c->understood, reference.understood, sizeof c->understood);
+    return sf_injury_evaluate(&c->measured, &c->injury, err);
+}
+
 sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
                          sf_error *err) {
     double measured_contact = 0, model_contact = 0;
+    const char *path = options->reference.path;
     *c = (sf_comparison){.shift = options->shift, .shift_given = !isnan(options->shift)};
-    if (sf_reference_read(options->path, &c->measured, err) != SF_OK ||
-        sf_injury_evaluate(&c->measured, &c->injury, err) != SF_OK)
+    if (read_measured(options, c, err) != SF_OK)
         goto done;
     if (!(c->injury.a_max_g > 0)) {
         SF_FAIL(err, SF_ERR_INPUT,
-                "%s has no positive acceleration: positive means that the missile is slowed down",
-                options->path);
+                "%s has no positive acceleration: positive means that the missile is slowed down", path);
         goto done;
     }
     if (!c->shift_given) {
-        if (sf_contact_instant(&c->measured, options->path, &measured_contact, err) != SF_OK ||
+        if (sf_contact_instant(&c->measured, path, &measured_contact, err) != SF_OK ||
             sf_contact_instant(model, "the computed curve", &model_contact, err) != SF_OK)
             goto done;
         c->shift = model_contact - measured_contact;
@@ -194,6 +223,7 @@ done:
 
 void sf_comparison_free(sf_comparison *comparison) {
     sf_series_free(&comparison->measured);
+    sf_series_free(&comparison->raw);
     free(comparison->fits);
     *comparison = (sf_comparison){0};
 }

@@ -4,13 +4,16 @@
  *
  *     R2 = 1 - sum (a_i - m_i)^2 / sum (a_i - mean a)^2,   RMSE = sqrt(sum (a_i - m_i)^2 / n),
  *
- * a measured, m model, both in g. The measured curve is used as it is given. Its clock is shifted so that
- * both curves begin contact at the same instant: model time = measured time + shift. Regions and windows are
- * given and reported on the clock of the measured curve. */
+ * a measured, m model, both in g and filtered alike (post/reference.h). The measured curve's clock is shifted
+ * so that both curves begin contact at the same instant: model time = measured time + shift. Regions and
+ * windows are given and reported on the clock of the measured curve. They must lie within it, and over the
+ * model's curve: before that, and after it if the missile has left the pad, the model is in free flight (0
+ * g), which the fit counts. */
 #ifndef SF_POST_COMPARE_H
 #define SF_POST_COMPARE_H
 
 #include "post/injury.h"
+#include "post/reference.h"
 
 typedef struct sf_region {
     double begin; /* s, clock of the measured curve */
@@ -19,16 +22,18 @@ typedef struct sf_region {
 
 typedef struct sf_fit {
     sf_region region; /* as asked for */
-    double first;     /* s, first sample used: samples where nothing was measured are left out */
+    double first;     /* s, first sample */
     double last;      /* s */
     double interval;  /* s */
-    int64_t count;    /* samples used */
-    double r2;     /* NaN if fewer than 2 samples, a constant measured curve, or the model ends too early */
-    double rmse_g; /* NaN if fewer than 2 samples or the model ends too early */
+    int64_t count;    /* samples */
+    int64_t flight;   /* of them, before or after the model's curve: free flight */
+    double r2;        /* NaN if fewer than 2 samples or a constant measured curve */
+    double rmse_g;    /* NaN if fewer than 2 samples */
 } sf_fit;
 
 typedef struct sf_compare_options {
-    const char *path;         /* of the measured curve */
+    sf_reference_options reference;
+    bool left;                /* the model's curve ends with the missile off the pad */
     double shift;             /* s; NaN = align the contacts */
     sf_region window;         /* NaN = HIC window of the measured curve */
     const sf_region *regions; /* [region_count], besides the window */
@@ -36,11 +41,15 @@ typedef struct sf_compare_options {
 } sf_compare_options;
 
 typedef struct sf_comparison {
-    sf_series measured; /* s on its own clock, g; owned */
-    sf_injury injury;   /* of the measured curve */
-    double shift;       /* s, as used */
-    int shift_given;    /* 1 if the caller gave it */
-    double peak_error;  /* model a_max / measured a_max - 1 */
+    sf_series measured; /* s on its own clock, g, filtered like the model; owned */
+    sf_series raw;      /* the points of the file; owned */
+    char understood[SF_REFERENCE_UNDERSTOOD]; /* how the file was read */
+    double cfc;                                             /* of the measured curve; 0: not filtered here */
+    bool inverted;                                          /* on the user's word */
+    sf_injury injury;                                       /* of the measured curve */
+    double shift;                                           /* s, as used */
+    int shift_given;                                        /* 1 if the caller gave it */
+    double peak_error;                                      /* model a_max / measured a_max - 1 */
     int64_t fit_count;
     sf_fit *fits; /* [fit_count]: for the window, then each region: at 0.25 and at 0.50 ms; owned */
 } sf_comparison;
@@ -55,10 +64,11 @@ sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count
  * no such rise. */
 sf_status sf_contact_instant(const sf_series *curve, const char *name, double *instant, sf_error *err);
 
-/* One region at one sampling interval (s). The model is 0 before its first instant and, if it ends below 5 %
- * of its peak, after its last. */
-sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, double shift, sf_region region,
-                         double interval, sf_fit *fit, sf_error *err);
+/* One region at one sampling interval (s). `left`: the missile is off the pad at the model's end, and stays
+ * in free flight. SF_ERR_INPUT if the region is not within the measured curve, or where the model has no
+ * value. */
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double shift,
+                         sf_region region, double interval, sf_fit *fit, sf_error *err);
 
 /* Reads the measured curve and compares `model` (s, g) with it. Release with sf_comparison_free. */
 sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *comparison,

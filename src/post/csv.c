@@ -47,17 +47,18 @@ sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *r
 
 sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *comparison,
                                  const sf_figures *figures, sf_error *err) {
-    const sf_series *measured = &comparison->measured, *model = &figures->filtered;
+    const sf_series *raw = &comparison->raw, *model = &figures->filtered;
     FILE *file = sf_staging_open(output, "reference.csv", err);
     if (!file)
         return err->status;
-    fprintf(file, "time_ms,acceleration_measured_g,acceleration_cfc%.0f_g\n", figures->cfc);
-    for (int64_t i = 0; i < measured->count; i++) {
-        double time = measured->time[i] + comparison->shift;
-        fprintf(file, "%.9g,%.9g,", time * 1e3, measured->value[i]);
+    fprintf(file, "time_ms,acceleration_measured_g,acceleration_cfc%.0f_g,acceleration_measured_raw_g\n",
+            figures->cfc);
+    for (int64_t i = 0; i < raw->count; i++) {
+        double time = raw->time[i] + comparison->shift;
+        fprintf(file, "%.9g,%.9g,", time * 1e3, sf_series_at(&comparison->measured, raw->time[i]));
         if (time >= model->time[0] && time <= model->time[model->count - 1])
             fprintf(file, "%.9g", sf_series_at(model, time));
-        fputc('\n', file);
+        fprintf(file, ",%.9g\n", raw->value[i]);
     }
     return sf_staging_close(file, "reference.csv", err);
 }

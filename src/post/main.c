@@ -28,7 +28,10 @@ enum {
     KEY_SHIFT,
     KEY_STRICT,
     KEY_LIMIT_G,
-    KEY_LIMIT_HIC
+    KEY_LIMIT_HIC,
+    KEY_REFERENCE_FILTER,
+    KEY_REFERENCE_COLUMN,
+    KEY_REFERENCE_INVERT
 };
 
 typedef struct options {
@@ -57,15 +60,15 @@ typedef struct job {
     char plot_warning[512];
 } job;
 
-static sf_status parse_filter(const char *text, double *cfc, sf_error *err) {
+static sf_status parse_filter(const char *option, const char *text, double *cfc, sf_error *err) {
     static const double classes[] = {60, 180, 600, 1000};
     char *end;
     *cfc = strtod(text, &end);
     for (size_t k = 0; k < sizeof classes / sizeof classes[0]; k++)
         if (end != text && *end == '\0' && *cfc == classes[k])
             return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT, "--filter %s: the channel frequency classes are 60, 180, 600 and 1000",
-                   text);
+    return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the channel frequency classes are 60, 180, 600 and 1000",
+                   option, text);
 }
 
 static sf_status parse_shift(const char *text, double *shift, sf_error *err) {
@@ -103,11 +106,25 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         parse_limit("--limit-hic", text, &o->limits.hic, &o->err);
         break;
     case KEY_FILTER:
-        parse_filter(text, &o->cfc, &o->err);
+        parse_filter("--filter", text, &o->cfc, &o->err);
         break;
     case KEY_REFERENCE:
-        o->compare.path = text;
+        o->compare.reference.path = text;
         o->comparing = true;
+        break;
+    case KEY_REFERENCE_FILTER:
+        o->compare.reference.cfc = 0;
+        if (strcmp(text, "none") != 0)
+            parse_filter("--reference-filter", text, &o->compare.reference.cfc, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_REFERENCE_COLUMN:
+        o->compare.reference.column = text;
+        o->tuned = true;
+        break;
+    case KEY_REFERENCE_INVERT:
+        o->compare.reference.invert = true;
+        o->tuned = true;
         break;
     case KEY_WINDOW:
         sf_region_parse(text, &o->compare.window, &o->err);
@@ -152,9 +169,17 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         {"limit-g", KEY_LIMIT_G, "G", 0, "limit of a_max in g (default 200)", 0},
         {"limit-hic", KEY_LIMIT_HIC, "HIC", 0, "limit of HIC (default 1000)", 0},
         {"reference", KEY_REFERENCE, "CSV", 0,
-         "compare with a measured curve: columns time_ms (or _s, _us) and acceleration_g (or _m_s2)", 1},
+         "compare with a measured curve: columns such as time_ms and acceleration_g, or \"Time (ms)\" and "
+         "\"Acceleration (m/s2)\"; separators , ; tab or blanks",
+         1},
+        {"reference-filter", KEY_REFERENCE_FILTER, "CFC", 0,
+         "filter of the measured curve: none if the file is filtered already (default: that of --filter)", 1},
+        {"reference-column", KEY_REFERENCE_COLUMN, "NAME", 0,
+         "heading of its acceleration, if several columns could be", 1},
+        {"reference-invert", KEY_REFERENCE_INVERT, NULL, 0,
+         "its channel is inverted: positive must mean that the missile is slowed down", 1},
         {"window", KEY_WINDOW, "A,B", 0,
-         "compare over A to B ms of the measured time (default: its HIC window)", 1},
+         "compare over A to B ms of the measured time (default: its HIC window); within the data", 1},
         {"regions", KEY_REGIONS, "A-B,C-D,...", 0,
          "compare over these regions too, in ms of the measured time", 1},
         {"shift", KEY_SHIFT, "MS", 0, "model time = measured time + MS (default: align the contacts)", 1},
@@ -172,13 +197,21 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     argp_program_version_hook = print_version;
     *o = (options){.cfc = 1000,
                    .limits = SF_DEFAULT_LIMITS,
-                   .compare = {.shift = NAN, .window = {NAN, NAN}},
+                   .compare = {.reference = {.cfc = NAN,
+                                             .column_option = "--reference-column",
+                                             .unfiltered_option = "--reference-filter none",
+                                             .invert_option = "--reference-invert"},
+                               .shift = NAN,
+                               .window = {NAN, NAN}},
                    .err = SF_ERROR_INIT};
     if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
         return SF_FAIL(&o->err, SF_ERR_INPUT, "the command line cannot be read");
     o->compare.regions = o->regions;
+    if (isnan(o->compare.reference.cfc))
+        o->compare.reference.cfc = o->cfc;
     if (o->tuned && !o->comparing)
-        return SF_FAIL(&o->err, SF_ERR_INPUT, "--window, --regions and --shift need --reference");
+        return SF_FAIL(&o->err, SF_ERR_INPUT,
+                       "--window, --regions, --shift and --reference-... need --reference");
     return o->err.status;
 }
 
@@ -203,8 +236,8 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
     if (!section)
         fprintf(stderr,
                 "softfall-post: warning: no frame holds the von Mises stress at the peak: no section.csv\n");
-    const sf_summary summary = {o->results_path, o->compare.path, &j->results,
-                                &j->figures,     comparison,      &j->verdict};
+    const sf_summary summary = {
+        o->results_path, o->compare.reference.path, &j->results, &j->figures, comparison, &j->verdict};
     if (sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
         return err->status;
     sf_summary_print(stdout, &summary);
@@ -257,7 +290,9 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     if (o->comparing && !j->figures.touched)
         return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile never touched the pad",
                        o->results_path);
-    if (o->comparing && sf_compare_run(&o->compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
+    sf_compare_options compare = o->compare;
+    compare.left = j->figures.rebounded;
+    if (o->comparing && sf_compare_run(&compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
         return err->status;
     sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);
     if (write_output(o, j, err) != SF_OK)

@@ -99,6 +99,9 @@ static void put_verdict(sf_json *json, const sf_verdict *v) {
 static void put_comparison(sf_json *json, const char *path, const sf_comparison *c) {
     sf_json_open(json, "reference", '{');
     sf_json_text(json, "file", path);
+    sf_json_text(json, "understood", c->understood);
+    sf_json_number(json, "cfc", c->cfc > 0 ? c->cfc : NAN);
+    sf_json_bool(json, "inverted", c->inverted);
     sf_json_number(json, "shift_ms", c->shift * 1e3);
     sf_json_text(json, "shift_from", c->shift_given ? "command line" : "contact of both curves");
     sf_json_number(json, "a_max_g", c->injury.a_max_g);
@@ -117,6 +120,7 @@ static void put_comparison(sf_json *json, const char *path, const sf_comparison 
         sf_json_number(json, "last_sample_ms", fit->last * 1e3);
         sf_json_number(json, "interval_ms", fit->interval * 1e3);
         sf_json_integer(json, "samples", fit->count);
+        sf_json_integer(json, "samples_in_free_flight", fit->flight);
         sf_json_number(json, "r2", fit->r2);
         sf_json_number(json, "rmse_g", fit->rmse_g);
         sf_json_close(json, '}');
@@ -208,7 +212,7 @@ static void print_cell(FILE *out, double value, int width, int digits) {
 }
 
 static void print_comparison(FILE *out, const char *path, const sf_comparison *c) {
-    fprintf(out, "Compared with %s\n", path);
+    fprintf(out, "Compared with\nreference %s: %s\n", path, c->understood);
     fprintf(out, "  measured a_max %.2f g (model %+.1f %%), HIC %.1f\n", c->injury.a_max_g,
             c->peak_error * 100, c->injury.hic.value);
     fprintf(out, "  model time = measured time %+.4f ms (%s)\n", c->shift * 1e3,
@@ -222,6 +226,9 @@ static void print_comparison(FILE *out, const char *path, const sf_comparison *c
         fprintf(out, "  %-24s %8.2f %8lld", span, fit->interval * 1e3, (long long)fit->count);
         print_cell(out, fit->r2, 8, 4);
         print_cell(out, fit->rmse_g, 10, 3);
+        if (fit->flight > 0)
+            fprintf(out, "   %lld of them beyond the model's curve: free flight, 0 g",
+                    (long long)fit->flight);
         fputc('\n', out);
     }
 }

@@ -75,12 +75,20 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
     return SF_OK;
 }
 
+static void print_tests(const sf_compression_config *config) {
+    for (int k = 0; k < config->test_count; k++)
+        printf("test %s: %s\n", config->test[k].path, config->test[k].understood);
+    fflush(stdout);
+}
+
 static sf_status run(const options *o, sf_error *err) {
     sf_compression_config config = {0};
     sf_compression_fit fit = {0};
     const sf_sink sink = sf_program_sink("softfall-fit");
-    if (sf_compression_config_read(o->path, &config, err) == SF_OK &&
-        sf_compression_fit_run(&config, &fit, err) == SF_OK)
+    if (sf_compression_config_read(o->path, &config, err) != SF_OK)
+        return err->status;
+    print_tests(&config);
+    if (sf_compression_fit_run(&config, &fit, err) == SF_OK)
         sf_compression_output(&fit, o->path, o->directory, o->force, &o->cube, &sink, err);
     sf_compression_fit_free(&fit);
     sf_compression_config_free(&config);

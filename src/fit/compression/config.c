@@ -14,17 +14,40 @@ const char *sf_rate_model_name(sf_rate_model model) {
     return RATE_MODELS[model];
 }
 
-static sf_status read_specimen(const sf_config *file, const config_setting_t *root, sf_compression_config *c,
-                               sf_error *err) {
-    const config_setting_t *group = config_setting_get_member(root, "specimen");
+static const double PI = 3.14159265358979323846;
+
+/* One shape of the pressed face. */
+static sf_status check_shape(const sf_config *file, const config_setting_t *group, sf_compression_specimen *s,
+                             sf_error *err) {
+    if ((s->side > 0) + (s->diameter > 0) + (s->area > 0) > 1 || (s->width > 0 && !(s->side > 0)))
+        return sf_config_refuse(
+            file, group, err, "specimen: give side (with width, if the face is no square), diameter or area");
+    if (s->side > 0)
+        s->area = s->side * (s->width > 0 ? s->width : s->side);
+    if (s->diameter > 0)
+        s->area = PI / 4 * s->diameter * s->diameter;
+    return SF_OK;
+}
+
+/* Replaces the default of the tests, if the group is there. */
+static sf_status read_specimen(const sf_config *file, const config_setting_t *parent,
+                               sf_compression_specimen *specimen, sf_error *err) {
+    const config_setting_t *group = config_setting_get_member(parent, "specimen");
+    sf_compression_specimen s = {0};
     if (!group)
         return SF_OK;
     if (!config_setting_is_group(group))
         return sf_config_refuse(file, group, err,
                                 "specimen must be a group { side = \"50 mm\"; thickness = \"50 mm\"; }");
-    SF_TRY(sf_config_names(file, group, "side|thickness", err));
-    SF_TRY(sf_config_quantity(file, group, "side", SF_LENGTH, false, 0, &c->side, err));
-    return sf_config_quantity(file, group, "thickness", SF_LENGTH, false, 0, &c->thickness, err);
+    SF_TRY(sf_config_names(file, group, "side|width|diameter|area|thickness", err));
+    SF_TRY(sf_config_quantity(file, group, "side", SF_LENGTH, false, 0, &s.side, err));
+    SF_TRY(sf_config_quantity(file, group, "width", SF_LENGTH, false, 0, &s.width, err));
+    SF_TRY(sf_config_quantity(file, group, "diameter", SF_LENGTH, false, 0, &s.diameter, err));
+    SF_TRY(sf_config_quantity(file, group, "area", SF_AREA, false, 0, &s.area, err));
+    SF_TRY(sf_config_quantity(file, group, "thickness", SF_LENGTH, false, 0, &s.thickness, err));
+    SF_TRY(check_shape(file, group, &s, err));
+    *specimen = s;
+    return SF_OK;
 }
 
 /* ---- tests ---- */
@@ -48,17 +71,53 @@ static void insert_test(sf_compression_config *c, const sf_compression_test *tes
     c->test[at] = *test;
 }
 
+/* A strain rate, or the crosshead's speed over the thickness. */
+static sf_status read_rate(const sf_config *file, const config_setting_t *entry, double thickness,
+                           double *rate, sf_error *err) {
+    const config_setting_t *setting = config_setting_get_member(entry, "rate");
+    const char *text = setting ? config_setting_get_string(setting) : NULL;
+    sf_error no_speed = SF_ERROR_INIT;
+    double speed = 0;
+    if (!text || sf_units_parse(file->units, text, SF_SPEED, &speed, &no_speed) != SF_OK)
+        return sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, rate, err);
+    if (!(speed > 0))
+        return sf_config_refuse(file, setting, err, "rate is %s; the speed must be above 0", text);
+    if (!(thickness > 0))
+        return sf_config_refuse(
+            file, setting, err,
+            "rate is a speed (%s): give the specimen's thickness, for example specimen = { "
+            "thickness = \"50 mm\"; }",
+            text);
+    *rate = speed / thickness;
+    return SF_OK;
+}
+
+static sf_status read_source(const sf_config *file, const config_setting_t *entry,
+                             const sf_compression_config *c, sf_compression_source *source, sf_error *err) {
+    sf_compression_specimen specimen = c->specimen;
+    int invert = SF_INVERT_NONE;
+    *source = (sf_compression_source){.toe = c->toe};
+    SF_TRY(sf_config_names(file, entry, "file|rate|specimen|toe_correction|invert", err));
+    SF_TRY(read_specimen(file, entry, &specimen, err));
+    SF_TRY(read_rate(file, entry, specimen.thickness, &source->rate, err));
+    SF_TRY(sf_config_flag(file, entry, "toe_correction", &source->toe, err));
+    SF_TRY(sf_config_choice(file, entry, "invert", "none|strain|stress|both", &invert, err));
+    source->invert = (sf_inversion)invert;
+    source->area = specimen.area;
+    source->thickness = specimen.thickness;
+    return check_rate(file, entry, source->rate, c, err);
+}
+
 static sf_status read_test(const sf_config *file, const config_setting_t *entry, sf_compression_config *c,
                            sf_error *err) {
     sf_compression_test test;
     sf_error inner = SF_ERROR_INIT;
     char *path = NULL;
-    double rate = 0;
-    if (sf_config_names(file, entry, "file|rate", err) == SF_OK &&
-        sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, &rate, err) == SF_OK &&
-        check_rate(file, entry, rate, c, err) == SF_OK &&
+    sf_compression_source source;
+    if (read_source(file, entry, c, &source, err) == SF_OK &&
         sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
-        if (sf_compression_test_read(path, rate, &test, &inner) != SF_OK)
+        source.path = path;
+        if (sf_compression_test_read(&source, &test, &inner) != SF_OK)
             SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
                     config_setting_source_line(entry));
         else
@@ -97,7 +156,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
     int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
     SF_TRY(sf_config_names(file, root,
                            "name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
-                           "confidence|specimen",
+                           "confidence|specimen|toe_correction",
                            err));
     SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err));
     SF_TRY(read_name(file, root, c, err));
@@ -108,7 +167,8 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
         sf_config_number(file, root, "densification_start", false, 0.05, 0.98, &c->densification_start, err));
     SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err));
     SF_TRY(sf_config_choice(file, root, "densification", RULE_WORDS, &rule, err));
-    SF_TRY(read_specimen(file, root, c, err));
+    SF_TRY(sf_config_flag(file, root, "toe_correction", &c->toe, err));
+    SF_TRY(read_specimen(file, root, &c->specimen, err));
     c->rate_model = (sf_rate_model)model;
     c->rule = (sf_rule_choice)rule;
     return read_tests(file, root, c, err);

@@ -20,14 +20,23 @@ typedef enum sf_rate_model {
 
 typedef enum sf_rule_choice { SF_RULE_AUTO, SF_RULE_H1, SF_RULE_H1_AUTOMATIC, SF_RULE_H2 } sf_rule_choice;
 
+/* A cuboid or a cylinder; 0: not said. */
+typedef struct sf_compression_specimen {
+    double side, width; /* m, edges of the pressed face; width 0: square */
+    double diameter;    /* m */
+    double area;        /* m2, from the others unless given */
+    double thickness;   /* m, along the load */
+} sf_compression_specimen;
+
 typedef struct sf_compression_config {
-    char name[SF_COMPRESSION_NAME]; /* of the material; begins a heading */
-    double density;                 /* kg m-3 */
-    double damp;                    /* -, DAMP, written through */
-    double modulus_range;           /* -, E is the slope below this strain */
-    double densification_start;     /* -, strain from which the densification law holds; 0 = chosen */
-    double confidence;              /* -, of the intervals */
-    double side, thickness;         /* m, of the specimen; 0 = not said */
+    char name[SF_COMPRESSION_NAME];   /* of the material; begins a heading */
+    double density;                   /* kg m-3 */
+    double damp;                      /* -, DAMP, written through */
+    double modulus_range;             /* -, E is the slope below this strain */
+    double densification_start;       /* -, strain from which the densification law holds; 0 = chosen */
+    double confidence;                /* -, of the intervals */
+    sf_compression_specimen specimen; /* of the tests without one of their own */
+    bool toe;                         /* correct the toe of the tests that do not say otherwise */
     sf_rate_model rate_model;
     sf_rule_choice rule;
     int test_count;

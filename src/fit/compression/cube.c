@@ -47,11 +47,14 @@ static sf_status write_motion(const char *path, double displacement, double turn
 }
 
 static sf_status check_specimen(const sf_compression_config *c, sf_error *err) {
-    if (!(c->side > 0 && fabs(c->side - c->thickness) <= 1e-9 * c->side))
+    bool square =
+        !(c->specimen.width > 0) || fabs(c->specimen.width - c->specimen.side) <= 1e-9 * c->specimen.side;
+    if (!(square && c->specimen.side > 0 &&
+          fabs(c->specimen.side - c->specimen.thickness) <= 1e-9 * c->specimen.side))
         return SF_FAIL(err, SF_ERR_INPUT,
                        "the simulated specimen is a cube: give specimen = { side = \"50 mm\"; thickness = "
                        "\"50 mm\"; } with equal lengths (they are %g mm and %g mm)",
-                       1e3 * c->side, 1e3 * c->thickness);
+                       1e3 * c->specimen.side, 1e3 * c->specimen.thickness);
     return SF_OK;
 }
 
@@ -136,8 +139,8 @@ static sf_status simulate(const sf_compression_fit *fit, const sf_foam_card *car
     snprintf(motion, sizeof motion, "%s/%s-motion.csv", real, name);
     snprintf(material, sizeof material, "%s/%s.cfg", real, name);
     snprintf(moved, sizeof moved, "missile.motion=%s", motion);
-    snprintf(side, sizeof side, "geometry.parameters.side=%.12g", 1e3 * c->side);
-    snprintf(spacing, sizeof spacing, "geometry.parameters.spacing=%.12g", 1e3 * c->side / CELLS);
+    snprintf(side, sizeof side, "geometry.parameters.side=%.12g", 1e3 * c->specimen.side);
+    snprintf(spacing, sizeof spacing, "geometry.parameters.spacing=%.12g", 1e3 * c->specimen.side / CELLS);
     snprintf(end, sizeof end, "solver.end_time=%.12g s", 2 * turn_time);
     sf_runner runner = {.folder = real, .threads = 1};
     sf_runner_drop drop = {.label = name,
@@ -150,7 +153,7 @@ static sf_status simulate(const sf_compression_fit *fit, const sf_foam_card *car
         drop.overrides[drop.override_count++] = friction;
     }
     sf_runner_result result;
-    if (write_motion(motion, lab->largest_strain * c->side, turn_time, err) != SF_OK ||
+    if (write_motion(motion, lab->largest_strain * c->specimen.side, turn_time, err) != SF_OK ||
         sf_material_write(real, name, &quick, &text, err) != SF_OK ||
         sf_runner_run(&runner, &drop, &result, err) != SF_OK)
         return err->status;

@@ -9,9 +9,9 @@
 static void put_tests(FILE *out, const sf_compression_fit *fit, const sf_compression_check *check) {
     const sf_compression_config *c = fit->data.config;
     fputs("## Tests\n\n", out);
-    if (c->side > 0 && c->thickness > 0)
-        fprintf(out, "Specimen %.4g mm x %.4g mm, %.4g mm thick, %.4g kg/m3.\n\n", 1e3 * c->side,
-                1e3 * c->side, 1e3 * c->thickness, c->density);
+    if (c->specimen.area > 0 && c->specimen.thickness > 0)
+        fprintf(out, "Specimen of %.5g mm2, %.4g mm thick, %.4g kg/m3.\n\n", 1e6 * c->specimen.area,
+                1e3 * c->specimen.thickness, c->density);
     fputs("Deviation: root mean square of data less fit, over the scatter (1: nothing but scatter) and in "
           "percent of the stress (counted as a hundredth of the largest at least).\n\n"
           "| file | rate (1/s) | points, loading + unloading | largest strain | largest stress (kPa) | "
@@ -31,6 +31,9 @@ static void put_tests(FILE *out, const sf_compression_fit *fit, const sf_compres
                     fprintf(out, " %.3g |", numbers[n][side]);
         fputc('\n', out);
     }
+    fputs("\nHow the files were read:\n\n", out);
+    for (int k = 0; k < c->test_count; k++)
+        fprintf(out, "- %s: %s\n", c->test[k].path, c->test[k].understood);
 }
 
 static void put_parameters(FILE *out, const sf_compression_fit *fit) {

@@ -4,6 +4,7 @@
 #include "case/curve.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,12 @@ static const double SLACK = 0.005;      /* part of the largest stress that scatt
 static const double FALL = 0.1;         /* part of the stress that may be lost while loading */
 static const double ABOVE = 0.05;       /* part by which unloading may lie above loading */
 
+/* Of the toe correction. */
+static const double TOE_RANGE = 0.15;  /* strain up to which the steepest part is looked for */
+static const double TOE_WIDTH = 0.01;  /* strain of that part, with TOE_POINTS points at least */
+static const double TOE_LARGEST = 0.1; /* strain that it may take away */
+enum { TOE_POINTS = 5 };
+
 void sf_compression_test_free(sf_compression_test *test) {
     free(test->path);
     free(test->strain);
@@ -25,49 +32,182 @@ void sf_compression_test_free(sf_compression_test *test) {
 
 /* ---- reading ---- */
 
-/* Checks of a single row; messages quote the cells as written. */
-static sf_status check_row(const sf_table_point *p, sf_error *err) {
-    bool fraction = p->value[0] == strtod(p->text[0], NULL);
-    if (p->value[0] >= 1 && fraction)
+/* How the file names and scales the two quantities, for messages in its own terms. */
+typedef struct table_terms {
+    const char *name[2];
+    double scale[2]; /* from the file's units to strain and Pa */
+} table_terms;
+
+static sf_table_layout machine_layout(void) {
+    static const sf_table_name names[] = {{"displacement_m", 0, 1, "m"},
+                                          {"displacement_mm", 0, 1e-3, "mm"},
+                                          {"force_N", 1, 1, "N"},
+                                          {"force_kN", 1, 1e3, "kN"}};
+    return (sf_table_layout){
+        .what = "test",
+        .column = {"displacement", "force"},
+        .wanted = {"\"displacement_mm\"", "\"force_N\""},
+        .names = names,
+        .name_count = sizeof names / sizeof *names,
+        .words =
+            {"displacement|extension|crosshead|position|travel|stroke|deformation|deflection|compression|*weg|"
+             "*verformung|*stauchung|desplazamiento|déplacement|spostamento",
+             "force|load|f|*kraft|fuerza|carga|forza|carico"},
+        .kind = {SF_LENGTH, SF_FORCE},
+    };
+}
+
+/* Displacement and force become strain and stress. */
+static sf_status take_terms(const sf_compression_source *source, bool machine, const sf_table *table,
+                            table_terms *t, sf_error *err) {
+    *t = (table_terms){{"strain", "stress"}, {table->scale[0], table->scale[1]}};
+    if (!machine)
+        return SF_OK;
+    if (!(source->area > 0) || !(source->thickness > 0))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s holds displacement and force: give the specimen, for example specimen = { side = \"50 "
+            "mm\"; thickness = \"50 mm\"; } (or diameter, or area)",
+            source->path);
+    *t = (table_terms){{"displacement", "force"},
+                       {table->scale[0] / source->thickness, table->scale[1] / source->area}};
+    return SF_OK;
+}
+
+/* Checks of a single row. */
+static sf_status check_row(const sf_compression_test *t, int i, const table_terms *terms, sf_error *err) {
+    double strain = t->strain[i], written = strain / terms->scale[0];
+    const char *name = terms->name[0];
+    if (strain >= 1 && terms->scale[0] == 1)
         return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s:%d: strain %s is not below 1; if it is in percent, name the column strain_percent",
-                       p->path, p->line, p->text[0]);
-    if (p->value[0] >= 1)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: strain %s %% is not below 100 %%", p->path, p->line,
-                       p->text[0]);
-    if (p->value[0] < -STRAIN_ZERO)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: strain %s is negative; compression must be positive",
-                       p->path, p->line, p->text[0]);
+                       "%s:%d: strain %g is not below 1; if it is in percent, name the column strain_percent",
+                       t->path, t->line[i], written);
+    if (strain >= 1)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s %g means a strain of %g %%, which is not below 100 %%",
+                       t->path, t->line[i], name, written, 100 * strain);
+    if (strain < -STRAIN_ZERO)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s:%d: %s %g is negative; compression must be positive (invert = \"...\" in the file that "
+            "names the test changes the sign)",
+            t->path, t->line[i], name, written);
     return SF_OK;
 }
 
 /* The table's arrays become the test's. */
-static void take_table(sf_table *table, sf_compression_test *t) {
+static sf_status take_table(const sf_compression_source *source, const table_terms *terms, sf_table *table,
+                            sf_compression_test *t, sf_error *err) {
     t->count = (int)table->count;
     t->strain = table->value[0];
     t->stress = table->value[1];
     t->line = table->line;
     table->value[0] = table->value[1] = NULL;
     table->line = NULL;
+    double factor[2] = {terms->scale[0] / table->scale[0], terms->scale[1] / table->scale[1]};
+    factor[0] *= source->invert & SF_INVERT_STRAIN ? -1 : 1;
+    factor[1] *= source->invert & SF_INVERT_STRESS ? -1 : 1;
     for (int i = 0; i < t->count; i++) {
+        t->strain[i] *= factor[0];
+        t->stress[i] *= factor[1];
+        if (check_row(t, i, terms, err) != SF_OK)
+            return err->status;
         t->largest_strain = fmax(t->largest_strain, t->strain[i]);
         t->largest_stress = fmax(t->largest_stress, t->stress[i]);
     }
+    return SF_OK;
+}
+
+/* ---- toe ---- */
+
+/* Straight line through the points first to last of a branch: slope, and strain at zero stress. */
+static double line_through(const sf_compression_test *t, int first, int last, double *zero) {
+    double n = last - first + 1, strain = 0, stress = 0, product = 0, square = 0;
+    for (int i = first; i <= last; i++) {
+        strain += t->strain[i] / n;
+        stress += t->stress[i] / n;
+    }
+    for (int i = first; i <= last; i++) {
+        product += (t->strain[i] - strain) * (t->stress[i] - stress);
+        square += (t->strain[i] - strain) * (t->strain[i] - strain);
+    }
+    double slope = square > 0 ? product / square : 0;
+    *zero = slope > 0 ? strain - stress / slope : 0;
+    return slope;
+}
+
+/* The window of loading, below TOE_RANGE, in which the stress rises most steeply. False without a window. */
+static bool steepest(const sf_compression_test *t, int *first, int *last, double *zero, bool *at_end) {
+    double best = 0;
+    for (int i = 0, k = 0; i < t->loading && t->strain[i] <= TOE_RANGE; i++) {
+        double crossing;
+        while (k < t->loading - 1 && (t->strain[k] < t->strain[i] + TOE_WIDTH || k < i + TOE_POINTS - 1))
+            k++;
+        if (k < i + TOE_POINTS - 1 || t->strain[k] > TOE_RANGE)
+            break;
+        double slope = line_through(t, i, k, &crossing);
+        *at_end = slope > best || (*at_end && slope >= best);
+        if (slope > best) {
+            best = slope;
+            *first = i;
+            *last = k;
+            *zero = crossing;
+        }
+    }
+    return best > 0;
+}
+
+/* Removes points of the toe and shifts the strain. */
+static void shift_zero(sf_compression_test *t, int first, double zero) {
+    int to = 0, loading = 0;
+    for (int i = first; i < t->count; i++) {
+        if (t->strain[i] < zero)
+            continue;
+        t->strain[to] = t->strain[i] - zero;
+        t->stress[to] = t->stress[i];
+        t->line[to++] = t->line[i];
+        loading += i < t->loading;
+    }
+    t->count = to;
+    t->loading = loading;
+    t->toe = zero;
+    t->largest_strain -= zero;
+}
+
+static sf_status correct_toe(sf_compression_test *t, sf_error *err) {
+    int first = 0, last = 0;
+    double zero = 0;
+    bool at_end = false;
+    if (!steepest(t, &first, &last, &zero, &at_end) || at_end)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: the toe cannot be corrected: loading has no steepest straight part below a strain of "
+            "%g %% (leave toe_correction out)",
+            t->path, 100 * TOE_RANGE);
+    if (zero > TOE_LARGEST)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: the toe correction would be a strain of %.3g %%, more than %g %%: cut the approach off "
+            "the file",
+            t->path, 100 * zero, 100 * TOE_LARGEST);
+    if (zero > 0)
+        shift_zero(t, first, zero);
+    return SF_OK;
 }
 
 /* ---- checks of the whole ---- */
 
 /* Loading lasts until the strain first falls. */
-static sf_status split_branches(sf_compression_test *t, double scale, sf_error *err) {
+static sf_status split_branches(sf_compression_test *t, const table_terms *terms, sf_error *err) {
     t->loading = t->count > 0;
     while (t->loading < t->count && t->strain[t->loading] >= t->strain[t->loading - 1])
         t->loading++;
     for (int i = t->loading + 1; i < t->count; i++)
         if (t->strain[i] > t->strain[i - 1])
             return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s:%d: strain %g rises again after it began to fall at line %d; a file holds one "
+                           "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one "
                            "loading and then one unloading",
-                           t->path, t->line[i], t->strain[i] / scale, t->line[t->loading]);
+                           t->path, t->line[i], terms->name[0], t->strain[i] / terms->scale[0],
+                           t->line[t->loading]);
     return SF_OK;
 }
 
@@ -89,7 +229,7 @@ static sf_status check_size(const sf_compression_test *t, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status check_sign(const sf_compression_test *t, double scale, sf_error *err) {
+static sf_status check_sign(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
     double size = 0;
     for (int i = 0; i < t->count; i++)
         size = fmax(size, fabs(t->stress[i]));
@@ -99,20 +239,21 @@ static sf_status check_sign(const sf_compression_test *t, double scale, sf_error
         if (t->stress[i] < -STRESS_ZERO * size)
             return SF_FAIL(
                 err, SF_ERR_INPUT,
-                "%s:%d: stress %g is negative, beyond the scatter about zero; compression must be positive",
-                t->path, t->line[i], t->stress[i] / scale);
+                "%s:%d: %s %g is negative, beyond the scatter about zero; compression must be positive (invert = \"...\" in the file that names the test changes the sign)",
+                t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1]);
     return SF_OK;
 }
 
-static sf_status check_loading(const sf_compression_test *t, double scale, sf_error *err) {
+static sf_status check_loading(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
     double highest = 0;
     int where = 0;
     for (int i = 0; i < t->loading; i++) {
         if (t->stress[i] < (1 - FALL) * highest - SLACK * t->largest_stress)
             return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s:%d: stress %g has fallen by more than a tenth from %g at line %d while "
+                           "%s:%d: %s %g has fallen by more than a tenth from %g at line %d while "
                            "loading; the foam law rises",
-                           t->path, t->line[i], t->stress[i] / scale, highest / scale, t->line[where]);
+                           t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1],
+                           highest / terms->scale[1], t->line[where]);
         if (t->stress[i] > highest) {
             highest = t->stress[i];
             where = i;
@@ -135,23 +276,28 @@ static double loading_stress(const sf_compression_test *t, double strain) {
     return t->stress[low] + part * (t->stress[high] - t->stress[low]);
 }
 
-static sf_status check_unloading(const sf_compression_test *t, double scale, sf_error *err) {
+static sf_status check_unloading(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
     for (int i = t->loading; i < t->count; i++) {
         double loading = loading_stress(t, t->strain[i]);
         if (t->stress[i] > (1 + ABOVE) * loading + SLACK * t->largest_stress)
             return SF_FAIL(
                 err, SF_ERR_INPUT,
-                "%s:%d: unloading stress %g lies above the loading stress %g at the same strain %g", t->path,
-                t->line[i], t->stress[i] / scale, loading / scale, t->strain[i]);
+                "%s:%d: %s %g of unloading lies above the loading stress (%g in its unit) at the same strain %g",
+                t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1],
+                loading / terms->scale[1], t->strain[i]);
     }
     return SF_OK;
 }
 
-static sf_status check_test(sf_compression_test *t, const double scale[2], sf_error *err) {
-    if (split_branches(t, scale[0], err) != SF_OK || check_size(t, err) != SF_OK ||
-        check_sign(t, scale[1], err) != SF_OK || check_loading(t, scale[1], err) != SF_OK)
-        return err->status;
-    return check_unloading(t, scale[1], err);
+static sf_status check_test(const sf_compression_source *source, sf_compression_test *t,
+                            const table_terms *terms, sf_error *err) {
+    SF_TRY(split_branches(t, terms, err));
+    if (source->toe)
+        SF_TRY(correct_toe(t, err));
+    SF_TRY(check_size(t, err));
+    SF_TRY(check_sign(t, terms, err));
+    SF_TRY(check_loading(t, terms, err));
+    return check_unloading(t, terms, err);
 }
 
 /* Means of `group` neighbours from `first` up to `end`, written from `to` on; returns the place after them.
@@ -180,16 +326,37 @@ static void condense(sf_compression_test *t) {
     t->loading = loading;
 }
 
-sf_status sf_compression_test_read(const char *path, double rate, sf_compression_test *test, sf_error *err) {
-    *test = (sf_compression_test){.path = strdup(path), .rate = rate};
-    const sf_table_layout layout = sf_case_curve_layout("test", check_row);
+/* ---- the whole ---- */
+
+static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
+                     sf_compression_test *t) {
+    static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};
+    char specimen[96] = "", toe[64] = "";
+    if (machine)
+        snprintf(specimen, sizeof specimen, ", over %.5g mm2 and %.5g mm", 1e6 * source->area,
+                 1e3 * source->thickness);
+    if (source->toe)
+        snprintf(toe, sizeof toe, ", toe of %.3g %% taken away", 100 * t->toe);
+    snprintf(t->understood, sizeof t->understood,
+             "%.383s%s, %d points of loading and %d of unloading%s%s, %.4g 1/s", table->understood, specimen,
+             t->loading, t->count - t->loading, inverted[source->invert], toe, t->rate);
+}
+
+sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,
+                                   sf_error *err) {
+    *test = (sf_compression_test){.path = strdup(source->path), .rate = source->rate};
+    const sf_table_layout layouts[2] = {sf_case_curve_layout("test", NULL), machine_layout()};
     sf_table table = {0};
+    table_terms terms;
+    int which;
     if (!test->path)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
-    if (sf_table_read(path, &layout, &table, err) == SF_OK) {
-        take_table(&table, test);
-        if (check_test(test, table.scale, err) == SF_OK)
-            condense(test);
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", source->path);
+    if (sf_table_read_any(source->path, layouts, 2, &which, &table, err) == SF_OK &&
+        take_terms(source, which == 1, &table, &terms, err) == SF_OK &&
+        take_table(source, &terms, &table, test, err) == SF_OK &&
+        check_test(source, test, &terms, err) == SF_OK) {
+        describe(source, which == 1, &table, test);
+        condense(test);
     }
     sf_table_free(&table);
     if (err->status != SF_OK)

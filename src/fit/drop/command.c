@@ -68,6 +68,13 @@ static sf_status make_runs(const char *directory, char *runs, sf_error *err) {
     return sf_folder_make(runs, err);
 }
 
+static void print_curves(const sf_fit_input *in) {
+    for (int k = 0; k < in->drop_count; k++)
+        if (in->drop[k].curve_path)
+            printf("reference %s: %s\n", in->drop[k].curve_path, in->drop[k].understood);
+    fflush(stdout);
+}
+
 static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_staging *output,
                      sf_error *err) {
     char runs[PATH_MAX], warning[512] = "";
@@ -82,6 +89,7 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_st
     *fit = (sf_drop_fit){.input = in, .runner = &runner, .folder = runs, .log = stdout};
     printf("softfall-fit drop: %d unknown parameters, %d drops; finished drops are kept in %s\n",
            in->unknown_count, in->drop_count, runs);
+    print_curves(in);
     if (sf_drop_fit_run(fit, err) != SF_OK ||
         sf_drop_report_write(fit, o->input, output, warning, sizeof warning, err) != SF_OK ||
         sf_staging_commit(output, err) != SF_OK)

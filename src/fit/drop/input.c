@@ -17,20 +17,23 @@ static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are 
 /* ---- measured curves ---- */
 
 /* Samples from contact on, where the curve is above the level. */
-static sf_status sample_curve(const char *path, sf_fit_drop *drop, sf_error *err) {
-    sf_series curve = {0};
+static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *drop, sf_error *err) {
+    sf_reference reference;
     double contact = 0, peak = 0;
-    if (sf_reference_read(path, &curve, err) != SF_OK ||
-        sf_contact_instant(&curve, path, &contact, err) != SF_OK)
+    if (sf_reference_read(options, &reference, err) != SF_OK)
+        return err->status;
+    const sf_series *curve = &reference.curve;
+    snprintf(drop->understood, sizeof drop->understood, "%s", reference.understood);
+    if (sf_contact_instant(curve, options->path, &contact, err) != SF_OK)
         goto done;
     drop->sample_time = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
     drop->sample_value = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
     if (err->status != SF_OK)
         goto done;
-    for (int64_t k = 0; k < curve.count; k++)
-        peak = fmax(peak, curve.value[k]);
-    for (int k = 1; contact + k * SAMPLE_INTERVAL <= curve.time[curve.count - 1]; k++) {
-        double value = sf_series_at(&curve, contact + k * SAMPLE_INTERVAL);
+    for (int64_t k = 0; k < curve->count; k++)
+        peak = fmax(peak, curve->value[k]);
+    for (int k = 1; contact + k * SAMPLE_INTERVAL <= curve->time[curve->count - 1]; k++) {
+        double value = sf_series_at(curve, contact + k * SAMPLE_INTERVAL);
         if (value < SAMPLE_LEVEL * peak || drop->samples == SF_FIT_CURVE_SAMPLES)
             continue;
         drop->sample_time[drop->samples] = k * SAMPLE_INTERVAL;
@@ -38,8 +41,31 @@ static sf_status sample_curve(const char *path, sf_fit_drop *drop, sf_error *err
     }
     drop->sample_scale = peak;
 done:
-    sf_series_free(&curve);
+    sf_reference_free(&reference);
     return err->status;
+}
+
+/* The measured curve of a drop, filtered like the simulated one unless the file says otherwise. */
+static sf_status read_curve(const sf_config *config, const config_setting_t *group, sf_fit_drop *drop,
+                            sf_error *err) {
+    static const double classes[] = {0, 60, 180, 600, 1000};
+    sf_reference_options o = {.column_option = "curve_column = \"...\"",
+                              .unfiltered_option = "curve_filter = \"none\"",
+                              .invert_option = "curve_invert = true"};
+    sf_error inner = SF_ERROR_INIT;
+    int class = 4;
+    SF_TRY(sf_config_choice(config, group, "curve_filter", "none|60|180|600|1000", &class, err));
+    SF_TRY(sf_config_text(config, group, "curve_column", false, &o.column, err));
+    SF_TRY(sf_config_flag(config, group, "curve_invert", &o.invert, err));
+    SF_TRY(sf_config_file(config, group, "curve", false, &drop->curve_path, err));
+    if (!drop->curve_path)
+        return SF_OK;
+    o.path = drop->curve_path;
+    o.cfc = classes[class];
+    if (sample_curve(&o, drop, &inner) != SF_OK)
+        return SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
+                       config_setting_source_line(group));
+    return SF_OK;
 }
 
 /* ---- drops ---- */
@@ -66,7 +92,6 @@ static sf_status name_drop(const sf_config *config, const config_setting_t *grou
 
 static sf_status read_measurement(const sf_config *config, const config_setting_t *group, sf_fit_drop *drop,
                                   sf_error *err) {
-    char *curve = NULL;
     drop->a_max_sd = 0.02;
     drop->hic_sd = 0.04;
     drop->sample_sd = 0.03;
@@ -76,11 +101,8 @@ static sf_status read_measurement(const sf_config *config, const config_setting_
         sf_config_number(config, group, "a_max_sd", false, 1e-4, 1, &drop->a_max_sd, err) != SF_OK ||
         sf_config_number(config, group, "HIC_sd", false, 1e-4, 1, &drop->hic_sd, err) != SF_OK ||
         sf_config_number(config, group, "curve_sd", false, 1e-4, 1, &drop->sample_sd, err) != SF_OK ||
-        sf_config_file(config, group, "curve", false, &curve, err) != SF_OK)
+        read_curve(config, group, drop, err) != SF_OK)
         return err->status;
-    if (curve)
-        sample_curve(curve, drop, err);
-    free(curve);
     if (err->status == SF_OK && isnan(drop->a_max_g) && isnan(drop->hic) && drop->samples == 0)
         sf_config_refuse(config, group, err, "the drop \"%s\" has no a_max_g, no HIC and no curve",
                          drop->name);
@@ -89,8 +111,10 @@ static sf_status read_measurement(const sf_config *config, const config_setting_
 
 static sf_status read_drop(const sf_config *config, const config_setting_t *group, bool predicted,
                            sf_fit_input *in, sf_error *err) {
-    static const char *const names[2] = {"name|case|a_max_g|HIC|speed_sd|a_max_sd|HIC_sd|curve|curve_sd",
-                                         "name|case"};
+    static const char *const names[2] = {
+        "name|case|a_max_g|HIC|speed_sd|a_max_sd|HIC_sd|curve|curve_sd|curve_filter|"
+        "curve_column|curve_invert",
+        "name|case"};
     sf_fit_drop *drop = &in->drop[in->drop_count];
     *drop = (sf_fit_drop){.predicted = predicted, .a_max_g = NAN, .hic = NAN};
     if (sf_config_names(config, group, names[predicted], err) != SF_OK ||
@@ -282,6 +306,7 @@ sf_status sf_fit_input_read(const char *path, sf_fit_input *in, sf_error *err) {
 void sf_fit_input_free(sf_fit_input *in) {
     for (int k = 0; k < in->drop_count; k++) {
         free(in->drop[k].case_path);
+        free(in->drop[k].curve_path);
         free(in->drop[k].sample_time);
         free(in->drop[k].sample_value);
     }

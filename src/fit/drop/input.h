@@ -6,7 +6,7 @@
 
 #include "fit/drop/parameters.h"
 #include "fit/space_mapping.h"
-#include "post/signal.h"
+#include "post/reference.h"
 
 enum { SF_FIT_MAX_DROPS = 24, SF_FIT_MAX_UNKNOWNS = 12, SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
 
@@ -18,11 +18,13 @@ typedef struct sf_fit_drop {
     double a_max_g, hic;     /* measured; NaN: not */
     double speed_sd;         /* relative standard deviation of the case's speed; 0: it is known */
     double a_max_sd, hic_sd; /* relative standard deviations */
-    int samples;             /* of the measured curve; 0: none */
-    double *sample_time;     /* [samples] s after contact; owned */
-    double *sample_value;    /* [samples] g; owned */
-    double sample_sd;        /* of a sample, relative to the measured peak */
-    double sample_scale;     /* g, that peak */
+    char *curve_path;        /* of the measured curve; NULL: none; owned */
+    char understood[SF_REFERENCE_UNDERSTOOD]; /* how it was read */
+    int samples;                              /* of it; 0: none */
+    double *sample_time;                      /* [samples] s after contact; owned */
+    double *sample_value;                     /* [samples] g; owned */
+    double sample_sd;                         /* of a sample, relative to the measured peak */
+    double sample_scale;                      /* g, that peak */
 } sf_fit_drop;
 
 typedef struct sf_fit_input {
