@@ -189,6 +189,140 @@ static void long_branches_are_condensed_to_means(void **state) {
     sf_compression_test_free(&test);
 }
 
+/* ---- machines' files ---- */
+
+/* The good sheet as a machine writes it, of a cylinder of 60 mm and 40 mm height: mm and N, decimal commas,
+ * the units in the second line, both channels with `sign`. */
+static const char *write_machine(const char *name, double sign) {
+    const sheet s = good_sheet(1);
+    const char *path = program_path(&place, name);
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs("\xEF\xBB\xBFPrüfung 7;;\r\nZeit;Standardweg;Standardkraft\r\ns;mm;N\r\n", out);
+    for (int i = 0; i < POINTS + s.unloading; i++) {
+        char row[128];
+        snprintf(row, sizeof row, "%d;%.6f;%.6f\r\n", i, sign * 40 * s.strain[i],
+                 sign * 1e3 * s.stress[i] * M_PI / 4 * 0.06 * 0.06);
+        for (char *c = row; *c; c++)
+            *c = *c == '.' ? ',' : *c;
+        fputs(row, out);
+    }
+    assert_int_equal(fclose(out), 0);
+    return path;
+}
+
+#define MACHINE(more)                                                                                        \
+    "density = \"35 kg/m3\";\ntests = ( { file = \"machine.csv\"; rate = \"40 mm/min\"; " more "} );\n"
+
+static void displacement_and_force_become_strain_and_stress(void **state) {
+    (void)state;
+    static const char *const configs[] = {
+        MACHINE("specimen = { diameter = \"60 mm\"; thickness = \"4 cm\"; }; "),
+        "specimen = { area = \"28.2743339 cm2\"; thickness = \"40 mm\"; };\n" MACHINE("invert = \"both\"; "),
+        "specimen = { side = \"90 mm\"; thickness = \"1 mm\"; };\n" MACHINE(
+            "specimen = { side = \"31.41592654 mm\"; width = \"90 mm\"; thickness = \"40 mm\"; }; "),
+    };
+    const sheet s = good_sheet(1);
+    for (size_t k = 0; k < sizeof configs / sizeof *configs; k++) {
+        sf_compression_config config;
+        sf_error err = SF_ERROR_INIT;
+        write_machine("machine.csv", k == 1 ? -1 : 1);
+        if (sf_compression_config_read(program_write_text(&place, "fit.cfg", configs[k]), &config, &err) !=
+            SF_OK)
+            fail_msg("%zu: %s", k, err.text);
+        const sf_compression_test *t = &config.test[0];
+        assert_relative(t->rate, 1.0 / 60, 1e-9);
+        assert_int_equal(t->count, 2 * POINTS);
+        for (int i = 0; i < t->count; i++) {
+            assert_close(t->strain[i], s.strain[i], 1e-7);
+            assert_close(t->stress[i], 1e3 * s.stress[i], 1e-6 * 1e3 * s.stress[i] + 1e-3);
+        }
+        assert_non_null(strstr(t->understood,
+                               "separator \";\", decimal comma, displacement in mm, force in N, "
+                               "heading in line 2, over 2827.4 mm2 and 40 mm"));
+        sf_compression_config_free(&config);
+    }
+}
+
+static void incomplete_specimens_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *part;
+    } cases[] = {
+        {MACHINE("specimen = { thickness = \"40 mm\"; }; "), "give the specimen"},
+        {MACHINE("specimen = { diameter = \"60 mm\"; }; "), "give the specimen's thickness"},
+        {MACHINE("specimen = { diameter = \"60 mm\"; side = \"5 mm\"; thickness = \"40 mm\"; }; "),
+         "give side (with width, if the face is no square), diameter or area"},
+        {MACHINE("specimen = { diameter = \"60 mm\"; thickness = \"30 mm\"; }; "),
+         "machine.csv:61: displacement 30.41"},
+        {MACHINE("specimen = { diameter = \"60 mm\"; thickness = \"40 mm\"; }; invert = \"strain\"; "),
+         "displacement -0.1947"},
+        {MACHINE("toe_correction = 1; specimen = { area = \"1 cm2\"; thickness = \"40 mm\"; }; "),
+         "toe_correction must be true or false"},
+    };
+    write_machine("machine.csv", 1);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        sf_compression_config config;
+        sf_error err = SF_ERROR_INIT;
+        assert_int_equal(
+            sf_compression_config_read(program_write_text(&place, "fit.cfg", cases[k].text), &config, &err),
+            SF_ERR_INPUT);
+        if (!strstr(err.text, cases[k].part))
+            fail_msg("\"%s\" is expected in: %s", cases[k].part, err.text);
+    }
+}
+
+/* A foam of 400 kPa up to 4 %, whose platens meet only by and by: up to 4 kPa a toe of 2 % closes. */
+static double law_with_plateau(double e) {
+    return e < 0.04 ? 400 * e : 16 + 20 * (e - 0.04) + 300 * pow(e - 0.04, 3);
+}
+
+static const char *write_toe(const char *name) {
+    const char *path = program_path(&place, name);
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs("Strain (%);Stress (kPa)\n", out);
+    for (int i = 0; i <= 300; i++) {
+        double e = 0.002 * i, stress = law_with_plateau(e), open = fmax(0, 1 - stress / 4);
+        fprintf(out, "%.9f;%.9f\n", 100 * (e + 0.02 * (1 - open * open)), stress);
+    }
+    assert_int_equal(fclose(out), 0);
+    return path;
+}
+
+static void toe_is_removed_on_request(void **state) {
+    (void)state;
+    sf_compression_test test;
+    sf_error err = SF_ERROR_INIT;
+    sf_compression_source source = {.path = write_toe("toe.csv"), .rate = 1};
+    assert_int_equal(sf_compression_test_read(&source, &test, &err), SF_OK);
+    assert_close(test.toe, 0, 0);
+    assert_close(test.largest_strain, 0.62, 1e-9);
+    sf_compression_test_free(&test);
+    source.toe = true;
+    assert_int_equal(sf_compression_test_read(&source, &test, &err), SF_OK);
+    assert_close(test.toe, 0.02, 1e-7);
+    assert_close(test.largest_strain, 0.6, 1e-7);
+    assert_in_range(test.loading, 290, 298);
+    for (int i = 0; i < test.count; i++)
+        assert_close(test.stress[i], 1e3 * law_with_plateau(test.strain[i]), 0.1);
+    assert_non_null(strstr(test.understood, "toe of 2 % taken away"));
+    sf_compression_test_free(&test);
+}
+
+static void toe_without_a_straight_part_is_refused(void **state) {
+    (void)state;
+    sf_compression_test test;
+    sf_error err = SF_ERROR_INIT;
+    sheet s = good_sheet(1);
+    for (int i = 0; i < POINTS; i++)
+        s.stress[i] = 300 * s.strain[i] * s.strain[i];
+    s.unloading = 0;
+    assert_int_equal(read_sheet(&s, (sf_compression_source){.rate = 1, .toe = true}, &test, &err),
+                     SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "the toe cannot be corrected"));
+}
+
 /* ---- FIT.cfg ---- */
 
 #define TEST_LIST "tests = ( { file = \"slow.csv\"; rate = \"0.1 1/min\"; } );\n"
@@ -565,6 +699,10 @@ int main(void) {
         cmocka_unit_test(wrong_tests_are_refused_with_their_line),
         cmocka_unit_test(scatter_about_zero_and_percent_are_read),
         cmocka_unit_test(long_branches_are_condensed_to_means),
+        cmocka_unit_test(displacement_and_force_become_strain_and_stress),
+        cmocka_unit_test(incomplete_specimens_are_refused),
+        cmocka_unit_test(toe_is_removed_on_request),
+        cmocka_unit_test(toe_without_a_straight_part_is_refused),
         cmocka_unit_test(wrong_files_are_refused_with_their_line),
         cmocka_unit_test(spline_rows_are_value_slope_and_integral),
         cmocka_unit_test(knots_ascend_and_leave_two_points_between),

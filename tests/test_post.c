@@ -248,6 +248,68 @@ static void reference_adds_fits_and_the_shift(void **state) {
     assert_says(&result, "need --reference");
 }
 
+/* A laboratory's file as it comes, and what it must not be taken for. */
+static void measurements_are_read_filtered_and_not_cut(void **state) {
+    place *p = *state;
+    write_fixture(p, (fixture_options){0});
+    char path[800], arguments[1100];
+    snprintf(path, sizeof path, "%s/lab.csv", p->made.folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("\xEF\xBB\xBFRig 4;;\r\nTime (ms);Acc X (m/s\xC2\xB2);Acc Z (m/s\xC2\xB2)\r\n", file);
+    for (int i = 0; i <= 1200; i++) { /* 20 kHz, with 30 g at 5 kHz */
+        double t = i * 0.05, x = (t - 10) / 40, noise = 30 * sin(M_PI / 2 * i);
+        double a = SF_STANDARD_GRAVITY * (noise + (x > 0 && x < 1 ? 100 * sin(M_PI * x) : 0));
+        fprintf(file, "%d,%02d;%d;%d\r\n", i / 20, i % 20 * 5, (int)round(a), -(int)round(a));
+    }
+    fclose(file);
+    snprintf(arguments, sizeof arguments, "--reference '%s'", path);
+    outcome result = run_post(p, arguments);
+    assert_int_equal(result.code, SF_ERR_INPUT);
+    assert_says(&result, "two acceleration columns");
+    assert_says(&result, "--reference-column");
+
+    snprintf(arguments, sizeof arguments, "--reference '%s' --reference-column 'Acc X' --shift -10", path);
+    result = run_post(p, arguments);
+    assert_int_equal(result.code, 0);
+    assert_says(&result, "lab.csv: separator \";\", decimal comma, time in ms, acceleration in m/s\xC2\xB2");
+    assert_says(&result, "1201 samples at 20 kHz, 0 to 60 ms, filtered with CFC 1000");
+    outcome values = summary_value(p, "abs(s['reference']['a_max_g'] - 100) < 1.2, s['reference']['cfc'], "
+                                      "'20 kHz' in s['reference']['understood'], s['reference']['inverted'], "
+                                      "s['reference']['fits'][0]['rmse_g'] < 1");
+    assert_string_equal(values.text, "True 1000 True False True\n");
+
+    snprintf(arguments, sizeof arguments,
+             "--force --reference '%s' --reference-column 'Acc X' --shift -10 --reference-filter none", path);
+    assert_int_equal(run_post(p, arguments).code, 0);
+    values = summary_value(p, "s['reference']['a_max_g'] > 120, s['reference']['cfc'], "
+                              "s['reference']['fits'][0]['rmse_g'] > 10");
+    assert_string_equal(values.text, "True None True\n");
+
+    snprintf(arguments, sizeof arguments, "--force --reference '%s' --reference-column 'Acc Z'", path);
+    result = run_post(p, arguments);
+    assert_int_equal(result.code, SF_ERR_INPUT);
+    assert_says(&result, "the channel looks inverted");
+    strcat(arguments, " --shift -10 --reference-invert");
+    assert_int_equal(run_post(p, arguments).code, 0);
+
+    const struct {
+        const char *more, *expected;
+    } bad[] = {
+        {"--window 20,70", "the region 20 to 70 ms does not lie within the measured curve (0 to 60 ms)"},
+        {"--regions 20-30,55-61", "does not lie within the measured curve"},
+        {"--shift 30 --window 20,30", "lies outside the model's curve"},
+        {"--reference-filter 500", "60, 180, 600 and 1000"},
+    };
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        snprintf(arguments, sizeof arguments,
+                 "--force --reference '%s' --reference-column 'Acc X' --shift -10 %s", path, bad[k].more);
+        result = run_post(p, arguments);
+        assert_int_equal(result.code, SF_ERR_INPUT);
+        assert_says(&result, bad[k].expected);
+    }
+}
+
 static void picture_is_drawn_or_its_absence_is_said(void **state) {
     place *p = *state;
     write_fixture(p, (fixture_options){0});
@@ -444,6 +506,7 @@ int main(void) {
         IN_PLACE(section_follows_the_plane_and_the_axis),
         IN_PLACE(xdmf_loads_in_all_three_paraview_readers),
         IN_PLACE(reference_adds_fits_and_the_shift),
+        IN_PLACE(measurements_are_read_filtered_and_not_cut),
         IN_PLACE(picture_is_drawn_or_its_absence_is_said),
         IN_PLACE(existing_output_is_replaced_only_by_force),
         IN_PLACE(failing_run_leaves_earlier_files_whole),

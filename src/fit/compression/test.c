@@ -20,6 +20,7 @@ static const double ABOVE = 0.05;       /* part by which unloading may lie above
 static const double TOE_RANGE = 0.15;  /* strain up to which the steepest part is looked for */
 static const double TOE_WIDTH = 0.01;  /* strain of that part, with TOE_POINTS points at least */
 static const double TOE_LARGEST = 0.1; /* strain that it may take away */
+static const double EQUAL = 1e-6;      /* relative difference of slopes that counts as none */
 enum { TOE_POINTS = 5 };
 
 void sf_compression_test_free(sf_compression_test *test) {
@@ -145,8 +146,8 @@ static bool steepest(const sf_compression_test *t, int *first, int *last, double
         if (k < i + TOE_POINTS - 1 || t->strain[k] > TOE_RANGE)
             break;
         double slope = line_through(t, i, k, &crossing);
-        *at_end = slope > best || (*at_end && slope >= best);
-        if (slope > best) {
+        *at_end = slope > (1 + EQUAL) * best;
+        if (*at_end) {
             best = slope;
             *first = i;
             *last = k;
