@@ -394,6 +394,58 @@ static void bad_input_gets_one_sentence(void **state) {
     program_tear_down(&place);
 }
 
+/* A half-sine of 60 g over 20 ms from 5 ms on, in the terms of a laboratory, with 20 g at 5 kHz. */
+static void put_measured(const program_place *place, const char *name, double sign) {
+    FILE *file = fopen(program_path(place, name), "w");
+    assert_non_null(file);
+    fputs("Zeit;Beschleunigung\r\nms;m/s2\r\n", file);
+    for (int i = 0; i <= 600; i++) {
+        double t = 0.05 * i, x = (t - 5) / 20;
+        double a = (x > 0 && x < 1 ? 60 * sin(M_PI * x) : 0) + 20 * sin(M_PI / 2 * i);
+        fprintf(file, "%d,%02d;%.0f\r\n", i / 20, i % 20 * 5, sign * 9.80665 * a);
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Measured curves of drops are read and filtered as by softfall-post --reference. */
+static void measured_curves_are_filtered_like_the_simulated(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+        double peak, slack;
+    } cases[] = {
+        {"curve = \"lab.csv\";", NULL, 60, 0.8},
+        {"curve = \"lab.csv\"; curve_filter = \"180\";", NULL, 60, 0.3},
+        {"curve = \"lab.csv\"; curve_filter = \"none\";", NULL, 80, 0.3},
+        {"curve = \"turned.csv\"; curve_invert = true;", NULL, 60, 0.8},
+        {"curve = \"turned.csv\";", "looks inverted", 0, 0},
+        {"curve = \"lab.csv\"; curve_filter = \"500\";", "curve_filter must be one of none, 60", 0, 0},
+        {"curve = \"lab.csv\"; curve_invert = 1;", "curve_invert must be true or false", 0, 0},
+        {"curve = \"lab.csv\"; curve_column = \"CH2\";", "lab.csv:1: the header has no column", 0, 0},
+    };
+    program_place place;
+    program_set_up(&place);
+    put_case(&place);
+    put_measured(&place, "lab.csv", 1);
+    put_measured(&place, "turned.csv", -1);
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        char text[512];
+        sf_fit_input input;
+        sf_error err = SF_ERROR_INIT;
+        snprintf(text, sizeof text, MATERIAL DROPS("%s"), cases[k].text);
+        sf_fit_input_read(program_write_text(&place, "fit.cfg", text), &input, &err);
+        const char *sentence = cases[k].sentence;
+        if (sentence ? !strstr(err.text, sentence) : err.status != SF_OK)
+            fail_msg("%s: %s", cases[k].text, err.text);
+        if (!sentence && !(fabs(input.drop[0].sample_scale - cases[k].peak) < cases[k].slack))
+            fail_msg("%s: peak %g g", cases[k].text, input.drop[0].sample_scale);
+        if (!sentence)
+            assert_non_null(strstr(input.drop[0].understood, "separator \";\", decimal comma, time in ms"));
+        sf_fit_input_free(&input);
+    }
+    program_tear_down(&place);
+}
+
 /* Coarse drops with a hidden foam are identified: the responses are met, the second run simulates nothing. */
 static void hidden_foam_is_found(void **state) {
     (void)state;
@@ -477,6 +529,7 @@ int main(void) {
         cmocka_unit_test(mapping_survives_rejected_and_failed_steps),
         cmocka_unit_test(mapping_passes_on_a_failed_simulation),
         cmocka_unit_test(bad_input_gets_one_sentence),
+        cmocka_unit_test(measured_curves_are_filtered_like_the_simulated),
         cmocka_unit_test(hidden_foam_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
