@@ -419,7 +419,7 @@ static void measured_curves_are_filtered_like_the_simulated(void **state) {
         {"curve = \"lab.csv\"; curve_filter = \"none\";", NULL, 80, 0.3},
         {"curve = \"turned.csv\"; curve_invert = true;", NULL, 60, 0.8},
         {"curve = \"turned.csv\";", "looks inverted", 0, 0},
-        {"curve = \"lab.csv\"; curve_filter = \"500\";", "curve_filter must be one of none, 60", 0, 0},
+        {"curve = \"lab.csv\"; curve_filter = \"500\";", "it must be one of none, 60", 0, 0},
         {"curve = \"lab.csv\"; curve_invert = 1;", "curve_invert must be true or false", 0, 0},
         {"curve = \"lab.csv\"; curve_column = \"CH2\";", "lab.csv:1: the header has no column", 0, 0},
     };
