@@ -4,7 +4,7 @@
 #ifndef SF_IO_TABLE_HEADING_H
 #define SF_IO_TABLE_HEADING_H
 
-#include "io/table_csv.h"
+#include "io/table_layout.h"
 
 enum { SF_TABLE_COLUMNS = 256, SF_TABLE_TITLE = 96, SF_TABLE_UNIT = 32 };
 
