@@ -628,6 +628,38 @@ static void curve_without_origin_is_extended_to_it(void **state) {
     sf_case_curve_free(&curve);
 }
 
+static void note_sentence(void *user, sf_severity severity, const char *sentence) {
+    assert_int_equal(severity, SF_NOTE);
+    strcat(user, sentence);
+}
+
+/* Files of a laboratory are read, and the user sees how; nothing is told of plain ones. */
+static void laboratory_files_are_read_and_told(void **state) {
+    (void)state;
+    char told[2048] = "";
+    const sf_sink sink = {note_sentence, told};
+    sf_error err = SF_ERROR_INIT;
+    sf_case c;
+    const char *override = "material.curve=lab.csv";
+    write_file("lab.csv", "Strain [%];Stress [N/mm2]\r\n0;0\r\n10,5;0,02\r\n50;0,1\r\n80;0,9\r\n");
+    write_file("press.csv", "Time\tExtension\nms\tmm\n0\t0\n50\t25\n");
+    write_file("case.cfg", DRIVEN(""));
+    if (sf_case_read(in_folder("case.cfg"), 1, &override, &sink, &c, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_true(c.motion_displacement[1] == 0.025);
+    assert_true(sf_foam_card_of(&c.material)->curve_strain[1] == 0.105 &&
+                sf_foam_card_of(&c.material)->curve_stress[3] == 0.9e6);
+    assert_non_null(strstr(told, "lab.csv: separator \";\", decimal comma, strain in %, stress in N/mm2"));
+    assert_non_null(strstr(told, "press.csv: separator tab, decimal point, time in ms, displacement in mm"));
+    sf_case_free(&c);
+    told[0] = '\0';
+    write_file("press.csv", "time_s,displacement_m\n0,0\n0.04,0.025\n");
+    if (sf_case_read(in_folder("case.cfg"), 0, NULL, &sink, &c, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_string_equal(told, "");
+    sf_case_free(&c);
+}
+
 /* Every example reads, and they differ in what their names say. */
 static void examples_are_the_drops_they_are_called(void **state) {
     (void)state;
@@ -709,6 +741,7 @@ int main(void) {
         cmocka_unit_test(motion_replaces_mass_and_speed),
         cmocka_unit_test(motion_faults_name_file_line_and_value),
         cmocka_unit_test(curve_without_origin_is_extended_to_it),
+        cmocka_unit_test(laboratory_files_are_read_and_told),
         cmocka_unit_test(examples_are_the_drops_they_are_called),
         cmocka_unit_test(reference_is_the_table),
     };

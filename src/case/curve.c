@@ -86,6 +86,8 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
                 table.value[0][table.count - 1], SF_CURVE_MIN_END);
     else
         take_points(&table, curve, err);
+    if (!table.plain)
+        memcpy(curve->understood, table.understood, sizeof curve->understood);
     sf_table_free(&table);
     if (err->status != SF_OK)
         sf_case_curve_free(curve);

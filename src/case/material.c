@@ -61,6 +61,8 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     if (status != SF_OK) {
         SF_FAIL(err, status, "%s (named at %s)", inner.text, sf_case_where(reader, setting, where));
     } else {
+        if (curve.understood[0])
+            sf_sink_tell(reader->sink, SF_NOTE, "curve %s: %s", path, curve.understood);
         if (curve.extended)
             sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
                          path, curve.strain[1]);

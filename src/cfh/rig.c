@@ -6,6 +6,7 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_fit.h>
 #include <math.h>
+#include <string.h>
 
 static const double MAX_SPEED_RATIO = 1.03; /* to free fall: beyond it a pair is wrong, not merely measured */
 
@@ -77,6 +78,7 @@ sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err) {
     if (sf_table_read(path, &layout, &table, err) != SF_OK)
         return err->status;
     sf_cfh_rig_fit(path, (int)table.count, table.value[0], table.value[1], rig, err);
+    memcpy(rig->understood, table.understood, sizeof rig->understood);
     sf_table_free(&table);
     return err->status;
 }

@@ -4,15 +4,16 @@
 #ifndef SF_CFH_RIG_H
 #define SF_CFH_RIG_H
 
-#include "core/error.h"
+#include "io/table_csv.h"
 
 enum { SF_CFH_MAX_PAIRS = 64 };
 
 typedef struct sf_cfh_rig {
-    int pairs;             /* 0: free fall */
-    double gravity;        /* m s-2, g_eff, or g */
-    double standard_error; /* m s-2 */
-    double margin;         /* -, half-width of the 95 % interval of ln(g_eff) */
+    int pairs;                            /* 0: free fall */
+    double gravity;                       /* m s-2, g_eff, or g */
+    double standard_error;                /* m s-2 */
+    double margin;                        /* -, half-width of the 95 % interval of ln(g_eff) */
+    char understood[SF_TABLE_UNDERSTOOD]; /* how its file was read; empty: there is none */
 } sf_cfh_rig;
 
 /* Free fall. */
@@ -24,8 +25,8 @@ sf_cfh_rig sf_cfh_free_fall(void);
 sf_status sf_cfh_rig_fit(const char *name, int pairs, const double *height, const double *speed,
                          sf_cfh_rig *rig, sf_error *err);
 
-/* The same from a CSV file with a column height_m, h_m or h_m_m ("h_m" in m) and a column speed_m_s or
- * v_test_m_s; other columns are ignored, lines that begin with # are comments. */
+/* The same from a CSV file (io/table_csv.h) with a column height_m, h_m or h_m_m ("h_m" in m) and a column
+ * speed_m_s or v_test_m_s, or a height and a speed with units. */
 sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err);
 
 double sf_cfh_speed(double free_fall_height);

@@ -408,7 +408,10 @@ static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, 
             "%s:%d: \"%s\" and every other number with a comma could hold a decimal comma or a mark of "
             "thousands: write decimal points",
             file->path, file->comma_line, file->comma_text);
-    if (file->heading.columns > 0)
+    const sf_table_heading *h = &file->heading;
+    file->table->plain =
+        file->separator == ',' && h->exact[0] && h->exact[1] && !file->passed && !h->unit_line;
+    if (h->columns > 0)
         describe(file);
     size_t used = strlen(file->table->understood);
     if (file->passed)

@@ -22,6 +22,7 @@ typedef struct sf_table {
     double *value[2];                     /* [count] SI, or the layout's units; owned */
     int *line;                            /* [count] in the file; owned */
     double scale[2];                      /* from the file's units to those of the values */
+    bool plain;                           /* commas, decimal points and exact names: nothing to tell */
     char understood[SF_TABLE_UNDERSTOOD]; /* 'separator ";", decimal comma, time in ms, force in kN' */
 } sf_table;
 

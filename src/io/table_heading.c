@@ -297,6 +297,7 @@ static bool find_exact(const reading *r, int c) {
                 return true;
             }
             found = i;
+            r->heading->exact[c] = true;
             take(r, c, i, name->scale, name->unit);
         }
     return found >= 0;

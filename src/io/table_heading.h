@@ -20,6 +20,7 @@ typedef struct sf_table_heading {
     double scale[2];
     char unit[2][SF_TABLE_UNIT];
     char title[2][SF_TABLE_TITLE]; /* of a column found by its unit alone; else empty */
+    bool exact[2];                 /* found by an exact name */
     bool unit_line;                /* the line below the heading holds the units */
     int found;                     /* columns that the line seems to hold */
     char problem[512];             /* why the line cannot be used; empty: it can */
