@@ -20,7 +20,8 @@
     X(velocity, "m s-1", "velocity_m_s", 1, "missile, along its direction of motion", "negative after rebound")        \
     X(displacement, "m", "displacement_mm", 1e3, "missile, along its direction of motion", "since t = 0")              \
     X(indentation, "m", "indentation_mm", 1e3,                                                                         \
-      "depth of the missile's first touching point below the undeformed top", "")                                      \
+      "depth of the missile's lowest point below the undeformed pad's top",                                          \
+      "the top is the pad's highest point, from which the thickness is measured; 0 above it")                                      \
     X(contact_force, "N", "contact_force_N", 1, "on the missile, against its direction of motion", "")                 \
     X(friction_force, "N", "friction_force_N", 1, "tangential part of it", "along the same direction")                 \
     X(base_reaction, "N", "base_reaction_N", 1, "force of the base on the pad, z", "positive: the base pushes up")     \

@@ -81,6 +81,8 @@ static const sf_model_field fields[] = {
     SCALAR(missile.friction, F64, "/missile/friction", "1", "Coulomb coefficient"),
     SCALAR(missile.gravity, F64, "/missile/gravity", "m s-2", "along -z"),
     SCALAR(missile.gap, F64, "/missile/gap", "m", "distance from the pad at t = 0"),
+    SCALAR(missile.clearance, F64, "/missile/clearance", "m",
+           "height of its lowest point above the undeformed pad's top at t = 0"),
     SCALAR(missile.shape, I64, "/missile/shape", "1", "0 exact sphere cap, 1 triangulated surface"),
     SCALAR(missile.sphere_centre[0], F64, "/missile/sphere_centre_x", "m", "centre at t = 0, x"),
     SCALAR(missile.sphere_centre[1], F64, "/missile/sphere_centre_y", "m", "centre at t = 0, y"),
@@ -111,7 +113,7 @@ bool sf_missile_is_driven(const sf_model *model) {
 }
 
 double sf_missile_card_depth(const sf_missile_card *card, double displacement) {
-    return -card->direction[2] * (displacement - card->gap);
+    return -card->direction[2] * displacement - card->clearance;
 }
 
 bool sf_missile_card_is_vertical(const sf_missile_card *card) {

@@ -39,6 +39,8 @@ typedef struct sf_missile_card {
     double friction;         /* -, Coulomb coefficient against the pad */
     double gravity;          /* m s-2, acts along -z on the missile; 0 with a prescribed motion */
     double gap;              /* m, distance still to travel along `direction` at t = 0 */
+    double clearance;        /* m, height of its lowest point above the top of the undeformed pad, its highest
+                                point, at t = 0; negative over a hole */
     int64_t shape;           /* SF_SHAPE_* */
     double sphere_centre[3]; /* m, at t = 0 (SF_SHAPE_SPHERE) */
     double sphere_radius;    /* m */
@@ -133,8 +135,9 @@ double sf_model_whole(const sf_model *model);
 
 /* Has the missile a prescribed motion (core/motion.h)? Else it is free. */
 bool sf_missile_is_driven(const sf_model *model);
-/* Depth (m) of the first touching point below the undeformed top of the pad after the missile's displacement
- * (m) along its direction; negative before contact. */
+/* The indentation, in this one place: depth (m) of the missile's lowest point below the plane of the
+ * undeformed pad's top, from which the thickness is measured, after the missile's displacement (m) along its
+ * direction; negative above the plane. */
 double sf_missile_card_depth(const sf_missile_card *card, double displacement);
 /* Does the missile move straight down? */
 bool sf_missile_card_is_vertical(const sf_missile_card *card);

@@ -257,6 +257,19 @@ done:
     return err->status;
 }
 
+/* Height (m) of the missile's lowest point above the pad's highest. */
+static double find_clearance(const sf_model *m) {
+    const sf_missile_card *card = &m->missile;
+    double low = INFINITY, high = -INFINITY;
+    for (int64_t k = 0; k < m->surface_node_count; k++)
+        low = fmin(low, m->surface_position[3 * k + 2]);
+    if (card->shape == SF_SHAPE_SPHERE && -card->direction[2] >= card->sphere_cap_cosine)
+        low = card->sphere_centre[2] - card->sphere_radius; /* where no node of the surface may be */
+    for (int64_t i = 0; i < m->node_count; i++)
+        high = fmax(high, m->position[3 * i + 2]);
+    return low - high;
+}
+
 /* Places the missile `gap` away from first contact and moves its surface into the model. */
 static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
     double distance = 0;
@@ -278,6 +291,7 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     surface->position = NULL;
     surface->triangle = NULL;
     sf_surface_free(surface);
+    m->missile.clearance = find_clearance(m);
     return SF_OK;
 }
 
