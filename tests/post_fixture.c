@@ -185,7 +185,10 @@ static sf_status put_frame(sf_h5 *file, const cloud *c, const char *group, int k
 
 static sf_status put_summary(sf_h5 *file, const fixture_options *o, sf_error *err) {
     sf_h5_info status = {"/summary/status", "1", "how the run ended"};
+    sf_h5_info notes = {"/summary/notes", "1", "notes of the solver"};
     sf_h5_write_text(file, &status, o->status ? o->status : "rebound", err);
+    if (o->notes)
+        sf_h5_write_text(file, &notes, o->notes, err);
     put_integer(file, "/summary/steps", 4199, err);
     put_integer(file, "/summary/threads", 2, err);
     put_integer(file, "/summary/nodes", FIXTURE_NODES, err);
@@ -203,6 +206,8 @@ sf_status fixture_write(const char *path, const fixture_options *o, sf_error *er
     sf_h5_set_attribute(file, "/", "format", o->format ? o->format : "softfall-results", err);
     sf_h5_set_attribute_i64(file, "/", "format_version", SF_FORMAT_VERSION, err);
     put_model(file, &c, err);
+    if (o->informed_strain > 0)
+        put_scalar(file, "/model/informed_strain", o->informed_strain, err);
     put_history(file, o, err);
     for (int k = 0; k < FIXTURE_FRAMES; k++) {
         char group[32];

@@ -24,6 +24,7 @@ typedef struct sf_foam_card {
     double densification_start;    /* -, strain from which the law replaces the table; 0 = its end */
     double densification_limit;    /* -, strain eps_L at which the stress becomes infinite; 1 for rule H1 */
     double densification_exponent; /* -, exponent; 0 = the one that makes the additive constant vanish */
+    double informed_strain;        /* -, up to here the data of the material inform the curve; 0 = data_end */
     double rate_filter_time;       /* s, time constant of the strain-rate filter when curve_count > 1 */
     union {
         struct {

@@ -91,6 +91,8 @@ typedef struct sf_law {
     sf_status (*check_keys)(const void *card, const sf_given *given, const char **place, sf_error *err);
     /* -, compressive strain where the data end; INFINITY: none. */
     double (*data_end)(const void *card);
+    /* -, largest compressive strain about which the data inform, as the card says or data_end. */
+    double (*informed_strain)(const void *card);
     /* Bounds on the tangent (Pa) and the viscosity (Pa s) of an undeformed point with this damping length
      * (m): the first time step. */
     void (*rest_bounds)(const void *card, double length, double *tangent, double *viscosity);

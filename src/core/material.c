@@ -40,6 +40,10 @@ double sf_material_density(const sf_material *material) {
     return member(material, material->law->density);
 }
 
+double sf_material_informed(const sf_material *material) {
+    return material->law->informed_strain(material->card);
+}
+
 double sf_material_rest_modulus(const sf_material *material) {
     return member(material, material->law->rest_modulus);
 }

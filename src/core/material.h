@@ -21,6 +21,7 @@ sf_law_curves *sf_material_curves(const sf_material *material);
 void sf_law_curves_free(sf_law_curves *curves);
 
 double sf_material_density(const sf_material *material);      /* kg m-3 */
+double sf_material_informed(const sf_material *material);     /* -, see sf_law.informed_strain */
 double sf_material_rest_modulus(const sf_material *material); /* Pa */
 /* m, L of damping at a node with this spacing (m). */
 double sf_material_length(const sf_material *material, double spacing);

@@ -120,6 +120,13 @@ bool sf_missile_card_is_vertical(const sf_missile_card *card) {
     return card->direction[2] <= -1 + 1e-9;
 }
 
+double sf_model_informed_strain(const sf_model *model) {
+    double least = INFINITY;
+    for (int64_t k = 0; k < model->material_count; k++)
+        least = fmin(least, sf_material_informed(&model->material[k]));
+    return least;
+}
+
 sf_status sf_model_take_material(sf_model *model, sf_material *material, sf_error *err) {
     model->node_material = sf_alloc(err, (unsigned long)model->node_count, 1, "materials of the nodes");
     model->material = sf_alloc(err, 1, sizeof *model->material, "materials");

@@ -147,6 +147,10 @@ static inline const sf_material *sf_model_material(const sf_model *model, int64_
     return &model->material[model->node_material[node]];
 }
 
+/* Least, over the materials, of the strain up to which their data inform (sf_material_informed); INFINITY:
+ * they do not say. */
+double sf_model_informed_strain(const sf_model *model);
+
 /* A model of this one material: moves it into the list, and gives it to every node. node_count is known. */
 sf_status sf_model_take_material(sf_model *model, sf_material *material, sf_error *err);
 

@@ -98,9 +98,13 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
     sf_frame peak;
     if (!r->has_peak)
         return SF_OK;
-    if (sf_frame_read_fields(r, &r->peak, SF_FIELD_LARGEST_COMPRESSION, &peak, &problem) != SF_OK)
+    if (sf_frame_read_fields(r, &r->peak, SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY, &peak,
+                             &problem) != SF_OK)
         return sf_results_ended_well(r) ? SF_FAIL(err, problem.status, "%s", problem.text) : SF_OK;
-    const double *compression = peak.field[SF_FRAME_LARGEST_COMPRESSION];
+    const double *compression = peak.field[SF_FRAME_LARGEST_COMPRESSION],
+                 *energy = peak.field[SF_FRAME_ENERGY_DENSITY];
+    if (compression && energy && isfinite(r->informed_strain))
+        f->energy_beyond_data = sf_strain_field_energy_beyond(r, compression, energy, r->informed_strain);
     if (compression)
         sf_strain_field_collapse(r, compression, &f->local_collapse, err);
     sf_frame_free(&peak);

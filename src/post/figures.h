@@ -48,6 +48,7 @@
     X(NUMBER, max_local_strain_time, "max_local_strain_time_ms", 1e3, "its time")                                      \
     X(NUMBER, local_strain_excess, "local_strain_excess", 1, "max_local_strain - max_mean_strain")                     \
     X(NUMBER, local_collapse, "local_collapse", 1, "largest excess of a node's compression over the median of its neighbours (nodes of a common cell), at /peak") \
+    X(NUMBER, energy_beyond_data, "energy_beyond_data", 1, "share of the foam's energy, at /peak, in nodes compressed beyond `informed_strain`") \
     X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F")                                             \
     X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point")                    \
     X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next two")                    \
@@ -72,6 +73,7 @@
     X(FACT, thickness, "thickness_mm", 1e3, "of the pad")                                                              \
     X(NUMBER, missile_mass, "missile_mass_kg", 1, "of the whole missile")                                              \
     X(FACT, density, "density_kg_m3", 1, "of the undeformed foam")                                                     \
+    X(FACT, informed_strain, "informed_strain", 1, "strain up to which the material's data inform its curve: `material.informed_strain`, or the end of the table") \
     X(FACT_COUNT, symmetry_factor, "symmetry_factor", 1, "modelled parts that make the whole")                         \
     X(FACT_COUNT, node_count, "nodes", 1, "of the modelled part, like the next two")                                   \
     X(FACT_COUNT, cell_count, "cells", 1, "of the background mesh")                                                    \

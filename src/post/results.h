@@ -28,7 +28,7 @@ typedef struct sf_frame {
     double *field[SF_FRAME_FIELDS]; /* [node_count][components], NULL if the file does not hold it */
 } sf_frame;
 
-enum { SF_RESULTS_NOTES = 8 };
+enum { SF_RESULTS_NOTES = 24, SF_RESULTS_NOTE_SIZE = 512 };
 
 typedef struct sf_results {
     sf_h5 *file; /* open until sf_results_close */
@@ -49,6 +49,7 @@ typedef struct sf_results {
     double thickness;            /* m */
     double density;              /* kg m-3 */
     double expected_mesh_error;  /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
+    double informed_strain;      /* -, up to which data inform the material; NaN: the file does not say */
     double missile_mass;         /* kg; 0 with a prescribed motion, like the speed */
     double missile_speed;        /* m s-1 */
     bool driven;                 /* the missile had a prescribed motion; else it was free */
@@ -70,7 +71,8 @@ typedef struct sf_results {
     int64_t interactions;
 
     int note_count;
-    char notes[SF_RESULTS_NOTES][256]; /* sentences for the user about what was left out */
+    char notes[SF_RESULTS_NOTES][SF_RESULTS_NOTE_SIZE]; /* sentences for the user: the solver's, and about
+                                                           what was left out */
 } sf_results;
 
 /* Opens, reads and checks; on success release with sf_results_close. On failure `results` is already

@@ -79,6 +79,16 @@ static sf_status read_driven(sf_results *r, sf_error *err) {
     return err->status;
 }
 
+/* A scalar that a file of an earlier version does not hold; NaN: likewise, or not finite. */
+static sf_status read_optional(const sf_results *r, const char *path, double *value, sf_error *err) {
+    *value = NAN;
+    if (sf_h5_exists(r->file, path))
+        sf_h5_read_scalar(r->file, path, value, err);
+    if (!isfinite(*value))
+        *value = NAN;
+    return err->status;
+}
+
 static sf_status read_model(sf_results *r, sf_error *err) {
     int64_t pointers = -1;
     r->node_count = r->cell_count = r->cell_nnz = r->surface_node_count = r->surface_triangle_count = -1;
@@ -100,9 +110,25 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err) != SF_OK ||
         read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK ||
-        read_driven(r, err) != SF_OK || read_mesh_error(r, err) != SF_OK)
+        read_driven(r, err) != SF_OK || read_mesh_error(r, err) != SF_OK ||
+        read_optional(r, "/model/informed_strain", &r->informed_strain, err) != SF_OK)
         return err->status;
     return sf_results_check_model(r, err);
+}
+
+/* The solver's notes, a sentence per line; files of earlier versions have none. */
+static sf_status read_notes(sf_results *r, sf_error *err) {
+    char *notes = NULL, *rest = NULL;
+    if (!sf_h5_exists(r->file, "/summary/notes"))
+        return SF_OK;
+    if (sf_h5_read_text(r->file, "/summary/notes", &notes, err) != SF_OK)
+        return err->status;
+    for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        sf_error_clean(line);
+        sf_results_note(r, "%s", line);
+    }
+    free(notes);
+    return SF_OK;
 }
 
 static sf_status read_summary(sf_results *r, sf_error *err) {
@@ -123,7 +149,8 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
         read_integer(r, "/summary/threads", &r->threads, err) != SF_OK ||
         read_integer(r, "/summary/interactions", &r->interactions, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/summary/wall_time", &r->wall_time, err) != SF_OK ||
-        sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err) != SF_OK)
+        sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err) != SF_OK ||
+        read_notes(r, err) != SF_OK)
         return err->status;
     if (!sf_results_ended_well(r))
         sf_results_note(r, "the run stopped with: %s", r->status);

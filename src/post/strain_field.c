@@ -76,3 +76,14 @@ sf_status sf_strain_field_collapse(const sf_results *r, const double *compressio
     free(n.cell);
     return err->status;
 }
+
+double sf_strain_field_energy_beyond(const sf_results *r, const double *compression,
+                                     const double *energy_density, double strain) {
+    double all = 0, beyond = 0;
+    for (int64_t i = 0; i < r->node_count; i++) {
+        double energy = r->volume[i] * energy_density[i];
+        all += energy;
+        beyond += compression[i] > strain ? energy : 0;
+    }
+    return all > 0 ? beyond / all : 0;
+}

@@ -13,4 +13,9 @@
 sf_status sf_strain_field_collapse(const sf_results *results, const double *compression, double *collapse,
                                    sf_error *err);
 
+/* Share, of the energy of the foam, of the nodes whose compression exceeds `strain`; 0 without energy.
+ * energy_density: [node_count] J m-3. */
+double sf_strain_field_energy_beyond(const sf_results *results, const double *compression,
+                                     const double *energy_density, double strain);
+
 #endif

@@ -63,6 +63,16 @@ static double local_collapse_value(const sf_results *r, const sf_figures *f) {
     return f->local_collapse;
 }
 
+static double mesh_value(const sf_results *r, const sf_figures *f) {
+    (void)f;
+    return r->expected_mesh_error;
+}
+
+static double informed_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->energy_beyond_data;
+}
+
 static double anvil_value(const sf_results *r, const sf_figures *f) {
     (void)r;
     return f->max_mean_strain;

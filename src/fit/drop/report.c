@@ -375,6 +375,7 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
     const sf_material_text text = {fit->input->title, provenance};
     if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
+        card.informed_strain = high;
         const sf_material material = sf_foam_material(&card);
         sf_material_write(output->aside, fit->input->material_name, &material, &text, err);
         sf_foam_card_free(&card);

@@ -31,6 +31,10 @@ static bool has_limit(const void *card) {
     return ((const sf_foam_card *)card)->densification_limit < 1;
 }
 
+static bool has_informed(const void *card) {
+    return ((const sf_foam_card *)card)->informed_strain > 0;
+}
+
 #define AT(member) .offset = offsetof(sf_foam_card, member)
 #define POSITIVE .low = 0.0, .low_open = true
 #define IN(name, size) .unit = name, .unit_size = size
@@ -67,6 +71,9 @@ static const sf_parameter parameters[] = {
     {"material", "rate_filter_time", SF_PARAMETER_QUANTITY, "\"0.1 ms\"", AT(rate_filter_time),
      "time constant of the strain rate that chooses among `curves`", .quantity = SF_TIME, .low = 1e-9, .high = 1e3,
      IN("ms", 1e-3), .acts = has_rates},
+    {"material", "informed_strain", SF_PARAMETER_NUMBER, "0.0", AT(informed_strain),
+     "largest compressive strain about which the material's data say something; 0 = where the table or its use ends; "
+     "beyond it softfall-post marks a run", .high = 0.999, .acts = has_informed},
     {"material.densification", "rule", SF_PARAMETER_CHOICE, "\"H1\"", AT(densification_rule),
      "law beyond the table: H1: A + B/(1 - strain)^n; H2: A + B/(limit - strain)^m; value and slope continuous",
      .words = "H1|H2"},
@@ -144,6 +151,11 @@ static double data_end(const void *card) {
     return foam->densification_start > 0 ? fmin(end, foam->densification_start) : end;
 }
 
+static double informed_strain(const void *card) {
+    double informed = ((const sf_foam_card *)card)->informed_strain;
+    return informed > 0 ? informed : data_end(card);
+}
+
 /* The largest initial tangent of all curves plus the Maxwell branch. */
 static void rest_bounds(const void *card, double length, double *tangent, double *viscosity) {
     const sf_foam_card *foam = card;
@@ -206,6 +218,7 @@ const sf_law sf_low_density_foam = {
     .curves = offsetof(sf_foam_card, curves),
     .check_keys = check_keys,
     .data_end = data_end,
+    .informed_strain = informed_strain,
     .rest_bounds = rest_bounds,
     .history = history,
     .history_count = sizeof history / sizeof history[0],

@@ -4,6 +4,7 @@
 #include "core/good_run.h"
 #include "core/program.h"
 #include "core/units.h"
+#include "solver/run/notes.h"
 #include <math.h>
 #include <stdio.h>
 #include <sys/resource.h>
@@ -44,11 +45,7 @@ void sf_solve_print_ledger(const sf_model *m, const sf_state *s, const sf_run *r
                "end %.3f m/s\n",
                x->peak_value / SF_STANDARD_GRAVITY, 1e3 * x->peak_time, x->largest_compression,
                fmax(0, -s->missile.velocity_now));
-    const sf_missile_card *card = &m->missile;
-    double height = card->sphere_radius * (1 - card->sphere_cap_cosine);
-    if (card->shape == SF_SHAPE_SPHERE && x->largest_indentation > height)
-        sf_sink_tell(&sink, SF_WARNING, "the missile went %.4g mm deep, beyond its spherical cap of %.4g mm",
-                     1e3 * x->largest_indentation, 1e3 * height);
+    sf_run_tell(m, s, x, &sink);
     const sf_good_run *good = sf_good_run_limits();
     if (l->largest_error > good->energy_error || fabs(x->stabilisation_share) > good->stabilisation ||
         fabs(x->contact_share) > good->contact)
@@ -57,15 +54,4 @@ void sf_solve_print_ledger(const sf_model *m, const sf_state *s, const sf_run *r
                      "not trust these figures",
                      100 * l->largest_error, 100 * good->energy_error, 100 * x->stabilisation_share,
                      100 * good->stabilisation, 100 * x->contact_share, 100 * good->contact);
-    if (s->contact_unsettled > 0)
-        sf_sink_tell(&sink, SF_WARNING, "the contact forces of %lld steps did not settle to the last digits",
-                     (long long)s->contact_unsettled);
-    if (isnan(s->missile.contact_time))
-        sf_sink_tell(&sink, SF_WARNING, "the missile never touched the pad");
-    if (x->largest_indentation > m->thickness)
-        sf_sink_tell(
-            &sink, SF_WARNING,
-            "the missile went %.4g mm into a pad of %.4g mm: it is smaller than the spacing of the contact "
-            "points and passed between them",
-            1e3 * x->largest_indentation, 1e3 * m->thickness);
 }

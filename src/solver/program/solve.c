@@ -51,14 +51,17 @@ static sf_status set_end_time(const sf_solve_options *o, const sf_checkpoint *fr
     return sf_model_check(model, err);
 }
 
-/* Other programs may round differently. */
-static void compare_builds(const sf_checkpoint *from) {
+/* Other programs may round differently. The sentence also goes into the results; "" if there is none. */
+static void compare_builds(const sf_checkpoint *from, char note[1024]) {
     const sf_sink sink = sf_program_sink("softfall-solve");
-    if (strcmp(from->git_revision, SF_GIT_REVISION) != 0 ||
-        strcmp(from->compiler_flags, SF_COMPILER_FLAGS) != 0)
-        sf_sink_tell(&sink, SF_WARNING,
-                     "%s is from another build (%s): the last digits may differ from those of one run",
-                     from->path, from->git_revision);
+    note[0] = '\0';
+    if (strcmp(from->git_revision, SF_GIT_REVISION) == 0 &&
+        strcmp(from->compiler_flags, SF_COMPILER_FLAGS) == 0)
+        return;
+    snprintf(note, 1024,
+             "%.600s is from another build (%.100s): the last digits may differ from those of one run",
+             from->path, from->git_revision);
+    sf_sink_tell(&sink, SF_WARNING, "%s", note);
 }
 
 static void remove_all(const sf_output *output) {
@@ -120,8 +123,9 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     if (!realpath(named, path))
         snprintf(path, sizeof path, "%s", named);
     sf_solve_print_model(&model, o->threads);
+    char note[1024] = "";
     if (o->restart)
-        compare_builds(&from);
+        compare_builds(&from, note);
     if (sf_output_open(&output, err) != SF_OK ||
         build(&model, &model_file, &provenance, &output, &operators, &state, err) != SF_OK ||
         sf_output_start(&output, o->restart != NULL, err) != SF_OK) {
@@ -138,6 +142,7 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
                   .checkpoint_wall = o->checkpoint_wall,
                   .checkpoint_time = o->checkpoint_time,
                   .provenance = &provenance};
+    snprintf(run.note, sizeof run.note, "%s", note);
     sf_run_drop(&model, &operators, &state, &run, &output, o->restart ? &from : NULL, err);
     if (state.step > 0)
         sf_solve_print_ledger(&model, &state, &run);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rows of a run's history (core/history.h): one per time step, kept in memory and written to /history as a
- * whole, scaled to the whole pad. */
+/* The rows of a run's history (core/history.h): one per time step, kept in memory and written to /history as
+ * a whole, scaled to the whole pad. */
 #ifndef SF_SOLVER_RUN_HISTORY_H
 #define SF_SOLVER_RUN_HISTORY_H
 

@@ -5,6 +5,7 @@
 
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     int64_t driven = sf_missile_is_driven(m);
+    const double informed = sf_model_informed_strain(m);
     const double density = sf_material_density(&m->material[0]);
     const struct {
         sf_h5_info info;
@@ -53,6 +54,11 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
          {0},
          &m->expected_mesh_error},
         {{"/model/density", "kg m-3", "density of the first material"}, SF_H5_F64, 0, {0}, &density},
+        {{"/model/informed_strain", "1", "least, over the materials, of the strain up to which data inform"},
+         SF_H5_F64,
+         0,
+         {0},
+         &informed},
         {{"/model/missile_mass", "kg", "mass of the whole missile"}, SF_H5_F64, 0, {0}, &m->missile.mass},
         {{"/model/missile_speed", "m s-1", "speed at t = 0"}, SF_H5_F64, 0, {0}, &m->missile.speed},
         {{"/model/missile_driven", "1", "1: the missile had a prescribed motion, 0: it was free"},

@@ -3,6 +3,7 @@
 
 #include "core/units.h"
 #include "solver/run/ending.h"
+#include "solver/run/notes.h"
 #include "solver/step.h"
 #include <math.h>
 #include <stdlib.h>
@@ -126,6 +127,18 @@ static sf_status write_count(sf_h5 *file, const char *path, const char *text, in
     return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
 }
 
+/* The notes on the run, beginning with that of the program. */
+static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
+    sf_h5_info info = {"/summary/notes", "1", "what the solver noted of the run, a sentence per line"};
+    sf_run_notes notes = {""};
+    const sf_sink sink = sf_run_notes_sink(&notes);
+    const sf_extremes extremes = sf_recorder_extremes(&d->r);
+    if (d->run->note[0])
+        sf_sink_tell(&sink, SF_WARNING, "%s", d->run->note);
+    sf_run_tell(d->m, d->s, &extremes, &sink);
+    return sf_h5_write_text(file, &info, notes.text, err);
+}
+
 static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, sf_error *err) {
     const sf_model *m = d->m;
     const sf_state *s = d->s;
@@ -139,6 +152,7 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
             SF_OK ||
         write_count(file, "/summary/restarts", "times that the run went on from a checkpoint", d->r.restarts,
                     err) != SF_OK ||
+        write_notes(d, file, err) != SF_OK ||
         write_scalar(file, "/summary/wall_time", "s", "time of the run", d->run->wall_time, err) != SF_OK)
         return err->status;
     return write_scalar(file, "/summary/contact_time", "s", "first contact, NaN if none",

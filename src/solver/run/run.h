@@ -24,6 +24,7 @@ typedef struct sf_run {
     double checkpoint_wall;          /* s of wall time between two */
     double checkpoint_time;          /* s of simulated time between two */
     const sf_provenance *provenance; /* of the checkpoints; borrowed */
+    char note[1024];                 /* a sentence of the program for /summary/notes, or "" */
     /* out */
     double wall_time; /* s, with the time before a restart */
     sf_extremes extremes;

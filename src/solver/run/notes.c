@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/run/notes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void tell_depth(const sf_model *m, const sf_extremes *x, const sf_sink *sink) {
+    const sf_missile_card *card = &m->missile;
+    double height = card->sphere_radius * (1 - card->sphere_cap_cosine);
+    if (card->shape == SF_SHAPE_SPHERE && x->largest_indentation > height)
+        sf_sink_tell(sink, SF_WARNING, "the missile went %.4g mm deep, beyond its spherical cap of %.4g mm",
+                     1e3 * x->largest_indentation, 1e3 * height);
+    if (x->largest_indentation > m->thickness)
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "the missile went %.4g mm into a pad of %.4g mm: it is smaller than the spacing of the contact "
+            "points and passed between them",
+            1e3 * x->largest_indentation, 1e3 * m->thickness);
+}
+
+void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, const sf_sink *sink) {
+    tell_depth(m, x, sink);
+    if (s->contact_unsettled > 0)
+        sf_sink_tell(sink, SF_WARNING, "the contact forces of %lld steps did not settle to the last digits",
+                     (long long)s->contact_unsettled);
+    if (isnan(s->missile.contact_time))
+        sf_sink_tell(sink, SF_WARNING, "the missile never touched the pad");
+}
+
+static void add_line(void *user, sf_severity severity, const char *sentence) {
+    sf_run_notes *notes = user;
+    size_t used = strlen(notes->text);
+    (void)severity;
+    if (used + strlen(sentence) + 2 <= sizeof notes->text)
+        snprintf(notes->text + used, sizeof notes->text - used, "%s\n", sentence);
+}
+
+sf_sink sf_run_notes_sink(sf_run_notes *notes) {
+    return (sf_sink){add_line, notes};
+}
