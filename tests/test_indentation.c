@@ -93,7 +93,7 @@ static void on_a_plane_the_clearance_is_the_gap(void **state) {
     program_succeed(
         p, "pre",
         "plane.cfg -o plane.h5 --set missile.gap='3 mm' --set geometry.parameters.fine_spacing=20 "
-        "--set geometry.parameters.outer_spacing=40");
+        "--set geometry.parameters.outer_spacing=40 --set pad.mesh_error_limit=1");
     if (sf_model_read(program_path(p, "plane.h5"), &m, &file, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_close(m.missile.clearance, 3e-3, 1e-9);

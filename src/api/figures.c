@@ -64,6 +64,8 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .volume = m->volume,
                       .symmetry_factor = m->symmetry_factor,
                       .thickness = m->thickness,
+                      .informed_strain = sf_model_informed_strain(m),
+                      .expected_mesh_error = m->expected_mesh_error > 0 ? m->expected_mesh_error : NAN,
                       .density = sf_material_density(&m->material[0]),
                       .missile_mass = m->missile.mass,
                       .missile_speed = m->missile.speed,
