@@ -85,7 +85,7 @@ static sf_status put_integer(sf_h5 *file, const char *path, int64_t value, sf_er
     return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
 }
 
-static sf_status put_model(sf_h5 *file, const cloud *c, sf_error *err) {
+static sf_status put_model(sf_h5 *file, const cloud *c, const fixture_options *o, sf_error *err) {
     static const double surface[5][3] = {
         {0, 0, 0}, {0.08, 0.08, 0.08}, {-0.08, 0.08, 0.08}, {-0.08, -0.08, 0.08}, {0.08, -0.08, 0.08}};
     static const int32_t triangle[FIXTURE_TRIANGLES][3] = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}};
@@ -105,6 +105,9 @@ static sf_status put_model(sf_h5 *file, const cloud *c, sf_error *err) {
     put_scalar(file, "/model/density", 35, err);
     put_scalar(file, "/model/missile_mass", FIXTURE_MASS, err);
     put_scalar(file, "/model/missile_speed", FIXTURE_SPEED, err);
+    put_scalar(file, "/model/gravity_along", SF_STANDARD_GRAVITY, err);
+    put_integer(file, "/model/kinematic", o->kinematic, err);
+    put_integer(file, "/model/missile_driven", 0, err);
     return put(file, "/model/missile_direction", SF_H5_F64, 3, 1, direction, err);
 }
 
@@ -205,7 +208,7 @@ sf_status fixture_write(const char *path, const fixture_options *o, sf_error *er
         return err->status;
     sf_h5_set_attribute(file, "/", "format", o->format ? o->format : "softfall-results", err);
     sf_h5_set_attribute_i64(file, "/", "format_version", SF_FORMAT_VERSION, err);
-    put_model(file, &c, err);
+    put_model(file, &c, o, err);
     if (o->informed_strain > 0)
         put_scalar(file, "/model/informed_strain", o->informed_strain, err);
     put_history(file, o, err);

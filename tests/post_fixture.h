@@ -29,6 +29,7 @@ typedef struct fixture_options {
     bool no_summary;        /* a killed run */
     bool no_peak;           /* without /peak */
     bool no_stress;         /* frames without von Mises */
+    bool kinematic;         /* figures of the kinematic acceleration */
     bool headless_frame;    /* the last frame has lost its time */
     bool bad_frame;         /* the last frame holds a NaN */
     bool bad_cell;          /* a vertex index beyond the nodes */

@@ -212,13 +212,8 @@ static sf_series run_column(fixture *f, double end, double *energy) {
 static sf_series filtered(const sf_series *force) {
     sf_error err = SF_ERROR_INIT;
     sf_series before = {0}, uniform = {0}, out = {0};
-    if (sf_series_create(force->count + 2, &before, &err) != SF_OK)
-        exit(sf_error_report(&err, "study_contact"));
-    before.time[0] = -1e-3;
-    before.time[1] = -1e-7;
-    memcpy(before.time + 2, force->time, (size_t)force->count * sizeof *force->time);
-    memcpy(before.value + 2, force->value, (size_t)force->count * sizeof *force->value);
-    if (sf_signal_resample(&before, SF_SIGNAL_RATE, &uniform, &err) != SF_OK ||
+    if (sf_signal_lead_in(force, 1e-3, 0, &before, &err) != SF_OK ||
+        sf_signal_resample(&before, SF_SIGNAL_RATE, &uniform, &err) != SF_OK ||
         sf_signal_filter_cfc(&uniform, 1000, &out, &err) != SF_OK)
         exit(sf_error_report(&err, "study_contact"));
     sf_series_free(&before);

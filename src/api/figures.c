@@ -69,6 +69,8 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .density = sf_material_density(&m->material[0]),
                       .missile_mass = m->missile.mass,
                       .missile_speed = m->missile.speed,
+                      .gravity_along = sf_missile_free_fall(m),
+                      .kinematic = m->run.kinematic != 0,
                       .driven = sf_missile_is_driven(m),
                       .history = d->recorder.history};
     if (r->history.rows < 3)

@@ -49,6 +49,7 @@ typedef struct sf_case {
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
     double mesh_error_limit;               /* -, expected error of a_max above which the case is refused */
+    int kinematic;                /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
     int shape_rule;               /* 0 "auto": sphere if the surface is one, 1 "sphere", 2 "surface" */
     double support_ratio;         /* R/h */
     double condition_limit;       /* of the moment matrix */

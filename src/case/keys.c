@@ -83,6 +83,9 @@ static const sf_key keys[] = {
     {"solver", "stop_after_rebound", SF_KEY_BOOL, "true", AT(run.stop_after_rebound),
      "end when the missile has left the pad upwards"},
     /* output */
+    {"output", "acceleration", SF_KEY_CHOICE, "\"accelerometer\"", AT(kinematic),
+     "acceleration of the curves, of a_max and HIC: the specific force that an accelerometer in the missile reads (0 in free fall), or the kinematic one (-1 g in free fall)",
+     .words = "accelerometer|kinematic"},
     {"output", "frame_interval", SF_KEY_QUANTITY, "\"1 ms\"", AT(run.frame_interval),
      "time between frames; there are also frames at the start and at the end; at most 100000 of them", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},
     {"output", "times", SF_KEY_TIMES, "[]", AT(frame_time),

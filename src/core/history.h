@@ -15,8 +15,8 @@
 /* clang-format off */
 #define SF_HISTORY_COLUMNS(X)                                                                                          \
     X(time, "s", "time_ms", 1e3, "end of the step", "")                                                                \
-    X(acceleration, "m s-2", NULL, 1, "missile, against its direction of motion",                                      \
-      "positive: it is braked; 0 with a prescribed motion")                                                            \
+    X(acceleration, "m s-2", NULL, 1, "specific force on the missile, against its direction of motion",                \
+      "as an accelerometer in it reads: force of the pad over the mass, 0 in free flight and with a prescribed motion") \
     X(velocity, "m s-1", "velocity_m_s", 1, "missile, along its direction of motion", "negative after rebound")        \
     X(displacement, "m", "displacement_mm", 1e3, "missile, along its direction of motion", "since t = 0")              \
     X(indentation, "m", "indentation_mm", 1e3,                                                                         \

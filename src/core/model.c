@@ -97,6 +97,8 @@ static const sf_model_field fields[] = {
     SCALAR(run.frame_interval, F64, "/run/frame_interval", "s", "time between frames"),
     SCALAR(run.output_fields, I64, "/run/output_fields", "1", "bits of the fields in a frame"),
     SCALAR(run.stop_after_rebound, I64, "/run/stop_after_rebound", "1", "1: end when the missile has left"),
+    SCALAR(run.kinematic, I64, "/run/kinematic", "1",
+           "figures of 0: the specific force, as an accelerometer reads it; 1: the kinematic acceleration"),
 };
 
 const sf_model_field *sf_model_fields(size_t *count) {

@@ -57,6 +57,7 @@ typedef struct sf_run_options {
     double frame_interval;      /* s, between frames; frames also at 0 and at the end */
     int64_t output_fields;      /* SF_FIELD_* bits */
     int64_t stop_after_rebound; /* 1: end when the missile has left the pad upwards */
+    int64_t kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
 } sf_run_options;
 
 typedef struct sf_model {

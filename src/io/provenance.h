@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "io/h5.h"
 
-enum { SF_FORMAT_VERSION = 2 };
+enum { SF_FORMAT_VERSION = 3 };
 
 /* Borrowed strings; NULL members are not written. Version, revision, compiler, flags and date are added. */
 typedef struct sf_provenance {

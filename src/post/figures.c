@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double FREE_FLIGHT = 5e-3; /* s, at least, before the first contact */
+
 const sf_figure *sf_figure_list(size_t *count) {
 #define IN_FIGURES(member) false, offsetof(sf_figures, member)
 #define IN_RESULTS(member) true, offsetof(sf_results, member)
@@ -32,20 +34,38 @@ const sf_figure *sf_figure_find(const char *key) {
     return NULL;
 }
 
+/* Time (s) of the first row with contact; INFINITY without. */
+static double first_contact(const sf_history *h) {
+    for (int64_t i = 0; i < h->rows; i++)
+        if (h->contact_nodes[i] > 0)
+            return h->time[i];
+    return INFINITY;
+}
+
+/* The filtered curve begins with free flight, so that filter and HIC see the onset whole. */
+static sf_status filter(const sf_results *r, double free_flight, sf_figures *f, sf_error *err) {
+    double lead = FREE_FLIGHT - (first_contact(&r->history) - r->history.time[0]);
+    sf_series before = {0}, uniform = {0};
+    f->rate = sf_signal_rate(&f->raw);
+    if (lead > 0 && sf_signal_lead_in(&f->raw, lead, free_flight, &before, err) != SF_OK)
+        return err->status;
+    if (sf_signal_resample(lead > 0 ? &before : &f->raw, f->rate, &uniform, err) == SF_OK)
+        sf_signal_filter_cfc(&uniform, f->cfc, &f->filtered, err);
+    sf_series_free(&before);
+    sf_series_free(&uniform);
+    return err->status;
+}
+
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
-    sf_series uniform = {0};
+    double free_flight = r->kinematic ? -r->gravity_along / SF_STANDARD_GRAVITY : 0;
     if (sf_series_create(h->rows, &f->raw, err) != SF_OK)
         return err->status;
     for (int64_t i = 0; i < h->rows; i++) {
         f->raw.time[i] = h->time[i];
-        f->raw.value[i] = h->acceleration[i] / SF_STANDARD_GRAVITY;
+        f->raw.value[i] = h->acceleration[i] / SF_STANDARD_GRAVITY + free_flight;
     }
-    f->rate = sf_signal_rate(&f->raw);
-    if (sf_signal_resample(&f->raw, f->rate, &uniform, err) == SF_OK)
-        sf_signal_filter_cfc(&uniform, f->cfc, &f->filtered, err);
-    sf_series_free(&uniform);
-    return err->status;
+    return filter(r, free_flight, f, err);
 }
 
 static void compute_energies(const sf_results *r, sf_figures *f) {

@@ -52,6 +52,8 @@ typedef struct sf_results {
     double informed_strain;      /* -, up to which data inform the material; NaN: the file does not say */
     double missile_mass;         /* kg; 0 with a prescribed motion, like the speed */
     double missile_speed;        /* m s-1 */
+    double gravity_along;        /* m s-2, acceleration of the missile in free flight, along its direction */
+    bool kinematic;              /* figures of the kinematic acceleration; else as an accelerometer reads */
     bool driven;                 /* the missile had a prescribed motion; else it was free */
     double missile_direction[3]; /* unit vector, see sf_results_along */
 

@@ -61,21 +61,18 @@ static sf_status read_vector(const sf_results *r, const char *path, double vecto
     return SF_OK;
 }
 
-/* Files of older versions lack it. */
+/* NaN: the law of the mesh error does not apply. */
 static sf_status read_mesh_error(sf_results *r, sf_error *err) {
     double value = 0;
-    if (sf_h5_exists(r->file, "/model/expected_mesh_error"))
-        sf_h5_read_scalar(r->file, "/model/expected_mesh_error", &value, err);
+    sf_h5_read_scalar(r->file, "/model/expected_mesh_error", &value, err);
     r->expected_mesh_error = value > 0 ? value : NAN;
     return err->status;
 }
 
-/* Free, or driven by a prescribed motion? */
-static sf_status read_driven(sf_results *r, sf_error *err) {
-    int64_t driven = 0;
-    if (sf_h5_exists(r->file, "/model/missile_driven"))
-        read_integer(r, "/model/missile_driven", &driven, err);
-    r->driven = driven > 0;
+static sf_status read_flag(const sf_results *r, const char *path, bool *flag, sf_error *err) {
+    int64_t value = 0;
+    read_integer(r, path, &value, err);
+    *flag = value != 0;
     return err->status;
 }
 
@@ -110,7 +107,9 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err) != SF_OK ||
         read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK ||
-        read_driven(r, err) != SF_OK || read_mesh_error(r, err) != SF_OK ||
+        sf_h5_read_scalar(r->file, "/model/gravity_along", &r->gravity_along, err) != SF_OK ||
+        read_flag(r, "/model/kinematic", &r->kinematic, err) != SF_OK ||
+        read_flag(r, "/model/missile_driven", &r->driven, err) != SF_OK || read_mesh_error(r, err) != SF_OK ||
         read_optional(r, "/model/informed_strain", &r->informed_strain, err) != SF_OK)
         return err->status;
     return sf_results_check_model(r, err);

@@ -2,6 +2,7 @@
 #include "post/signal.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,6 +61,38 @@ double sf_signal_rate(const sf_series *series) {
     return SF_SIGNAL_RATE * fmin(fmax(factor, 1), largest);
 }
 
+sf_status sf_signal_lead_in(const sf_series *series, double lead, double level, sf_series *out,
+                            sf_error *err) {
+    double jump = 1e-3 * fmin(lead, series->time[1] - series->time[0]);
+    if (sf_series_create(series->count + 2, out, err) != SF_OK)
+        return err->status;
+    out->time[0] = series->time[0] - lead;
+    out->time[1] = series->time[0] - jump;
+    out->value[0] = out->value[1] = level;
+    memcpy(out->time + 2, series->time, (size_t)series->count * sizeof(double));
+    memcpy(out->value + 2, series->value, (size_t)series->count * sizeof(double));
+    return SF_OK;
+}
+
+static double interpolate(const sf_series *series, int64_t segment, double time) {
+    const double *t = &series->time[segment], *v = &series->value[segment];
+    return v[0] + fmin((time - t[0]) / (t[1] - t[0]), 1) * (v[1] - v[0]);
+}
+
+/* Mean of the curve from `begin` to `end`; `*segment` holds `begin`, and afterwards `end`. */
+static double mean_between(const sf_series *series, double begin, double end, int64_t *segment) {
+    double sum = 0, from = begin;
+    for (;;) {
+        bool last = *segment == series->count - 2 || series->time[*segment + 1] >= end;
+        double to = last ? end : series->time[*segment + 1];
+        sum += (to - from) * 0.5 * (interpolate(series, *segment, from) + interpolate(series, *segment, to));
+        if (last)
+            return sum / (end - begin);
+        from = to;
+        ++*segment;
+    }
+}
+
 sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *uniform, sf_error *err) {
     *uniform = (sf_series){0};
     if (sf_series_check(series, "the curve to resample", err) != SF_OK)
@@ -73,16 +106,15 @@ sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *un
                        rate);
     if (sf_series_create((int64_t)intervals + 1, uniform, err) != SF_OK)
         return err->status;
-    int64_t segment = 0;
-    for (int64_t k = 0; k < uniform->count; k++) {
+    int64_t segment = 0, last = uniform->count - 1;
+    while (segment < series->count - 2 && series->time[segment + 1] <= start + 0.5 / rate)
+        segment++;
+    for (int64_t k = 0; k <= last; k++) {
         double time = start + (double)k / rate;
-        while (segment < series->count - 2 && series->time[segment + 1] <= time)
-            segment++;
-        double left = series->time[segment], right = series->time[segment + 1];
-        double part = fmin((time - left) / (right - left), 1);
         uniform->time[k] = time;
-        uniform->value[k] =
-            series->value[segment] + part * (series->value[segment + 1] - series->value[segment]);
+        uniform->value[k] = k == 0 || k == last
+                                ? sf_series_at(series, time)
+                                : mean_between(series, time - 0.5 / rate, time + 0.5 / rate, &segment);
     }
     return SF_OK;
 }

@@ -28,12 +28,18 @@ sf_status sf_series_check(const sf_series *series, const char *name, sf_error *e
 /* Linear interpolation at `time` (s); the end values outside the curve. */
 double sf_series_at(const sf_series *series, double time);
 
+/* The curve with `lead` (s) of the value `level` before its first point, where it jumps. */
+sf_status sf_signal_lead_in(const sf_series *series, double lead, double level, sf_series *out,
+                            sf_error *err);
+
 /* A sampling rate (Hz) that keeps every detail of the curve: SF_SIGNAL_RATE, or the next multiple of it above
  * the mean rate of the points, so that resampling a finely stepped history does not alias it. At most 20
  * times as much. */
 double sf_signal_rate(const sf_series *series);
 
-/* Uniform samples from the first instant on, `rate` (Hz) apart, by linear interpolation. */
+/* Uniform samples from the first instant on, `rate` (Hz) apart. A sample is the mean of the curve over its
+ * interval, half a step on either side, so that the integral of the curve, an impulse, survives however short
+ * its peaks are; the first and the last sample are the curve's own values. */
 sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *uniform, sf_error *err);
 
 /* Two-pole Butterworth filter of SAE J211-1, run forward and backward (four poles, no phase shift), on

@@ -319,6 +319,7 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     c->motion_time = c->motion_displacement = NULL;
     c->motion_count = 0;
     m->run = c->run;
+    m->run.kinematic = c->kinematic;
     return check_depth(m, err);
 }
 

@@ -5,8 +5,7 @@
 #include "core/motion.h"
 #include <string.h>
 
-/* Acceleration by gravity along, m s-2. */
-static double pull(const sf_model *m) {
+double sf_missile_free_fall(const sf_model *m) {
     return -m->missile.gravity * m->missile.direction[2];
 }
 
@@ -77,7 +76,7 @@ sf_missile_response sf_missile_predict(const sf_model *m, const sf_missile *miss
     double dt_v = 0.5 * (dt_old + dt);
     sf_missile_response response = {.direction = m->missile.direction, .mobility = mobility(m)};
     response.travel = sf_missile_is_driven(m) ? sf_motion_displacement(m, time + dt) - missile->displacement
-                                              : dt * (missile->velocity + dt_v * pull(m));
+                                              : dt * (missile->velocity + dt_v * sf_missile_free_fall(m));
     return response;
 }
 
@@ -144,7 +143,9 @@ void sf_missile_touch(sf_missile *missile, double time) {
 
 void sf_missile_accelerate(const sf_model *m, sf_missile *missile) {
     missile->acceleration =
-        sf_missile_is_driven(m) ? 0 : pull(m) + mobility(m) * sf_dot3(missile->force, m->missile.direction);
+        sf_missile_is_driven(m)
+            ? 0
+            : sf_missile_free_fall(m) + mobility(m) * sf_dot3(missile->force, m->missile.direction);
 }
 
 void sf_missile_kick(const sf_model *m, sf_missile *missile, double time, double dt, double dt_old) {
@@ -172,7 +173,7 @@ double sf_missile_mass(const sf_model *m) {
 }
 
 double sf_missile_weight(const sf_model *m) {
-    return sf_missile_mass(m) * pull(m);
+    return sf_missile_mass(m) * sf_missile_free_fall(m);
 }
 
 double sf_missile_along(const sf_model *m, const double vector[3]) {
@@ -198,8 +199,8 @@ double sf_missile_work(const sf_model *m, const sf_missile *missile, const doubl
     return sf_missile_along(m, force) * (missile->displacement - missile->displacement_old);
 }
 
-double sf_missile_deceleration(const sf_model *m, const sf_missile *missile) {
-    return sf_missile_is_driven(m) ? 0 : -missile->acceleration; /* not -0 */
+double sf_missile_reading(const sf_model *m, const sf_missile *missile) {
+    return 0 - mobility(m) * sf_missile_along(m, missile->force); /* not -0 */
 }
 
 double sf_missile_contact_force(const sf_model *m, const sf_missile *missile) {

@@ -41,10 +41,11 @@ void sf_solve_print_ledger(const sf_model *m, const sf_state *s, const sf_run *r
         printf("largest contact force %.2f N at %.3f ms, largest local compression %.4f\n", x->peak_value,
                1e3 * x->peak_time, x->largest_compression);
     else
-        printf("largest acceleration %.2f g at %.3f ms, largest local compression %.4f, speed upwards at the "
-               "end %.3f m/s\n",
-               x->peak_value / SF_STANDARD_GRAVITY, 1e3 * x->peak_time, x->largest_compression,
-               fmax(0, -s->missile.velocity_now));
+        printf(
+            "largest specific force %.2f g at %.3f ms, largest local compression %.4f, speed upwards at the "
+            "end %.3f m/s\n",
+            x->peak_value / SF_STANDARD_GRAVITY, 1e3 * x->peak_time, x->largest_compression,
+            fmax(0, -s->missile.velocity_now));
     sf_run_tell(m, s, x, &sink);
     const sf_good_run *good = sf_good_run_limits();
     if (l->largest_error > good->energy_error || fabs(x->stabilisation_share) > good->stabilisation ||

@@ -128,13 +128,14 @@ static sf_status write_item(sf_h5 *file, const char *group, const char *name, co
 static sf_status write_head(const sf_model *m, const sf_state *s, const char *path, sf_h5 *file,
                             sf_error *err) {
     const int64_t three = 3;
-    double acceleration = sf_missile_deceleration(m, &s->missile), displacement[3], reaction[3];
+    double acceleration = sf_missile_reading(m, &s->missile), displacement[3], reaction[3];
     sf_missile_translation(m, &s->missile, displacement);
     for (int c = 0; c < 3; c++)
         reaction[c] = sf_model_whole(m) * s->base_reaction[c];
     if (write_item(file, path, "time", "s", "time", 0, NULL, &s->time, err) != SF_OK ||
-        write_item(file, path, "acceleration", "m s-2", "of the missile, against its direction of motion", 0,
-                   NULL, &acceleration, err) != SF_OK ||
+        write_item(file, path, "acceleration", "m s-2",
+                   "specific force on the missile, against its direction of motion", 0, NULL, &acceleration,
+                   err) != SF_OK ||
         write_item(file, path, "missile_displacement", "m", "translation of the missile since t = 0", 1,
                    &three, displacement, err) != SF_OK)
         return err->status;

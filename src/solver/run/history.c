@@ -29,7 +29,7 @@ static double area_in_contact(const sf_model *m, const sf_state *s) {
 
 /* clang-format off */
 VALUE(time, s->time)
-VALUE(acceleration, sf_missile_deceleration(m, &s->missile))
+VALUE(acceleration, sf_missile_reading(m, &s->missile))
 VALUE(velocity, s->missile.velocity_now)
 VALUE(displacement, s->missile.displacement)
 VALUE(indentation, fmax(0, sf_missile_depth(m, &s->missile)))

@@ -19,7 +19,7 @@ void sf_recorder_free(sf_recorder *r) {
 
 double sf_recorder_measure(const sf_model *m, const sf_state *s) {
     return sf_missile_is_driven(m) ? sf_model_whole(m) * sf_missile_contact_force(m, &s->missile)
-                                   : sf_missile_deceleration(m, &s->missile);
+                                   : sf_missile_reading(m, &s->missile);
 }
 
 sf_extremes sf_recorder_extremes(const sf_recorder *r) {

@@ -6,7 +6,7 @@
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     int64_t driven = sf_missile_is_driven(m);
     const double informed = sf_model_informed_strain(m);
-    const double density = sf_material_density(&m->material[0]);
+    const double gravity = sf_missile_free_fall(m), density = sf_material_density(&m->material[0]);
     const struct {
         sf_h5_info info;
         sf_h5_type type;
@@ -66,6 +66,16 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
          0,
          {0},
          &driven},
+        {{"/model/gravity_along", "m s-2", "acceleration of the missile in free flight, along its direction"},
+         SF_H5_F64,
+         0,
+         {0},
+         &gravity},
+        {{"/model/kinematic", "1", "figures of 0: the specific force; 1: the kinematic acceleration"},
+         SF_H5_I64,
+         0,
+         {0},
+         &m->run.kinematic},
         {{"/model/missile_direction", "1", "direction of motion"},
          SF_H5_F64,
          1,
