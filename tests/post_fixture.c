@@ -105,6 +105,7 @@ static sf_status put_model(sf_h5 *file, const cloud *c, const fixture_options *o
     put_scalar(file, "/model/density", 35, err);
     put_scalar(file, "/model/missile_mass", FIXTURE_MASS, err);
     put_scalar(file, "/model/missile_speed", FIXTURE_SPEED, err);
+    put_scalar(file, "/model/expected_mesh_error", 0, err);
     put_scalar(file, "/model/gravity_along", SF_STANDARD_GRAVITY, err);
     put_integer(file, "/model/kinematic", o->kinematic, err);
     put_integer(file, "/model/missile_driven", 0, err);

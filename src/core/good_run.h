@@ -28,8 +28,11 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "the stabilisation stiffens the pad")                                                                            \
     X(contact, 0.01, 0.05, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
       "contact consumes energy that the foam should take")                                                             \
-    X(filter, 0.03, 0.25, SF_AS_PERCENT, "raw peak against the filtered one", "`a_max_raw_g` / `a_max_g` - 1",         \
+    X(filter, 0.03, 0.25, SF_AS_PERCENT, "raw peak against the filtered one", "`a_max_raw_g` / `a_max_g` - 1; not of a `step_artefact`",                                          \
       "the filter makes the peak, or single steps do")                                                                 \
+    X(step_artefact, 0, INFINITY, SF_AS_NUMBER, "raw peak of one or two time steps",                                   \
+      "1 if `a_max_raw_rows` < 3, else 0",                                                                             \
+      "the raw peak grows as the time step shrinks and means nothing; the filtered figures do not depend on it")       \
     X(coarse, 0, INFINITY, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
       "-`local_strain_excess`, at least 0",                                                                            \
       "the mesh is too coarse to show the strain below the missile")                                                   \

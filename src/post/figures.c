@@ -68,6 +68,20 @@ static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *er
     return filter(r, free_flight, f, err);
 }
 
+/* Rows around the raw peak, without a gap, above half of it. */
+static int64_t count_peak_rows(const sf_series *raw) {
+    int64_t peak = 0;
+    for (int64_t i = 1; i < raw->count; i++)
+        if (raw->value[i] > raw->value[peak])
+            peak = i;
+    int64_t first = peak, last = peak;
+    while (first > 0 && raw->value[first - 1] > 0.5 * raw->value[peak])
+        first--;
+    while (last < raw->count - 1 && raw->value[last + 1] > 0.5 * raw->value[peak])
+        last++;
+    return last - first + 1;
+}
+
 static void compute_energies(const sf_results *r, sf_figures *f) {
     sf_internal_energy e = sf_history_internal_energy(&r->history);
     f->internal_energy_peak = e.peak;
@@ -187,6 +201,7 @@ sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *
     if (sf_injury_evaluate(&f->raw, &f->injury_raw, err) != SF_OK ||
         sf_injury_evaluate(&f->filtered, &f->injury, err) != SF_OK)
         goto done;
+    f->raw_peak_rows = count_peak_rows(&f->raw);
     compute_rebound(results, f);
 done:
     if (err->status != SF_OK)

@@ -33,6 +33,7 @@
     X(INNER, injury.clip_cumulative_g, "clip_3ms_cumulative_g", 1, "exceeded for 3 ms in all")                         \
     X(INNER, injury_raw.a_max_g, "a_max_raw_g", 1, "largest deceleration of the raw curve")                            \
     X(INNER, injury_raw.hic.value, "hic_raw", 1, "head injury criterion of the raw curve, no limit of the window")     \
+    X(COUNT, raw_peak_rows, "a_max_raw_rows", 1, "rows around that peak above half of it: 1 or 2 are an artefact of the time step") \
     X(NUMBER, cfc, "cfc", 1, "channel frequency class of the filter")                                                  \
     X(NUMBER, rate, "sampling_rate_Hz", 1, "sampling of the filtered curve")                                           \
     X(NUMBER, v0, "v0_m_s", 1, "speed at contact")                                                                     \

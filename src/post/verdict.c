@@ -46,9 +46,18 @@ static double contact_value(const sf_results *r, const sf_figures *f) {
     return f->contact_energy_fraction;
 }
 
+static bool has_step_artefact(const sf_figures *f) {
+    return f->raw_peak_rows > 0 && f->raw_peak_rows < 3;
+}
+
+static double step_artefact_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->driven || !f->touched ? NAN : has_step_artefact(f);
+}
+
 static double filter_value(const sf_results *r, const sf_figures *f) {
     (void)r;
-    if (f->driven || !(f->injury.a_max_g > 0))
+    if (has_step_artefact(f) || f->driven || !(f->injury.a_max_g > 0))
         return NAN;
     return f->injury_raw.a_max_g / f->injury.a_max_g - 1;
 }
