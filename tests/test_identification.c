@@ -189,6 +189,37 @@ static void long_branches_are_condensed_to_means(void **state) {
     sf_compression_test_free(&test);
 }
 
+/* A displacement that trembles by 0.02 % of the thickness does not turn; its points come in order. */
+static void jitter_of_the_strain_is_sorted(void **state) {
+    (void)state;
+    sf_compression_test test;
+    sf_error err = SF_ERROR_INIT;
+    const char *path = program_path(&place, "jitter.csv");
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs("strain,stress_kPa\n", out);
+    for (int i = 0; i <= 900; i++) {
+        double e = (i <= 450 ? i : 900 - i) * 1e-3 + 2e-4 +
+                   (i % 3 == 0   ? 2e-4
+                    : i % 3 == 1 ? -9e-4
+                                 : 0) *
+                       1.2;
+        fprintf(out, "%.7f,%.6f\n", e, 100 * e * (i <= 450 ? 1 : 0.8));
+    }
+    assert_int_equal(fclose(out), 0);
+    const sf_compression_source source = {.path = path, .rate = 1};
+    assert_int_equal(sf_compression_test_read(&source, &test, &err), SF_OK);
+    assert_in_range(test.loading, 449, 452);
+    assert_int_equal(test.count, 901);
+    for (int i = 1; i < test.count; i++) {
+        assert_true(i < test.loading ? test.strain[i] >= test.strain[i - 1]
+                                     : test.strain[i] <= test.strain[i - 1]);
+        assert_close(test.stress[i], 1e5 * test.strain[i] * (i < test.loading ? 1 : 0.8), 0.02);
+    }
+    assert_non_null(strstr(test.understood, "jitter of"));
+    sf_compression_test_free(&test);
+}
+
 /* ---- machines' files ---- */
 
 /* The good sheet as a machine writes it, of a cylinder of 60 mm and 40 mm height: mm and N, decimal commas,
@@ -699,6 +730,7 @@ int main(void) {
         cmocka_unit_test(wrong_tests_are_refused_with_their_line),
         cmocka_unit_test(scatter_about_zero_and_percent_are_read),
         cmocka_unit_test(long_branches_are_condensed_to_means),
+        cmocka_unit_test(jitter_of_the_strain_is_sorted),
         cmocka_unit_test(displacement_and_force_become_strain_and_stress),
         cmocka_unit_test(incomplete_specimens_are_refused),
         cmocka_unit_test(toe_is_removed_on_request),

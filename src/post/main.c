@@ -67,8 +67,8 @@ static sf_status parse_filter(const char *option, const char *text, double *cfc,
     for (size_t k = 0; k < sizeof classes / sizeof classes[0]; k++)
         if (end != text && *end == '\0' && *cfc == classes[k])
             return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the channel frequency classes are 60, 180, 600 and 1000",
-                   option, text);
+    return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the channel frequency classes are 60, 180, 600 and 1000%s",
+                   option, text, strcmp(option, "--filter") == 0 ? "" : " (none: not filtered)");
 }
 
 static sf_status parse_shift(const char *text, double *shift, sf_error *err) {

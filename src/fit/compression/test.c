@@ -11,6 +11,7 @@
 
 static const double STRAIN_ZERO = 2e-3; /* strains from minus this on are zero with scatter */
 static const double STRESS_ZERO = 0.01; /* stresses likewise, as a part of the largest */
+static const double JITTER = 5e-4;      /* strain by which scatter may turn it back */
 static const double SMALL_STRAIN = 0.1; /* a test must reach it */
 static const double SLACK = 0.005;      /* part of the largest stress that scatter may make */
 static const double FALL = 0.1;         /* part of the stress that may be lost while loading */
@@ -197,18 +198,66 @@ static sf_status correct_toe(sf_compression_test *t, sf_error *err) {
 
 /* ---- checks of the whole ---- */
 
-/* Loading lasts until the strain first falls. */
+/* A fall of more than JITTER below what was reached, before the largest strain: the strain turns twice. */
+static sf_status check_rise(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
+    double highest = t->count > 0 ? t->strain[0] : 0;
+    for (int i = 1; i < t->loading; i++) {
+        highest = fmax(highest, t->strain[i]);
+        if (t->strain[i] >= highest - JITTER)
+            continue;
+        int again = i + 1; /* there is one, as the largest strain follows */
+        while (again < t->loading - 1 && t->strain[again] <= t->strain[again - 1])
+            again++;
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
+            "then one unloading",
+            t->path, t->line[again], terms->name[0], t->strain[again] / terms->scale[0], t->line[i]);
+    }
+    return SF_OK;
+}
+
+static sf_status check_fall(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
+    double lowest = INFINITY;
+    for (int i = t->loading; i < t->count; i++) {
+        lowest = fmin(lowest, t->strain[i]);
+        if (t->strain[i] > lowest + JITTER)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
+                "then one unloading",
+                t->path, t->line[i], terms->name[0], t->strain[i] / terms->scale[0], t->line[t->loading]);
+    }
+    return SF_OK;
+}
+
+/* Puts the points of a branch in the order of `sign` times their strain; how many moved. */
+static int sort_branch(sf_compression_test *t, int first, int end, double sign) {
+    int moved = 0;
+    for (int i = first + 1; i < end; i++) {
+        double strain = t->strain[i], stress = t->stress[i];
+        int line = t->line[i], to = i;
+        for (; to > first && sign * t->strain[to - 1] > sign * strain; to--) {
+            t->strain[to] = t->strain[to - 1];
+            t->stress[to] = t->stress[to - 1];
+            t->line[to] = t->line[to - 1];
+        }
+        t->strain[to] = strain;
+        t->stress[to] = stress;
+        t->line[to] = line;
+        moved += to < i;
+    }
+    return moved;
+}
+
+/* Loading lasts until the largest strain. Jitter of the displacement is sorted out. */
 static sf_status split_branches(sf_compression_test *t, const table_terms *terms, sf_error *err) {
-    t->loading = t->count > 0;
-    while (t->loading < t->count && t->strain[t->loading] >= t->strain[t->loading - 1])
-        t->loading++;
-    for (int i = t->loading + 1; i < t->count; i++)
-        if (t->strain[i] > t->strain[i - 1])
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one "
-                           "loading and then one unloading",
-                           t->path, t->line[i], terms->name[0], t->strain[i] / terms->scale[0],
-                           t->line[t->loading]);
+    for (int i = 0; i < t->count; i++)
+        if (t->strain[i] >= t->largest_strain)
+            t->loading = i + 1;
+    SF_TRY(check_rise(t, terms, err));
+    SF_TRY(check_fall(t, terms, err));
+    t->sorted = sort_branch(t, 0, t->loading, 1) + sort_branch(t, t->loading, t->count, -1);
     return SF_OK;
 }
 
@@ -332,15 +381,17 @@ static void condense(sf_compression_test *t) {
 static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
                      sf_compression_test *t) {
     static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};
-    char specimen[96] = "", toe[64] = "";
+    char specimen[96] = "", toe[64] = "", sorted[64] = "";
+    if (t->sorted > 0)
+        snprintf(sorted, sizeof sorted, ", jitter of %d points sorted", t->sorted);
     if (machine)
         snprintf(specimen, sizeof specimen, ", over %.5g mm2 and %.5g mm", 1e6 * source->area,
                  1e3 * source->thickness);
     if (source->toe)
         snprintf(toe, sizeof toe, ", toe of %.3g %% taken away", 100 * t->toe);
     snprintf(t->understood, sizeof t->understood,
-             "%.383s%s, %d points of loading and %d of unloading%s%s, %.4g 1/s", table->understood, specimen,
-             t->loading, t->count - t->loading, inverted[source->invert], toe, t->rate);
+             "%.383s%s, %d points of loading and %d of unloading%s%s%s, %.4g 1/s", table->understood,
+             specimen, t->loading, t->count - t->loading, inverted[source->invert], sorted, toe, t->rate);
 }
 
 sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,

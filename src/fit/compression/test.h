@@ -43,6 +43,7 @@ typedef struct sf_compression_test {
     int *line;             /* [count] in the file; owned */
     double largest_strain; /* - */
     double largest_stress; /* Pa */
+    int sorted;            /* points that jitter of the strain had put out of order */
     double toe;            /* -, strain that the correction took away */
     char understood[SF_COMPRESSION_UNDERSTOOD]; /* how the file was read, for the report */
 } sf_compression_test;
