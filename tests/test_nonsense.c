@@ -31,6 +31,8 @@ static int set_up(void **state) {
                 "printf 'strain,stress_kPa\\n0,0\\n0.1,20\\n0.5,100\\n1.2,900\\n' > through.csv && "
                 "printf 'strain,stress_kPa\\n0,7\\n0.1,20\\n0.5,100\\n0.8,900\\n' > preload.csv && "
                 "printf 'strain,stress_kPa\\n0,0\\n0.1,0\\n0.5,0\\n0.8,0\\n' > zero.csv && "
+                "printf 'strain,stress_kPa\\n0,0\\n0.1,20\\n0.5,100\\n0.6,100\\n' > flat.csv && "
+                "printf 'strain,stress_MPa\\n0,0\\n0.1,0.02\\n0.5,0.1\\n0.6,1e300\\n' > huge.csv && "
                 "printf 'strain,force_N\\n0,0\\n0.1,20\\n' > force.csv && "
                 "printf 'time_ms,displacement_mm\\n0,0\\n1,900\\n' > fast.csv && "
                 "printf 'time_ms,displacement_mm\\n0,0\\n5,1\\n4,2\\n' > back.csv && "
@@ -57,7 +59,8 @@ static int set_up(void **state) {
                 "nothing.cfg && "
                 "printf 'name = \"../f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
                 "\"../good.cfg\"; a_max_g = "
-                "50.0; } );\\n' > outside.cfg");
+                "50.0; } );\\n' > outside.cfg && "
+                "printf 'density = \"35 kg/m3\"; E = \"0.4 MPa\";\\ncurve = \"flat.csv\";\\n' > flat.cfg");
     if (made.code != 0)
         fail_msg("the files cannot be made: %s", made.err);
     return 0;
@@ -102,6 +105,7 @@ static void values_of_a_case(void **state) {
         {"--set missile.velocity='4.5 kg'", {"missile.velocity", "4.5 kg", "expected a speed"}},
         {"--set missile.velocity='\"4.5\"'", {"missile.velocity", "no unit", "4.5 m/s"}},
         {"--set missile.velocity=4.5", {"missile.velocity", "a plain number", "4.5 m/s"}},
+        {"--set missile.velocity='1 mm/s'", {"missile.velocity", "0.001 m/s is too slow", "9.81 %"}},
         {"--set missile.mass='0 kg'", {"missile.mass", "0 kg", "at least 1e-09 kg"}},
         {"--set missile.mass='-1 kg'", {"missile.mass", "-1 kg", "at least 1e-09 kg"}},
         {"--set missile.mass='1e12 kg'", {"missile.mass", "1e+12 kg", "at most 1e+09 kg"}},
@@ -140,6 +144,7 @@ static void values_of_a_case(void **state) {
         {"--set solver.end_time='5 mm'", {"solver.end_time", "is a length", "expected a time"}},
         {"--set solver.step_safety=1.5", {"solver.step_safety", "1.5", "at most 1"}},
         {"--set solver.step_limit='1 ms'", {"solver.step_limit", "0.001 s", "at most 2e-05 s"}},
+        {"--set solver.step_limit='1e-12 s'", {"solver.step_limit", "1e-12 s", "1e-09 of solver.end_time"}},
         {"--set solver.energy_limit=2.0", {"solver.energy_limit", "2 is", "at most 1"}},
         {"--set output.frame_interval='0 ms'", {"output.frame_interval", "0 s", "at least 1e-09 s"}},
         {"--set output.frame_interval='1 ns'", {"output.frame_interval", "4e+07 frames", "at most 100000"}},
@@ -163,6 +168,9 @@ static void curves_and_motions(void **state) {
         {"--set material.curve=files/zero.csv", {"zero.csv", "zero everywhere"}},
         {"--set material.curve=files/force.csv", {"force.csv:1", "stress_Pa"}},
         {"--set material.curve=files", {"files", "not a plain file"}},
+        {"--set material.curve=files/flat.csv", {"material.curve: files/flat.csv", "curve is flat", "0.6"}},
+        {"--set material=@files/flat.cfg", {"files/flat.cfg:2", "files/flat.cfg:2", "curve is flat"}},
+        {"--set material.curve=files/huge.csv", {"huge.csv", "from the strain 0.5 to 0.6", "1e+306 Pa"}},
         {"--set missile.motion=files/fast.csv", {"fast.csv:3", "900 m/s", "at most 200 m/s"}},
         {"--set missile.motion=files/back.csv", {"back.csv:4", "time 4", "the one before it (5)"}},
         {"--set missile.motion=files/late.csv", {"late.csv:2", "displacement 3", "(0, 0)"}},
@@ -179,6 +187,7 @@ static void geometries(void **state) {
         {"--set geometry.length_unit=nm",
          {"pad is 5e-08 m thick", "1e-06 to 1000 m", "geometry.length_unit"}},
         {"--set missile.mass='1 mg'", {"missile.mass", "1e-06 kg", "the heaviest node"}},
+        {"--set material.eta='1e9 Pa s'", {"first stable time step", "1e-09 of solver.end_time", "eta"}},
         {"--set geometry.parameters.quarter=0 --set missile.shape=surface",
          {"cut open", "x = 0 mm", "whole pad"}},
         {"--set pad.fixed='[\"floor\"]'", {"pad.fixed", "\"floor\"", "\"base\""}},

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "campaign/material_file.h"
 
+#include "case/case.h"
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -138,4 +139,20 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
             name, name);
     put_card(file, name, material);
     return close_file(file, path, err);
+}
+
+sf_status sf_material_write_checked(const char *folder, const char *name, const sf_material *material,
+                                    const sf_material_text *text, sf_error *err) {
+    char path[PATH_SIZE];
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_material_write(folder, name, material, text, err) != SF_OK)
+        return err->status;
+    snprintf(path, sizeof path, "%s/%s.cfg", folder, name);
+    if (sf_case_check_material(path, &inner) == SF_OK)
+        return SF_OK;
+    remove(path);
+    size_t skip = strlen(folder);
+    bool inside = strncmp(inner.text, folder, skip) == 0 && inner.text[skip] == '/';
+    return SF_FAIL(err, SF_ERR_MODEL, "no material is written, because softfall-pre would refuse it: %s",
+                   inner.text + (inside ? skip + 1 : 0));
 }

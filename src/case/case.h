@@ -72,6 +72,10 @@ sf_status sf_case_read(const char *path, int count, const char *const *overrides
                        sf_case *out, sf_error *err);
 void sf_case_free(sf_case *c);
 
+/* Would a case with this material file (the keys of the group `material`) be refused for it? The sentence
+ * names file, line and key. */
+sf_status sf_case_check_material(const char *path, sf_error *err);
+
 /* Bytes of motion_time, and of motion_displacement; 0: the missile is free. */
 size_t sf_case_motion_bytes(const sf_case *c);
 

@@ -45,6 +45,23 @@ static sf_status add_curve(sf_law_curves *card, double rate, const sf_case_curve
     return SF_OK;
 }
 
+static const double STEEPEST = 1e12; /* Pa, as the bound on a modulus */
+
+/* Stiffer than any solid: 1e300 MPa, or two points at one place. */
+static sf_status check_slopes(const char *path, const sf_case_curve *curve, sf_error *err) {
+    for (int64_t k = 1; k < curve->count; k++) {
+        double slope = (curve->stress[k] - curve->stress[k - 1]) / (curve->strain[k] - curve->strain[k - 1]);
+        if (!(slope <= STEEPEST))
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s: from the strain %g to %g the stress rises from %g to %g Pa, with a modulus of "
+                "%.3g Pa; at most %g Pa are possible",
+                path, curve->strain[k - 1], curve->strain[k], curve->stress[k - 1], curve->stress[k], slope,
+                STEEPEST);
+    }
+    return SF_OK;
+}
+
 static sf_status read_file(sf_case_reader *reader, const config_setting_t *setting, double rate,
                            sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
@@ -58,6 +75,8 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     sf_case_curve curve = {0};
     sf_error inner = SF_ERROR_INIT;
     sf_status status = sf_case_curve_read(path, &curve, &inner);
+    if (status == SF_OK)
+        status = check_slopes(path, &curve, &inner);
     if (status != SF_OK) {
         SF_FAIL(err, status, "%s (named at %s)", inner.text, sf_case_where(reader, setting, where));
     } else {

@@ -99,6 +99,8 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
         const config_setting_t *group = config_lookup(&reader->config, key->group);
         const config_setting_t *setting = group ? config_setting_get_member(group, key->name) : NULL;
         char detail[128] = "-";
+        if (reader->material_only && !key->in_card && key->kind != SF_KEY_LAW)
+            continue;
         reader->given[k] = setting != NULL;
         if (key->kind == SF_KEY_LAW)
             snprintf(detail, sizeof detail, "%s", reader->out->material.law->name);
@@ -121,6 +123,24 @@ static bool key_is_given(const void *reader, const char *group, const char *key)
     return sf_case_is_given(reader, group, key);
 }
 
+/* What the law itself refuses when the solver builds it: it concerns the curves. */
+static sf_status check_law(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_material *m = &reader->out->material;
+    const char *place = "material", *file = NULL;
+    sf_material_law law;
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_material_law_build(m, &law, &inner) == SF_OK) {
+        sf_material_law_free(&law);
+        return SF_OK;
+    }
+    if (m->law->curves != SIZE_MAX)
+        place = sf_case_is_given(reader, "material", "curve") ? "material.curve" : "material.curves";
+    config_lookup_string(&reader->config, place, &file);
+    return SF_FAIL(err, inner.status, "%s: %s: %s%s%s", sf_case_where_is(reader, place, where), place,
+                   file ? file : "", file ? ": " : "", inner.text);
+}
+
 /* The law's rules. */
 static sf_status check_material(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
@@ -129,7 +149,7 @@ static sf_status check_material(const sf_case_reader *reader, sf_error *err) {
     const char *place = "material";
     sf_error inner = SF_ERROR_INIT;
     if (!m->law->check_keys || m->law->check_keys(m->card, &given, &place, &inner) == SF_OK)
-        return SF_OK;
+        return check_law(reader, err);
     return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), inner.text);
 }
 
@@ -174,6 +194,11 @@ static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
                        "would be no curve",
                        sf_case_where_is(reader, "solver.end_time", where), run->end_time, LEAST_STEPS,
                        run->step_limit);
+    if (run->step_limit < SF_SMALLEST_STEP * run->end_time)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: solver.step_limit: %g s is below %g of solver.end_time (%g s), where a run stops",
+                       sf_case_where_is(reader, "solver.step_limit", where), run->step_limit,
+                       SF_SMALLEST_STEP, run->end_time);
     if (run->end_time / run->frame_interval > MOST_FRAMES)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: output.frame_interval: %g s up to solver.end_time (%g s) means %.3g frames; at "
@@ -220,11 +245,29 @@ static void complete(const sf_case_reader *reader, sf_case *c) {
     c->symmetry_given = sf_case_is_given(reader, "pad", "symmetry");
 }
 
+/* A free missile's first step adds the speed g dt, and the energy balance of the run sees it. */
+static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
+    static const double SHARE = 0.5; /* of the energy limit: the rest of the run needs some, too */
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    double gain = -c->missile_card.gravity * c->missile_card.direction[2] * c->run.step_limit,
+           most = SHARE * c->run.energy_limit;
+    if (c->motion_count > 0 || 0.5 * gain <= most * c->missile_card.speed)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: missile.velocity: %g m/s is too slow to resolve: in one solver.step_limit (%g s) "
+                   "gravity adds %g m/s, an energy error of %.3g %%, more than half of solver.energy_limit "
+                   "(%g %%)",
+                   sf_case_where_is(reader, "missile.velocity", where), c->missile_card.speed,
+                   c->run.step_limit, gain, 50 * gain / c->missile_card.speed, 100 * c->run.energy_limit);
+}
+
 /* Rules on the complete case. */
 static sf_status check_complete(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
-    if (check_times(reader, err) != SF_OK || check_reach(reader, err) != SF_OK)
+    if (check_times(reader, err) != SF_OK || check_reach(reader, err) != SF_OK ||
+        check_speed(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
         sf_sink_tell(reader->sink, SF_WARNING,
@@ -297,6 +340,30 @@ done:
     sf_case_source_free(&reader.source);
     if (err->status != SF_OK)
         sf_case_free(out);
+    return err->status;
+}
+
+sf_status sf_case_check_material(const char *path, sf_error *err) {
+    char *override = NULL;
+    size_t size = 0;
+    sf_case scratch = {0};
+    sf_case_reader reader = {.path = path, .out = &scratch, .material_only = true};
+    config_init(&reader.config);
+    config_set_destructor(&reader.config, free);
+    reader.listing = open_memstream(&scratch.parameters, &size);
+    if (!reader.listing || asprintf(&override, "material=@%s", path) < 0)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material %s", path);
+    else if (sf_units_open(&reader.units, err) == SF_OK &&
+             sf_case_override(&reader.config, override, err) == SF_OK && choose_law(&reader, err) == SF_OK &&
+             check_names(&reader, config_root_setting(&reader.config), "", err) == SF_OK &&
+             read_keys(&reader, err) == SF_OK)
+        check_material(&reader, err);
+    if (reader.listing)
+        fclose(reader.listing);
+    free(override);
+    sf_units_close(&reader.units);
+    config_destroy(&reader.config);
+    sf_case_free(&scratch);
     return err->status;
 }
 

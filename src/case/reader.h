@@ -21,6 +21,7 @@ typedef struct sf_case_reader {
     sf_case_source source;  /* of the settings without a hook */
     sf_key_list keys;       /* of the case's law */
     bool given[SF_KEY_MAX]; /* per row of `keys` */
+    bool material_only;     /* read the keys of the material, and no others */
     const sf_sink *sink;    /* borrowed */
     FILE *listing;          /* the parameters text under construction */
 } sf_case_reader;

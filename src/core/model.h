@@ -31,6 +31,7 @@ enum {
 }; /* contact with an exact sphere cap, or with the triangles */
 
 enum { SF_MATERIAL_MAX = 256 };
+#define SF_SMALLEST_STEP 1e-9 /* of the end time: a run whose stable step falls below it stops */
 
 typedef struct sf_missile_card {
     double mass;             /* kg, of the whole missile, whatever the symmetry; 0 with a prescribed motion */

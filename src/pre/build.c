@@ -349,6 +349,18 @@ static void estimate_mesh_error(sf_model *m, sf_build_report *report) {
     m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
 }
 
+/* A run that would stop at its first step. */
+static sf_status check_first_step(const sf_model *m, double first, sf_error *err) {
+    double step = m->run.step_safety * first, least = SF_SMALLEST_STEP * m->run.end_time;
+    if (step >= least)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "the first stable time step is %.3g s, below %g of solver.end_time (%g s), where a run "
+        "stops: the foam is too stiff or too viscous (material.E, curve, ED, eta, DAMP), or too light",
+        step, SF_SMALLEST_STEP, m->run.end_time);
+}
+
 sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *m, sf_build_report *report,
                          const sf_sink *sink, sf_error *err) {
     memset(m, 0, sizeof *m);
@@ -358,8 +370,10 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
         build_sets(c, mesh, contact_area, m, report, err) == SF_OK &&
         build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
-        if (sf_drop_check(c, mesh, m, &report->zone, sink, err) == SF_OK && sf_model_check(m, err) == SF_OK)
-            first_step(m, &report->first_step, err);
+        if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
+            first_step(m, &report->first_step, err) == SF_OK &&
+            check_first_step(m, report->first_step, err) == SF_OK)
+            sf_drop_warn(c, mesh, m, &report->zone, sink);
     }
     free(contact_area);
     if (err->status != SF_OK)

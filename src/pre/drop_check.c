@@ -225,30 +225,41 @@ static void tell_free_planes(const sf_case *c, const sf_mesh *mesh, const sf_sin
 
 /* ---- spacing ---- */
 
-static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_contact_zone *zone,
-                               const sf_sink *sink, sf_error *err) {
-    char reason[256];
-    if (!(m->expected_mesh_error >= SF_MESH_ERROR_WARNING))
-        return SF_OK;
+enum { REASON_SIZE = 256 };
+
+static void describe_spacing(const sf_model *m, const sf_contact_zone *zone, char text[REASON_SIZE]) {
     snprintf(
-        reason, sizeof reason,
+        text, REASON_SIZE,
         "the nodal spacing under the missile is %.3g mm, in a pad of %.4g mm with a contact zone of %.3g mm "
         "half width: expected error of a_max about %.2g %%, mostly too low",
         1e3 * zone->spacing, 1e3 * m->thickness, 1e3 * zone->half_width, 100 * m->expected_mesh_error);
-    if (m->expected_mesh_error > c->mesh_error_limit)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s, over pad.mesh_error_limit (%.3g %%): take a finer mesh, or raise that key",
-                       reason, 100 * c->mesh_error_limit);
-    sf_sink_tell(sink, SF_WARNING, "%s", reason);
-    return SF_OK;
+}
+
+static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_contact_zone *zone,
+                               sf_error *err) {
+    char reason[REASON_SIZE];
+    if (m->expected_mesh_error <= c->mesh_error_limit)
+        return SF_OK;
+    describe_spacing(m, zone, reason);
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s, over pad.mesh_error_limit (%.3g %%): take a finer mesh, or raise that key", reason,
+                   100 * c->mesh_error_limit);
 }
 
 sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
-                        const sf_sink *sink, sf_error *err) {
+                        sf_error *err) {
     if (check_thickness(m, err) != SF_OK || check_mass(m, err) != SF_OK ||
-        check_outside(c, m, err) != SF_OK || check_symmetry(c, mesh, m, err) != SF_OK ||
-        check_spacing(c, m, zone, sink, err) != SF_OK)
+        check_outside(c, m, err) != SF_OK || check_symmetry(c, mesh, m, err) != SF_OK)
         return err->status;
+    return check_spacing(c, m, zone, err);
+}
+
+void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
+                  const sf_sink *sink) {
+    char reason[REASON_SIZE];
     tell_free_planes(c, mesh, sink);
-    return SF_OK;
+    if (!(m->expected_mesh_error >= SF_MESH_ERROR_WARNING))
+        return;
+    describe_spacing(m, zone, reason);
+    sf_sink_tell(sink, SF_WARNING, "%s", reason);
 }

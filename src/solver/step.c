@@ -12,8 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { RESIDUAL_INTERVAL = 16 };          /* steps between measurements of |G v| */
-static const double SMALLEST_STEP = 1e-9; /* of the end time */
+enum { RESIDUAL_INTERVAL = 16 }; /* steps between measurements of |G v| */
 
 /* Fails on a domain with det F <= 0, or with det F or a stable step that is NaN or infinite. */
 static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *err) {
@@ -35,7 +34,7 @@ static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *e
 }
 
 static sf_status check_step(const sf_model *m, const sf_state *s, sf_error *err) {
-    double floor = SMALLEST_STEP * m->run.end_time;
+    double floor = SF_SMALLEST_STEP * m->run.end_time;
     if (s->dt >= floor)
         return SF_OK;
     const double *x = &m->position[3 * s->jacobian_node];

@@ -74,7 +74,7 @@ static sf_status write_material(const sf_staging *output, const sf_compression_f
     sf_foam_card informed = *card; /* its curves stay the card's */
     informed.informed_strain = fit->data.end;
     const sf_material material = sf_foam_material(&informed);
-    sf_material_write(output->aside, "material", &material, &comments, err);
+    sf_material_write_checked(output->aside, "material", &material, &comments, err);
     free(text);
     return err->status;
 }

@@ -377,7 +377,7 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
     if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
         card.informed_strain = high;
         const sf_material material = sf_foam_material(&card);
-        sf_material_write(output->aside, fit->input->material_name, &material, &text, err);
+        sf_material_write_checked(output->aside, fit->input->material_name, &material, &text, err);
         sf_foam_card_free(&card);
     }
     free(provenance);
