@@ -47,7 +47,7 @@ static void the_height_found_gives_the_limit_when_it_is_simulated(void **state) 
     program_result r =
         program_succeed(p, "cfh", "'%s' -o out -t 1 --limit-hic 1e6 %s --rig '%s'", fixture_source(EXAMPLE),
                         program_coarse(SPACING), fixture_source("examples/data/penta2018_table2_70mm.csv"));
-    char *json = read_text(p, "out/cfh.json"), *report = read_text(p, "out/report.md");
+    char *json = read_text(p, "out/cfh.json"), *report = read_text(p, "out/report.html");
     double height = number_of(json, "critical_fall_height", "height_m");
     double speed = number_of(json, "critical_fall_height", "speed_m_s");
     assert_non_null(strstr(json, "\"deciding\": \"a_max\""));
@@ -81,7 +81,7 @@ static void a_second_run_uses_every_drop_again(void **state) {
         program_run(p, "cfh", "'%s' -o out -t 1 %s", fixture_source(EXAMPLE), program_coarse(SPACING));
     assert_int_equal(refused.code, 2);
     assert_non_null(strstr(refused.err, "--force"));
-    program_shell(p, "rm out/cfh.* out/report.md"); /* as after an interruption: only the drops are there */
+    program_shell(p, "rm out/cfh.* out/report.html"); /* as after an interruption: only the drops are there */
     program_result r = program_succeed(p, "cfh", "'%s' -o out -t 1 --limit-hic 1e6 %s --rig '%s'",
                                        fixture_source(EXAMPLE), program_coarse(SPACING), pairs);
     assert_non_null(strstr(r.out, "\n0 drops simulated"));
@@ -96,15 +96,15 @@ static void bounds_and_extrapolation_are_said(void **state) {
     program_result r = program_succeed(p, "cfh", "'%s' -o low -t 1 --max-height '50 cm' %s",
                                        fixture_source(EXAMPLE), program_coarse(20));
     assert_non_null(strstr(r.out, "Critical fall height above 0.500 m"));
-    char *report = read_text(p, "low/report.md");
+    char *report = read_text(p, "low/report.html");
     assert_non_null(strstr(report, "greatest height allowed"));
-    assert_null(strstr(report, "## Warnings"));
+    assert_null(strstr(report, "<h2>Warnings"));
     free(report);
     program_shell(p, "sed '/^0.[6-9]/d' '%s' > short.csv", fixture_source("examples/materials/eva35.csv"));
     r = program_succeed(p, "cfh",
                         "'%s' -o short -t 1 --max-height '50 cm' %s --set material.curve=\"$PWD/short.csv\"",
                         fixture_source(EXAMPLE), program_coarse(20));
-    report = read_text(p, "short/report.md");
+    report = read_text(p, "short/report.html");
     assert_non_null(strstr(report, "the compression table ends at 0.580: extrapolated curve"));
     assert_non_null(strstr(r.err, "softfall-cfh: warning: at 0.500 m: largest local strain 0."));
     free(report);
@@ -116,7 +116,7 @@ static void a_limit_exceeded_from_the_lowest_height_on_is_a_bound(void **state) 
     program_result r = program_succeed(p, "cfh", "'%s' -o below -t 1 --height '2 cm' --limit-g 0.5 %s",
                                        fixture_source(EXAMPLE), program_coarse(20));
     assert_non_null(strstr(r.out, "Critical fall height below 0.010 m of free fall: a_max exceeds 0.5 g"));
-    char *json = read_text(p, "below/cfh.json"), *report = read_text(p, "below/report.md");
+    char *json = read_text(p, "below/cfh.json"), *report = read_text(p, "below/report.html");
     assert_non_null(strstr(json, "\"verdict\": \"below the lowest point\""));
     assert_non_null(strstr(json, "\"deciding\": \"a_max\""));
     assert_true(isnan(number_of(json, "critical_fall_height", "height_m")));
@@ -150,7 +150,7 @@ static void too_few_drops_that_succeed_determine_nothing(void **state) {
         assert_int_equal(count_of(json, "\"failed\": true"), cases[k].failed);
         assert_int_equal(count_of(json, "the simulation failed: softfall-solve: at t = "), cases[k].failed);
         assert_int_equal(count_of(json, "log.txt)"), cases[k].failed); /* whole sentences */
-        snprintf(path, sizeof path, "%s/report.md", cases[k].name);
+        snprintf(path, sizeof path, "%s/report.html", cases[k].name);
         char *report = read_text(p, path);
         assert_non_null(strstr(report, "Critical fall height not determined"));
         assert_int_equal(count_of(report, "the simulation failed: "), cases[k].failed);

@@ -121,9 +121,9 @@ static double summary_number(const program_place *p, const char *key) {
 static void every_output_is_there_and_nothing_is_left_over(void **state) {
     const program_place *p = *state;
     program_result list = program_shell(p, "ls -1 . out");
-    static const char *const names[] = {"model.h5",        "results.h5",  "summary.json",
-                                        "history.csv",     "section.csv", "acceleration.png",
-                                        "acceleration.gp", "pad.xdmf",    "pad.h5"};
+    static const char *const names[] = {
+        "model.h5",         "results.h5",  "summary.json",    "history.csv", "section.csv",
+        "acceleration.png", "report.html", "acceleration.gp", "pad.xdmf",    "pad.h5"};
     for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
         if (!strstr(list.out, names[k]))
             fail_msg("%s is missing", names[k]);

@@ -20,6 +20,7 @@ typedef struct setting {
     double mass;  /* kg */
     /* -, strain where the shortest compression table ends or the densification law begins */
     double table_end;
+    char *text, *parameters; /* of the case; owned */
 } setting;
 
 static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *err) {
@@ -36,8 +37,9 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
     for (int k = 0; k < o->override_count; k++)
         list[count++] = o->overrides[k];
     if (sf_case_read(o->case_path, count, list, &sink, &c, err) == SF_OK) {
-        *out =
-            (setting){c.missile_card.speed, c.missile_card.mass, c.material.law->data_end(c.material.card)};
+        *out = (setting){c.missile_card.speed, c.missile_card.mass, c.material.law->data_end(c.material.card),
+                         c.text, c.parameters};
+        c.text = c.parameters = NULL; /* moved */
         if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_FAIL(err, SF_ERR_INPUT,
                     "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");
@@ -66,11 +68,10 @@ static sf_status write_output(sf_staging *output, const sf_cfh_report *report, s
     char warning[512] = "";
     if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_json(output, report, err) != SF_OK ||
         sf_cfh_plot(output, report, warning, sizeof warning, err) != SF_OK ||
-        sf_cfh_write_markdown(output, report, warning, err) != SF_OK ||
-        sf_staging_commit(output, err) != SF_OK)
+        sf_cfh_write_page(output, report, err) != SF_OK || sf_staging_commit(output, err) != SF_OK)
         return err->status;
     sf_cfh_print(stdout, report);
-    printf("Written: %s/report.md, cfh.json, cfh.csv%s\n", output->directory,
+    printf("Written: %s/report.html, cfh.json, cfh.csv%s\n", output->directory,
            warning[0] ? "" : ", cfh.png (cfh.gp)");
     fflush(stdout);
     const sf_sink sink = sf_program_sink("softfall-cfh");
@@ -104,19 +105,18 @@ static sf_status simulate(const sf_cfh_options *o, sf_staging *output, sf_cfh_re
 }
 
 /* Every file that this program writes; cfh.json last, so that it speaks of files that are there. */
-static const char *const output_names[] = {"cfh.csv", "cfh.gp", "cfh.png", "report.md", "cfh.json", NULL};
+static const char *const output_names[] = {"cfh.csv", "cfh.gp", "cfh.png", "report.html", "cfh.json", NULL};
 
-static sf_status run(const sf_cfh_options *o, const char *command, sf_staging *output, sf_error *err) {
+static sf_status run(const sf_cfh_options *o, const char *command, setting *s, sf_staging *output,
+                     sf_error *err) {
     sf_cfh_rig rig = sf_cfh_free_fall();
     sf_cfh_points points = {0};
     sf_cfh_result result;
-    setting s = {0};
-    if ((o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) ||
-        read_setting(o, &s, err) != SF_OK)
+    if ((o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
         return err->status;
     if (rig.understood[0])
         printf("rig %s: %s, %d pairs\n", o->rig_path, rig.understood, rig.pairs);
-    const sf_cfh_plan plan = make_plan(o, &rig, &s);
+    const sf_cfh_plan plan = make_plan(o, &rig, s);
     sf_cfh_report report = {.case_path = o->case_path,
                             .material = o->material,
                             .command_line = command,
@@ -125,8 +125,10 @@ static sf_status run(const sf_cfh_options *o, const char *command, sf_staging *o
                             .rig = &rig,
                             .points = &points,
                             .result = &result,
-                            .mass = s.mass,
-                            .table_end = s.table_end};
+                            .case_text = s->text,
+                            .parameters = s->parameters,
+                            .mass = s->mass,
+                            .table_end = s->table_end};
     if (sf_staging_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
         simulate(o, output, &report, &points, err) != SF_OK)
         return err->status;
@@ -139,13 +141,16 @@ static sf_status run(const sf_cfh_options *o, const char *command, sf_staging *o
 int main(int argc, char **argv) {
     sf_cfh_options options;
     sf_staging output = {0};
+    setting s = {0};
     sf_error err = SF_ERROR_INIT;
     char *command = sf_command_line(argc, argv);
     sf_error_ignore_closed_pipe();
     sf_process_handle_signals();
     if (sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)
-        run(&options, command ? command : "softfall-cfh", &output, &err);
+        run(&options, command ? command : "softfall-cfh", &s, &output, &err);
     sf_staging_end(&output);
+    free(s.text);
+    free(s.parameters);
     free(command);
     return sf_error_report(&err, "softfall-cfh");
 }

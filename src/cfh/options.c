@@ -188,7 +188,7 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         .args_doc = "CASE -o DIR",
         .doc = "Critical fall height of a pad: the lowest drop height at which a_max reaches 200 g or HIC "
                "1000.\vSimulates up to 8 drops with softfall-pre and softfall-solve and writes cfh.json, "
-               "cfh.csv, cfh.png (and .gp) and report.md. After an interruption run the same "
+               "cfh.csv, cfh.png (and .gp) and report.html. After an interruption run the same "
                "command again to resume. The height is indicative, not a certification.",
     };
     parser_state state = {.options = options, .err = err};

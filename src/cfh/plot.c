@@ -27,13 +27,7 @@ static double value_top(const sf_cfh_report *r, sf_cfh_criterion c) {
 static void put_style(FILE *g, const sf_cfh_report *r) {
     double range[2];
     height_range(r, range);
-    fputs("set terminal pngcairo size 1600,1300 font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"
-          "set output 'cfh.png'\n"
-          "set datafile separator ','\n"
-          "set encoding utf8\n"
-          "set grid back lt 1 lc rgb '#c8c8c8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
-          "set tics nomirror out scale 0.6\n"
-          "set key at screen 0.54,0.025 center center horizontal maxcols 4 Left reverse samplen 2 width 2\n",
+    fputs("set key at screen 0.54,0.025 center center horizontal maxcols 4 Left reverse samplen 2 width 2\n",
           g);
     fprintf(g, "set xrange [%.6g:%.6g]\n", range[0], range[1]);
 }
@@ -108,12 +102,13 @@ static void put_curves(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
             "[h=%.9g:%.9g] '+' using (h):(fit(h)) with lines lw 3.5 lc rgb '#08519c' title 'fit', \\\n     ",
             lowest, highest);
     }
-    fprintf(g, "'cfh.csv' skip 1 using 1:%d with points pt 7 ps 1.8 lc rgb '#08519c' title 'simulated'",
+    fprintf(g, "'cfh.csv' skip 1 using 1:%d with points pt 7 ps 1.8*dot lc rgb '#08519c' title 'simulated'",
             column);
     if (any_failed(r->points))
-        fputs(", \\\n     'cfh.csv' skip 1 using ($11 == 1 ? $1 : NaN):(0) with points pt 2 ps 2.2 lw 3 lc "
-              "rgb '#606060' title 'failed'",
-              g);
+        fputs(
+            ", \\\n     'cfh.csv' skip 1 using ($11 == 1 ? $1 : NaN):(0) with points pt 2 ps 2.2*dot lw 3 lc "
+            "rgb '#606060' title 'failed'",
+            g);
     fputc('\n', g);
 }
 
@@ -138,7 +133,7 @@ static void put_title(FILE *g, const sf_cfh_report *r) {
 
 sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *warning, size_t size,
                       sf_error *err) {
-    FILE *g = sf_staging_open(output, "cfh.gp", err);
+    FILE *g = sf_gnuplot_begin(output, "cfh", 1600, 1300, err);
     if (!g)
         return err->status;
     put_style(g, r);
@@ -151,6 +146,6 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *wa
     fputs("unset multiplot\n", g);
     if (sf_staging_close(g, "cfh.gp", err) != SF_OK)
         return err->status;
-    sf_gnuplot_draw(output, "cfh.gp", "cfh.png", warning, size);
+    sf_gnuplot_draw(output, "cfh", warning, size);
     return SF_OK;
 }

@@ -3,8 +3,13 @@
 
 #include "build_info.h"
 #include "cfh/series.h"
+#include "io/gnuplot.h"
+#include "io/html.h"
 #include "io/json.h"
+#include "post/origin.h"
+#include "post/origin_page.h"
 #include <math.h>
+#include <stdlib.h>
 
 static const char caution[] = "Indicative, not a certification: a computed height from one simulated impact "
                               "site, not the test of ASTM F1292 or EN 1177.";
@@ -61,7 +66,7 @@ static void rig_text(const sf_cfh_report *r, char *text, size_t size) {
     height = sf_cfh_rig_height(r->rig, height);
     margin = sf_cfh_rig_margin(r->rig, margin);
     snprintf(text, size,
-             "On the rig: %s%.3f m (95 %% interval with that of g_eff %.3f to %.3f m); g_eff = %.3f +- %.3f "
+             "On the rig: %s%.3f m (95 %% interval with that of g_eff %.3f to %.3f m); g_eff = %.3f ± %.3f "
              "m/s2 from %d pairs.",
              side, height, height * exp(-margin), height * exp(margin), r->rig->gravity,
              r->rig->standard_error, r->rig->pairs);
@@ -238,102 +243,190 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
     return sf_staging_close(file, "cfh.csv", err);
 }
 
-/* ---- report.md ---- */
+/* ---- report.html ---- */
 
-/* A cell of the table, or "-". */
-static void put_column(FILE *file, int digits, double value) {
-    if (isfinite(value))
-        fprintf(file, " %.*f |", digits, value);
-    else
-        fputs(" - |", file);
+static const char *banner_kind(const sf_cfh_report *r) {
+    if (r->result->verdict == SF_CFH_UNKNOWN)
+        return "bad";
+    for (int k = 0; k < r->points->count; k++)
+        if (r->points->point[k].note[0])
+            return "fair";
+    return "good";
 }
 
-static void put_criteria_table(FILE *file, const sf_cfh_report *r) {
+/* "1.661 m", or a bound. */
+static void height_text(const sf_cfh_report *r, double scale, char *text, size_t size) {
+    const sf_cfh_result *v = r->result;
+    switch (v->verdict) {
+    case SF_CFH_FOUND:
+        snprintf(text, size, "%.3f m", scale * deciding(r)->height);
+        break;
+    case SF_CFH_ABOVE:
+        snprintf(text, size, "> %.3f m", scale * v->highest);
+        break;
+    case SF_CFH_BELOW:
+        snprintf(text, size, "< %.3f m", scale * v->lowest);
+        break;
+    case SF_CFH_UNKNOWN:
+        snprintf(text, size, "–");
+        break;
+    }
+}
+
+static void put_limit_tile(FILE *page, const sf_cfh_report *r, sf_cfh_criterion c) {
+    char title[48], value[48];
+    const sf_cfh_crossing *crossing = &r->result->crossing[c];
+    snprintf(title, sizeof title, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+    if (isfinite(crossing->height))
+        snprintf(value, sizeof value, "at %.3f m", crossing->height);
+    else
+        snprintf(value, sizeof value, "–");
+    sf_html_tile(page, "plain", title, value, side_word(crossing));
+}
+
+static void put_tiles(FILE *page, const sf_cfh_report *r) {
+    char value[48], remark[96] = "";
+    sf_html_tiles_begin(page);
+    height_text(r, 1, value, sizeof value);
+    if (r->result->verdict == SF_CFH_FOUND)
+        snprintf(remark, sizeof remark, "95 %% interval of the fit %.3f to %.3f m", deciding(r)->low,
+                 deciding(r)->high);
+    sf_html_tile(page, banner_kind(r), "critical fall height, free fall", value, remark);
+    if (r->rig->pairs > 0) {
+        height_text(r, sf_cfh_rig_height(r->rig, 1), value, sizeof value);
+        snprintf(remark, sizeof remark, "g_eff = %.3f ± %.3f m/s²", r->rig->gravity, r->rig->standard_error);
+        sf_html_tile(page, banner_kind(r), "on the rig", value, remark);
+    }
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
+        put_limit_tile(page, r, c);
+    sf_html_tiles_end(page);
+}
+
+static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
     bool rig = r->rig->pairs > 0;
-    fprintf(file,
-            "| limit | state | height (m) | 95 %% interval (m) |%s points in the fit | rms residual (%%) |\n",
-            rig ? " on the rig (m) |" : "");
-    fprintf(file, "|---|---|---:|---:|%s---:|---:|\n", rig ? "---:|" : "");
+    sf_html_table table = sf_html_table_begin(
+        page, "dense",
+        rig ? "limit|state|>height (m)|>95 % interval (m)|>points in the fit|>rms residual (%)|>on the rig (m)"
+            : "limit|state|>height (m)|>95 % interval (m)|>points in the fit|>rms residual (%)");
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_crossing *crossing = &r->result->crossing[c];
-        fprintf(file, "| %s %g%s | %s |", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c),
-                side_word(crossing));
-        put_column(file, 3, crossing->height);
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+        sf_html_cell(&table, "%s", side_word(crossing));
+        sf_html_number(&table, 3, crossing->height);
         if (isfinite(crossing->low))
-            fprintf(file, " %.3f to %.3f |", crossing->low, crossing->high);
+            sf_html_cell(&table, "%.3f to %.3f", crossing->low, crossing->high);
         else
-            fputs(" - |", file);
+            sf_html_cell(&table, "–");
+        sf_html_cell(&table, "%d", crossing->fit.count);
+        sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
         if (rig)
-            put_column(file, 3, sf_cfh_rig_height(r->rig, crossing->height));
-        fprintf(file, " %d |", crossing->fit.count);
-        put_column(file, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
-        fputc('\n', file);
+            sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, crossing->height));
     }
+    sf_html_table_end(&table);
 }
 
-static void put_point_table(FILE *file, const sf_cfh_report *r) {
+static void put_point_table(FILE *page, const sf_cfh_report *r) {
     bool rig = r->rig->pairs > 0;
-    fprintf(file,
-            "| height (m) |%s speed (m/s) | a_max (g) | residual (%%) | HIC | residual (%%) | rebound (m/s) "
-            "| largest local strain |\n",
-            rig ? " on the rig (m) |" : "");
-    fprintf(file, "|---:|%s---:|---:|---:|---:|---:|---:|---:|\n", rig ? "---:|" : "");
+    sf_html_table table = sf_html_table_begin(
+        page, "dense",
+        rig ? ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
+              "strain|>on the rig (m)"
+            : ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
+              "strain");
     for (int k = 0; k < r->points->count; k++) {
         const sf_cfh_point *p = &r->points->point[k];
-        fputc('|', file);
-        put_column(file, 3, p->height);
+        sf_html_row(&table);
+        sf_html_number(&table, 3, p->height);
+        sf_html_number(&table, 3, p->speed);
+        sf_html_number(&table, 1, p->failed ? NAN : p->value[SF_CFH_A_MAX]);
+        sf_html_number(&table, 2, 100 * residual(r, SF_CFH_A_MAX, p));
+        sf_html_number(&table, 0, p->failed ? NAN : p->value[SF_CFH_HIC]);
+        sf_html_number(&table, 2, 100 * residual(r, SF_CFH_HIC, p));
+        sf_html_number(&table, 2, p->failed ? NAN : p->v_rebound);
+        sf_html_number(&table, 3, p->failed ? NAN : p->max_local_strain);
         if (rig)
-            put_column(file, 3, sf_cfh_rig_height(r->rig, p->height));
-        put_column(file, 3, p->speed);
-        put_column(file, 1, p->failed ? NAN : p->value[SF_CFH_A_MAX]);
-        put_column(file, 2, 100 * residual(r, SF_CFH_A_MAX, p));
-        put_column(file, 0, p->failed ? NAN : p->value[SF_CFH_HIC]);
-        put_column(file, 2, 100 * residual(r, SF_CFH_HIC, p));
-        put_column(file, 2, p->failed ? NAN : p->v_rebound);
-        put_column(file, 3, p->failed ? NAN : p->max_local_strain);
-        fputc('\n', file);
+            sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, p->height));
     }
+    sf_html_table_end(&table);
 }
 
-static void put_notes(FILE *file, const sf_cfh_report *r) {
+static void put_notes(FILE *page, const sf_cfh_report *r) {
     bool any = false;
     for (int k = 0; k < r->points->count; k++) {
         const sf_cfh_point *p = &r->points->point[k];
         if (!p->note[0])
             continue;
-        fputs(any ? "" : "\n## Warnings\n\n", file);
-        fprintf(file, "- %.3f m: %s.\n", p->height, p->note);
+        if (!any)
+            sf_html_heading(page, "Warnings");
+        sf_html_paragraph(page, "%.3f m: %s.", p->height, p->note);
         any = true;
     }
 }
 
-sf_status sf_cfh_write_markdown(const sf_staging *output, const sf_cfh_report *r, const char *plot_warning,
-                                sf_error *err) {
-    char verdict[1200], rig[400];
-    FILE *file = sf_staging_open(output, "report.md", err);
-    if (!file)
+static void put_bodies(FILE *page, const sf_cfh_report *r) {
+    sf_html_heading(page, "What falls on what");
+    sf_html_table table = sf_html_table_begin(page, "dense", NULL);
+    sf_html_fact(&table, "case", "%s", r->case_path);
+    sf_html_fact(&table, "material", "%s", r->material ? r->material : "of the case");
+    sf_html_fact(&table, "missile", "%g kg", r->mass);
+    sf_origin_put_key(&table, r->parameters, "geometry.missile_file", "its shape");
+    sf_origin_put_key(&table, r->parameters, "geometry.missile_parameters", "its parameters");
+    sf_origin_put_key(&table, r->parameters, "geometry.file", "pad");
+    sf_origin_put_key(&table, r->parameters, "geometry.parameters", "its parameters");
+    if (r->rig_path)
+        sf_html_fact(&table, "rig", "%s, %d pairs", r->rig_path, r->rig->pairs);
+    sf_html_table_end(&table);
+}
+
+static void put_picture(FILE *page, const sf_staging *output) {
+    char warning[320];
+    char *svg = sf_gnuplot_svg(output, "cfh", warning, sizeof warning);
+    if (svg)
+        sf_html_figure(page, svg, "a_max and HIC over the drop height; bands: intervals of the crossings.");
+    else
+        sf_html_figure(page, NULL, "%s.", warning);
+    free(svg);
+}
+
+static void put_drops(FILE *page, const sf_cfh_report *r) {
+    sf_html_heading(page, "Crossings of the limits");
+    put_criteria_table(page, r);
+    sf_html_heading(page, "Simulated drops");
+    put_point_table(page, r);
+    sf_html_note(
+        page,
+        "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: simulated value "
+        "against the fit, ln(value) quadratic in ln(height); a dash: not in the fit, or no value. The "
+        "compression table ends at a strain of %.3f; beyond it the foam's curve is extrapolated. The search "
+        "ended because %s.",
+        r->table_end, sf_cfh_step_text(r->ending));
+    put_notes(page, r);
+}
+
+sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
+    char verdict[1200], rig[400], *title = sf_origin_title(r->case_text);
+    FILE *page = sf_html_begin(output, "Critical fall height", title && *title ? title : NULL, err);
+    free(title);
+    if (!page)
         return err->status;
     sf_cfh_verdict_text(r, verdict, sizeof verdict);
     rig_text(r, rig, sizeof rig);
-    fprintf(file, "# Critical fall height\n\n**%s**\n%s%s\n%s\n\n", verdict, rig[0] ? "\n" : "", rig,
-            caution);
-    fprintf(file, "Case `%s`, %s%s%s, missile of %g kg. The search ended because %s.\n\n", r->case_path,
-            r->material ? "material `" : "its own material", r->material ? r->material : "",
-            r->material ? "`" : "", r->mass, sf_cfh_step_text(r->ending));
-    if (plot_warning[0])
-        fprintf(file, "%s.\n\n", plot_warning);
-    else
-        fputs("![a_max and HIC over the drop height](cfh.png)\n\n", file);
-    put_criteria_table(file, r);
-    fputs("\n## Simulated drops\n\n", file);
-    put_point_table(file, r);
-    fprintf(file,
-            "\nHeights are those of free fall, v^2 = 2 g h, unless they say otherwise. Residuals: simulated "
-            "value against the fit, ln(value) quadratic in ln(height); a dash: not in the fit, or no value. "
-            "The compression table ends at a strain of %.3f; beyond it the foam's curve is extrapolated.\n",
-            r->table_end);
-    put_notes(file, r);
-    return sf_staging_close(file, "report.md", err);
+    sf_html_banner(page, banner_kind(r),
+                   r->result->verdict == SF_CFH_UNKNOWN ? "not determined" : "indicative", "%s%s%s %s",
+                   verdict, rig[0] ? " " : "", rig, caution);
+    put_tiles(page, r);
+    sf_html_columns_begin(page, "wide");
+    put_picture(page, output);
+    sf_html_block_begin(page);
+    put_bodies(page, r);
+    sf_html_block_end(page);
+    sf_html_columns_end(page);
+    put_drops(page, r);
+    sf_origin_put_material(page, r->case_text, r->parameters);
+    sf_html_heading(page, "The command that repeats this report");
+    sf_html_pre(page, r->command_line);
+    return sf_html_end(page, "softfall-cfh " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }
 
 /* ---- terminal ---- */

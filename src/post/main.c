@@ -8,6 +8,7 @@
 #include "post/figures.h"
 #include "io/staging.h"
 #include "post/plot.h"
+#include "post/report.h"
 #include "post/results.h"
 #include "post/section.h"
 #include "post/summary.h"
@@ -189,10 +190,11 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         .options = known,
         .parser = parse_option,
         .args_doc = "RESULTS.h5 -o DIR",
-        .doc = "Injury figures, curves and ParaView files of a softfall drop.\vWrites summary.json, "
-               "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and pad.h5. Of a prescribed "
-               "motion compression.csv and .png instead of the acceleration. Open pad.xdmf in ParaView. The "
-               "figures are indicative, not a certification.",
+        .doc =
+            "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, summary.json, "
+            "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and pad.h5. Of a prescribed "
+            "motion compression.csv and .png instead of the acceleration. Open pad.xdmf in ParaView. The "
+            "figures are indicative, not a certification.",
     };
     argp_program_version_hook = print_version;
     *o = (options){.cfc = 1000,
@@ -216,10 +218,19 @@ static sf_status parse_command(int argc, char **argv, options *o) {
 }
 
 /* Every file that this program may write. pad.h5 is moved before pad.xdmf, which refers to it. */
-static const char *const output_names[] = {"pad.h5",           "pad.xdmf",        "history.csv",
-                                           "section.csv",      "reference.csv",   "compression.csv",
-                                           "compression.gp",   "compression.png", "acceleration.gp",
-                                           "acceleration.png", "summary.json",    NULL};
+static const char *const output_names[] = {"pad.h5",
+                                           "pad.xdmf",
+                                           "history.csv",
+                                           "section.csv",
+                                           "reference.csv",
+                                           "compression.csv",
+                                           "compression.gp",
+                                           "compression.png",
+                                           "acceleration.gp",
+                                           "acceleration.png",
+                                           "report.html",
+                                           "summary.json",
+                                           NULL};
 
 static sf_status write_output(const options *o, job *j, sf_error *err) {
     bool section = false;
@@ -238,7 +249,9 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
                 "softfall-post: warning: no frame holds the von Mises stress at the peak: no section.csv\n");
     const sf_summary summary = {
         o->results_path, o->compare.reference.path, &j->results, &j->figures, comparison, &j->verdict};
-    if (sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
+    const sf_report report = {&summary, j->command_line};
+    if (sf_report_write(&j->output, &report, err) != SF_OK ||
+        sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
         return err->status;
     sf_summary_print(stdout, &summary);
     return SF_OK;
@@ -263,6 +276,7 @@ static void print_files(const job *j) {
     static const struct {
         const char *name, *meaning;
     } files[] = {
+        {"report.html", "everything on two pages, to read or to print"},
         {"summary.json", "the figures"},
         {"acceleration.png", "the curves and the HIC window"},
         {"history.csv", "acceleration, speed, indentation, forces, energies over time"},

@@ -2,17 +2,10 @@
 #include "post/section.h"
 
 #include "core/mat3.h"
-#include "core/model.h"
+#include "post/cells.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A point of the section: the mean of up to 4 nodes with barycentric weights. */
-typedef struct section_point {
-    int32_t node[4];
-    double weight[4];
-    double fit; /* smallest weight: 0 or more inside the tetrahedron, the best so far while searching */
-} section_point;
 
 void sf_section_axis(const sf_results *r, double axis[2]) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, extreme = -INFINITY, size = 0;
@@ -62,31 +55,8 @@ static bool tetrahedron_weights(const double *const p[4], const double x[3], dou
     return true;
 }
 
-/* Tetrahedra that fill a cell, as positions in its vertex list; returns how many. */
-static int cell_tetrahedra(int type, const int (**tetrahedra)[4]) {
-    static const int simple[1][4] = {{0, 1, 2, 3}};
-    static const int pyramid[2][4] = {{0, 1, 2, 4}, {0, 2, 3, 4}};
-    static const int prism[3][4] = {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 4, 3, 5}};
-    static const int hexahedron[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
-                                         {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
-    switch (type) {
-    case SF_CELL_PYRAMID:
-        *tetrahedra = pyramid;
-        return 2;
-    case SF_CELL_PRISM:
-        *tetrahedra = prism;
-        return 3;
-    case SF_CELL_HEXAHEDRON:
-        *tetrahedra = hexahedron;
-        return 6;
-    default:
-        *tetrahedra = simple;
-        return 1;
-    }
-}
-
 static void offer_tetrahedron(const sf_results *r, const int32_t *cell, const int corner[4],
-                              const double x[3], section_point *point) {
+                              const double x[3], sf_section_point *point) {
     const double *p[4];
     double weight[4];
     for (int k = 0; k < 4; k++)
@@ -105,7 +75,7 @@ static void offer_tetrahedron(const sf_results *r, const int32_t *cell, const in
 
 /* Finds the tetrahedron of each station under the axis; those in no cell keep a negative fit. */
 static void locate_stations(const sf_results *r, const double axis[2], double bottom, double top,
-                            section_point *station) {
+                            sf_section_point *station) {
     for (int s = 0; s < SF_SECTION_STATIONS; s++)
         station[s].fit = -INFINITY;
     for (int64_t c = 0; c < r->cell_count; c++) {
@@ -122,7 +92,7 @@ static void locate_stations(const sf_results *r, const double axis[2], double bo
             axis[1] > high[1] + slack)
             continue;
         const int(*tetrahedra)[4];
-        int count = cell_tetrahedra(r->cell_type[c], &tetrahedra);
+        int count = sf_cell_tetrahedra(r->cell_type[c], &tetrahedra);
         for (int s = 0; s < SF_SECTION_STATIONS; s++) {
             double z = top + (bottom - top) * s / (SF_SECTION_STATIONS - 1);
             const double x[3] = {axis[0], axis[1], z};
@@ -132,7 +102,24 @@ static void locate_stations(const sf_results *r, const double axis[2], double bo
     }
 }
 
-static double mean_of(const double *field, int components, int component, const section_point *point) {
+double sf_section_stations(const sf_results *r, sf_section_point station[SF_SECTION_STATIONS]) {
+    double axis[2], bottom = INFINITY, top = -INFINITY;
+    for (int64_t i = 0; i < r->node_count; i++) {
+        bottom = fmin(bottom, r->position[3 * i + 2]);
+        top = fmax(top, r->position[3 * i + 2]);
+    }
+    sf_section_axis(r, axis);
+    for (int s = 0; s < SF_SECTION_STATIONS; s++)
+        station[s] = (sf_section_point){0};
+    locate_stations(r, axis, bottom, top, station);
+    return top;
+}
+
+bool sf_section_inside(const sf_section_point *point) {
+    return point->fit >= -1e-6;
+}
+
+double sf_section_mean(const double *field, int components, int component, const sf_section_point *point) {
     double sum = 0;
     for (int k = 0; k < 4; k++)
         sum += point->weight[k] * field[components * (int64_t)point->node[k] + component];
@@ -140,21 +127,21 @@ static double mean_of(const double *field, int components, int component, const 
 }
 
 static void write_point(FILE *file, const sf_results *r, const sf_frame *frame, double top,
-                        const section_point *p) {
+                        const sf_section_point *p) {
     for (int k = 0; k < 3; k++)
-        fprintf(file, ",%.9g", 1e3 * mean_of(r->position, 3, k, p));
-    fprintf(file, ",%.9g", 1e3 * (top - mean_of(r->position, 3, 2, p)));
+        fprintf(file, ",%.9g", 1e3 * sf_section_mean(r->position, 3, k, p));
+    fprintf(file, ",%.9g", 1e3 * (top - sf_section_mean(r->position, 3, 2, p)));
     for (int k = 0; k < 3; k++) {
         fputc(',', file);
         if (frame->field[SF_FRAME_DISPLACEMENT])
-            fprintf(file, "%.9g", 1e3 * mean_of(frame->field[SF_FRAME_DISPLACEMENT], 3, k, p));
+            fprintf(file, "%.9g", 1e3 * sf_section_mean(frame->field[SF_FRAME_DISPLACEMENT], 3, k, p));
     }
-    fprintf(file, ",%.9g,", 1e-3 * mean_of(frame->field[SF_FRAME_VON_MISES], 1, 0, p));
+    fprintf(file, ",%.9g,", 1e-3 * sf_section_mean(frame->field[SF_FRAME_VON_MISES], 1, 0, p));
     if (frame->field[SF_FRAME_CAUCHY_STRESS])
-        fprintf(file, "%.9g", 1e-3 * mean_of(frame->field[SF_FRAME_CAUCHY_STRESS], 9, 8, p));
+        fprintf(file, "%.9g", 1e-3 * sf_section_mean(frame->field[SF_FRAME_CAUCHY_STRESS], 9, 8, p));
     fputc(',', file);
     if (frame->field[SF_FRAME_LARGEST_COMPRESSION])
-        fprintf(file, "%.9g", mean_of(frame->field[SF_FRAME_LARGEST_COMPRESSION], 1, 0, p));
+        fprintf(file, "%.9g", sf_section_mean(frame->field[SF_FRAME_LARGEST_COMPRESSION], 1, 0, p));
     fputc('\n', file);
 }
 
@@ -168,29 +155,27 @@ static int by_depth(const void *a, const void *b, void *positions) {
 }
 
 static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *frame, sf_error *err) {
-    double axis[2], bottom = INFINITY, top = -INFINITY;
-    section_point station[SF_SECTION_STATIONS] = {0};
+    double axis[2], top;
+    sf_section_point station[SF_SECTION_STATIONS];
     int32_t *nodes = sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
     size_t count = 0;
     if (!nodes)
         return err->status;
     sf_section_axis(r, axis);
+    top = sf_section_stations(r, station);
     for (int64_t i = 0; i < r->node_count; i++) {
-        bottom = fmin(bottom, r->position[3 * i + 2]);
-        top = fmax(top, r->position[3 * i + 2]);
         if (fabs(r->position[3 * i + 1] - axis[1]) < 0.499 * cbrt(r->volume[i]))
             nodes[count++] = (int32_t)i;
     }
     qsort_r(nodes, count, sizeof *nodes, by_depth, r->position);
     for (size_t i = 0; i < count; i++) {
-        section_point point = {.node = {nodes[i]}, .weight = {1}};
+        sf_section_point point = {.node = {nodes[i]}, .weight = {1}};
         fprintf(file, "section,%d", nodes[i]);
         write_point(file, r, frame, top, &point);
     }
     free(nodes);
-    locate_stations(r, axis, bottom, top, station);
     for (int s = 0; s < SF_SECTION_STATIONS; s++) {
-        if (station[s].fit < -1e-6)
+        if (!sf_section_inside(&station[s]))
             continue;
         fputs("axis,", file);
         write_point(file, r, frame, top, &station[s]);

@@ -11,18 +11,6 @@ static const char *const POINT[SF_COMPRESSION_TESTS] = {"#9ecae1", "#fdae6b", "#
 static const char *const LINE[SF_COMPRESSION_TESTS] = {"#08519c", "#a63603", "#006d2c", "#54278f",
                                                        "#7a0177", "#252525", "#8c510a", "#01665e"};
 
-static void put_style(FILE *g) {
-    fputs("set terminal pngcairo size 1700,1350 font 'DejaVu Sans,18' noenhanced background rgb 'white'\n"
-          "set output 'fit.png'\n"
-          "set datafile separator ','\n"
-          "set encoding utf8\n"
-          "set grid back lt 1 lc rgb '#d8d8d8' lw 1\n"
-          "set border 3 lw 1.5 lc rgb '#404040'\n"
-          "set tics nomirror out scale 0.6\n"
-          "set xlabel 'compressive strain'\n",
-          g);
-}
-
 /* Points and lines of every test. */
 static void put_tests(FILE *g, const sf_compression_fit *fit, bool titles) {
     int tests = fit->data.config->test_count;
@@ -58,7 +46,7 @@ static void put_deviations(FILE *g, const sf_compression_fit *fit) {
         largest = fmax(largest, fabs(fit->data.stress[i] - fit->stress[i]) / fit->data.sigma[i]);
     fprintf(g, "set yrange [%.4g:%.4g]\nset ylabel 'deviation / scatter'\n", -1.08 * largest, 1.08 * largest);
     fputs("set title 'Deviation of the data from the fit, over the standard deviation of the scatter (band: "
-          "+-2)'\n"
+          "±2)'\n"
           "set key top center horizontal samplen 1\n"
           "set object 1 rectangle from graph 0, first -2 to graph 1, first 2 fc rgb '#f0f0f0' fs solid "
           "noborder behind\nplot ",
@@ -80,11 +68,11 @@ static void put_deviations(FILE *g, const sf_compression_fit *fit) {
 
 sf_status sf_compression_write_plot(const sf_staging *output, const sf_compression_fit *fit, char *warning,
                                     size_t size, sf_error *err) {
-    FILE *g = sf_staging_open(output, "fit.gp", err);
+    FILE *g = sf_gnuplot_begin(output, "fit", 1700, 1350, err);
     if (!g)
         return err->status;
     double end = fit->data.end;
-    put_style(g);
+    fputs("set xlabel 'compressive strain'\n", g);
     fprintf(g, "set multiplot title '%s: compression tests (points) and fit (lines)'\n",
             fit->data.config->name);
     fprintf(g, "set xrange [0:%.6g]\nset yrange [0:*]\n", 1.02 * end);
@@ -101,6 +89,6 @@ sf_status sf_compression_write_plot(const sf_staging *output, const sf_compressi
     fputs("unset multiplot\n", g);
     if (sf_staging_close(g, "fit.gp", err) != SF_OK)
         return err->status;
-    sf_gnuplot_draw(output, "fit.gp", "fit.png", warning, size);
+    sf_gnuplot_draw(output, "fit", warning, size);
     return SF_OK;
 }

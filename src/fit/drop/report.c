@@ -463,14 +463,11 @@ static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
 }
 
 static sf_status write_script(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
-    FILE *f = sf_staging_open(output, "fit.gp", err);
+    FILE *f = sf_gnuplot_begin(output, "fit", 1800, 640, err);
     if (!f)
         return err->status;
     fprintf(f,
-            "set terminal pngcairo size 1800,640 font 'DejaVu Sans,15' noenhanced background rgb 'white'\n"
-            "set output 'fit.png'\nset datafile separator ','\nset encoding utf8\n"
-            "set multiplot layout 1,3 title 'Identification from drops: %s' font ',20'\nset grid back lc rgb "
-            "'#d0d0d0'\n",
+            "set multiplot layout 1,3 title 'Identification from drops: %s' \n",
             fit->input->material_name);
     put_strain_panels(f);
     put_drop_panel(f, fit);
@@ -484,7 +481,7 @@ sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, c
         write_script(fit, output, err) != SF_OK || write_material(fit, input_path, output, err) != SF_OK ||
         write_json(fit, input_path, output, err) != SF_OK)
         return err->status;
-    sf_gnuplot_draw(output, "fit.gp", "fit.png", warning, size);
+    sf_gnuplot_draw(output, "fit", warning, size);
     return write_report(fit, input_path, output, *warning == '\0', err);
 }
 
@@ -509,7 +506,7 @@ void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
         if (!isnan(drop->hic))
             fprintf(f, " (measured %.1f)", drop->hic);
         if (drop->predicted)
-            fprintf(f, "  predicted: +- %.1f %% and %.1f %% (95 %%)",
+            fprintf(f, "  predicted: ± %.1f %% and %.1f %% (95 %%)",
                     100 * half_width(fit) * response_sd(fit, d, SF_FIT_A_MAX),
                     100 * half_width(fit) * response_sd(fit, d, SF_FIT_HIC));
         fputc('\n', f);
