@@ -181,3 +181,23 @@ void program_assert_unchanged(const char *path, program_bytes *before) {
     free(before->data);
     *before = (program_bytes){0};
 }
+
+void program_assert_page(const program_place *place, const char *page, const char *words) {
+    static const char code[] =
+        "import re, sys, xml.etree.ElementTree as tree\n"
+        "text = open(sys.argv[1], encoding='utf-8').read()\n"
+        "root = tree.fromstring(text)\n"
+        "for word in ('<script', '<link', '<iframe', '<img', '@import', 'src=', 'javascript', '<?xml'):\n"
+        "    assert word not in text, word\n"
+        "addresses = set(re.findall(r'https?://[^\"\\'\\s<)]*', text))\n"
+        "assert addresses <= {'http://www.w3.org/2000/svg', 'http://www.w3.org/1999/xlink',\n"
+        "                     'http://www.w3.org/1999/xhtml'}, addresses\n"
+        "assert not re.findall(r'href=.(?!#)', text) and not re.findall(r'url\\((?!#)', text)\n"
+        "ids = [e.get('id') for e in root.iter() if e.get('id')]\n"
+        "assert len(ids) == len(set(ids)), 'ids stand twice'\n"
+        "assert sys.argv[2] in ' '.join(t.strip() for t in root.itertext()), sys.argv[2]\n";
+    program_write_text(place, "page_check.py", code);
+    program_result result = program_shell(place, "python3 page_check.py '%s' '%s'", page, words);
+    if (result.code != 0)
+        fail_msg("%s: %s", page, result.err);
+}

@@ -56,6 +56,9 @@ program_bytes program_read_file(const char *path);
 void program_write_file(const char *path, const void *data, size_t size);
 /* Writes folder/name and returns its path, as program_path does. */
 const char *program_write_text(const program_place *place, const char *name, const char *text);
+/* Fails unless folder/page is well-formed, loads nothing, runs nothing, has each id once and shows the words.
+ */
+void program_assert_page(const program_place *place, const char *page, const char *words);
 /* Fails if the file at `path` is not byte by byte what `before` is; releases `before`. */
 void program_assert_unchanged(const char *path, program_bytes *before);
 

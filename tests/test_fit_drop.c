@@ -486,6 +486,7 @@ static void hidden_foam_is_found(void **state) {
              a_max[0], hic[0], a_max[1], hic[1]);
     program_write_text(&place, "fit.cfg", text);
     program_succeed(&place, "fit", "drop fit.cfg -o out -t 1");
+    program_assert_page(&place, "out/report.html", "softfall-fit drop fit.cfg -o out -t 1");
     program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
     const char *at = json.data;
     for (int k = 0; k < 2; k++) { /* within a fifth of a standard deviation of the data */

@@ -661,6 +661,7 @@ static void written_material_is_the_card_of_the_fit(void **state) {
     assert_int_equal(sf_compression_fit_run(&config, &fit, &err), SF_OK);
     assert_int_equal(sf_compression_card(&fit, &card, &err), SF_OK);
     program_result r = program_succeed(&place, "fit", "compression fit.cfg -o out");
+    program_assert_page(&place, "out/report.html", "softfall-fit compression fit.cfg -o out");
     assert_non_null(strstr(r.out, "SHAPE"));
     program_write_text(&place, "pad.geo", "// not meshed\n");
     snprintf(material, sizeof material, "material=@%s", program_path(&place, "out/material.cfg"));

@@ -172,27 +172,19 @@ static void post_fixture(const program_place *p, const fixture_options *options,
     program_succeed(p, "post", "results.h5 -o out --force %s", arguments);
 }
 
+/* The page is sound, and the words of Python hold. */
 static void assert_python(const program_place *p, const char *code) {
+    program_assert_page(p, "out/report.html", "softfall-post");
     program_write_text(p, "check.py", code);
     program_result result = program_shell(p, "python3 check.py");
     if (result.code != 0)
         fail_msg("%s", result.err);
 }
 
-static const char page_check[] =
-    "import json, re, xml.etree.ElementTree as tree\n"
-    "text = open('out/report.html', encoding='utf-8').read()\n"
-    "root = tree.fromstring(text)\n" /* well-formed */
-    "for word in ('<script', '<link', '<iframe', '<img', '@import', 'src=', 'javascript', '<?xml'):\n"
-    "    assert word not in text, word\n"
-    "addresses = set(re.findall(r'https?://[^\"\\'\\s<)]*', text))\n"
-    "assert addresses <= {'http://www.w3.org/2000/svg', 'http://www.w3.org/1999/xlink',\n"
-    "                     'http://www.w3.org/1999/xhtml'}, addresses\n"
-    "assert not re.findall(r'href=.(?!#)', text) and not re.findall(r'url\\((?!#)', text)\n"
-    "ids = [e.get('id') for e in root.iter() if e.get('id')]\n"
-    "assert len(ids) == len(set(ids)), 'ids stand twice'\n"
-    "shown = ' '.join(t.strip() for t in root.itertext())\n"
-    "s = json.load(open('out/summary.json'))\n";
+static const char page_check[] = "import json, re, xml.etree.ElementTree as tree\n"
+                                 "text = open('out/report.html', encoding='utf-8').read()\n"
+                                 "shown = ' '.join(t.strip() for t in tree.fromstring(text).itertext())\n"
+                                 "s = json.load(open('out/summary.json'))\n";
 
 static void the_page_needs_nothing_and_shows_the_figures_of_the_summary(void **state) {
     const program_place *p = *state;
@@ -246,7 +238,7 @@ static void words_of_the_reference_cannot_leave_their_place(void **state) {
         snprintf(rows + used, sizeof rows - used, "%d,%.4f\n", k, x > 0 && x < 1 ? 90 * sin(M_PI * x) : 0);
     }
     program_write_text(p, "<b>&.csv", rows);
-    post_fixture(p, &(fixture_options){0}, "--reference '<b>&.csv'");
+    post_fixture(p, &(fixture_options){0}, "--reference '<b>&.csv' --reference-filter none");
     snprintf(code, sizeof code, "%sassert '<b>&.csv: a_max 90.' in shown and 'R²' in shown\n", page_check);
     assert_python(p, code);
 }

@@ -115,9 +115,10 @@ static void put_curves(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
 /* The title says the verdict in a few words. */
 static void put_title(FILE *g, const sf_cfh_report *r) {
     const sf_cfh_result *v = r->result;
-    fprintf(g,
-            "set multiplot layout 2,1 margins 0.11,0.97,0.13,%s spacing 0,0.05 title 'Critical fall height",
-            r->rig->pairs > 0 ? "0.87" : "0.94");
+    fprintf(
+        g,
+        "set multiplot layout 2,1 margins 0.11,0.97,0.155,%s spacing 0,0.05 title (svg ? '' : 'Critical fall height",
+        r->rig->pairs > 0 ? "0.855" : "0.93");
     if (v->verdict == SF_CFH_FOUND)
         fprintf(g, " %.3f m of free fall", v->crossing[v->deciding].height);
     else if (v->verdict == SF_CFH_ABOVE)
@@ -128,7 +129,7 @@ static void put_title(FILE *g, const sf_cfh_report *r) {
         fputs(" not determined", g);
     if (v->verdict == SF_CFH_FOUND && r->rig->pairs > 0)
         fprintf(g, ", %.3f m on the rig", sf_cfh_rig_height(r->rig, v->crossing[v->deciding].height));
-    fputs(" (indicative)'\n", g);
+    fputs(" (indicative)')\n", g);
 }
 
 sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *warning, size_t size,

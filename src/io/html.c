@@ -45,7 +45,7 @@ static const char style[] =
     "thead th{font-weight:600;color:#40505f;border-bottom:.3mm solid #8797a8;vertical-align:bottom;"
     "overflow-wrap:normal}"
     "tbody th{font-weight:400;color:#5a6675;width:30%;white-space:nowrap;overflow-wrap:normal}"
-    "tr{break-inside:avoid}.r{text-align:right;white-space:nowrap;overflow-wrap:normal}"
+    "tr{break-inside:avoid}.r{text-align:right;overflow-wrap:normal}td.r{white-space:nowrap}tbody td:first-child{min-width:18mm}"
     ".dense{font-size:6.5pt;line-height:1.2}.dense th,.dense td{padding-top:.15mm;padding-bottom:.15mm}"
     "figure{margin:0 0 1mm;break-inside:avoid}figure svg{display:block;width:100%;height:auto}"
     "figure svg text,figure svg g{font-family:inherit}"

@@ -3,16 +3,19 @@
 #include "fit/compression/command.h"
 
 #include "fit/compression/output.h"
+#include "fit/command_line.h"
 #include "io/process.h"
 
 #include <argp.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { KEY_FORCE = 256, KEY_SIMULATE, KEY_FRICTION };
 
 typedef struct options {
     const char *path;
     const char *directory;
+    const char *command;
     bool force;
     sf_cube_options cube;
 } options;
@@ -66,7 +69,7 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
         .parser = parse_option,
         .args_doc = "FIT.cfg -o DIR",
         .doc = "A material file from compression tests of a foam.\vWrites material.cfg with its curves, "
-               "report.md, fit.json, fit.png (and .gp), fit.csv and loading_curve.csv. "
+               "report.html, fit.json, fit.png (and .gp), fit.csv and loading_curve.csv. "
                "docs/identification.md explains FIT.cfg and the report.",
     };
     argv[0] = name;
@@ -89,17 +92,19 @@ static sf_status run(const options *o, sf_error *err) {
         return err->status;
     print_tests(&config);
     if (sf_compression_fit_run(&config, &fit, err) == SF_OK)
-        sf_compression_output(&fit, o->path, o->directory, o->force, &o->cube, &sink, err);
+        sf_compression_output(&fit, o->path, o->command, o->directory, o->force, &o->cube, &sink, err);
     sf_compression_fit_free(&fit);
     sf_compression_config_free(&config);
     return err->status;
 }
 
 int sf_fit_compression_main(int argc, char **argv) {
-    options o = {.cube.log = stdout};
+    char *command = sf_fit_command_line(argc, argv);
+    options o = {.cube.log = stdout, .command = command ? command : "softfall-fit compression"};
     sf_error err = SF_ERROR_INIT;
     sf_process_handle_signals();
     if (parse_command(argc, argv, &o, &err) == SF_OK)
         run(&o, &err);
+    free(command);
     return sf_error_report(&err, "softfall-fit");
 }

@@ -18,7 +18,7 @@
 /* Every file that may be written; the material file comes last, when the curves it names are there. */
 static const char *const output_names[] = {"simulation.csv", "fit.csv",        "loading_curve.csv",
                                            "fit.gp",         "fit.png",        "fit.json",
-                                           "report.md",      "material.csv",   "material-1.csv",
+                                           "report.html",    "material.csv",   "material-1.csv",
                                            "material-2.csv", "material-3.csv", "material-4.csv",
                                            "material-5.csv", "material-6.csv", "material-7.csv",
                                            "material-8.csv", "material.cfg",   NULL};
@@ -151,7 +151,7 @@ static void print_summary(const sf_compression_fit *fit, const sf_compression_ch
     fprintf(log, "  card in the solver's law against the fit: largest difference %.2g %%\n",
             check->card_percent);
     fprintf(log,
-            "Files in %s: material.cfg and its curves, report.md, fit.png, fit.json, fit.csv, "
+            "Files in %s: material.cfg and its curves, report.html, fit.png, fit.json, fit.csv, "
             "loading_curve.csv\n",
             directory);
     fflush(log);
@@ -168,8 +168,9 @@ static void warn(const sf_compression_fit *fit, const char *plot, const sf_sink 
         sf_sink_tell(sink, SF_WARNING, "%s", plot);
 }
 
-sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *directory,
-                                bool force, const sf_cube_options *cube, const sf_sink *sink, sf_error *err) {
+sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *command,
+                                const char *directory, bool force, const sf_cube_options *cube,
+                                const sf_sink *sink, sf_error *err) {
     sf_compression_check check = {.card_percent = 0};
     sf_foam_card card;
     sf_staging output;
@@ -183,7 +184,7 @@ sf_status sf_compression_output(const sf_compression_fit *fit, const char *path,
             write_simulation(&output, fit, &card, cube, &check, err) == SF_OK &&
             sf_compression_write_json(&output, fit, &check, path, err) == SF_OK &&
             sf_compression_write_plot(&output, fit, warning, sizeof warning, err) == SF_OK &&
-            sf_compression_write_report(&output, fit, &check, path, err) == SF_OK &&
+            sf_compression_write_report(&output, fit, &check, path, command, err) == SF_OK &&
             sf_staging_commit(&output, err) == SF_OK) {
             print_summary(fit, &check, directory, cube->log);
             warn(fit, warning, sink);

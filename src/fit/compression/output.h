@@ -10,8 +10,9 @@
 #include <stdbool.h>
 
 /* Writes into `directory` (sf_staging), and the summary to cube->log; warnings go to `sink`. `path`: FIT.cfg,
- * as given. Simulates the tests first if `cube` names a case. */
-sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *directory,
-                                bool force, const sf_cube_options *cube, const sf_sink *sink, sf_error *err);
+ * as given; `command`: the words of the command. Simulates the tests first if `cube` names a case. */
+sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *command,
+                                const char *directory, bool force, const sf_cube_options *cube,
+                                const sf_sink *sink, sf_error *err);
 
 #endif

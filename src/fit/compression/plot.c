@@ -16,10 +16,11 @@ static void put_tests(FILE *g, const sf_compression_fit *fit, bool titles) {
     int tests = fit->data.config->test_count;
     fputs("plot ", g);
     for (int k = 0; k < tests; k++)
-        fprintf(g,
-                "'fit.csv' skip 1 using ($1 == %d ? $3 : NaN):4 with points pt 7 ps 0.9 lc rgb '%s' notitle, "
-                "\\\n     ",
-                k + 1, POINT[k]);
+        fprintf(
+            g,
+            "'fit.csv' skip 1 using ($1 == %d ? $3 : NaN):4 with points pt 7 ps 0.9*dot lc rgb '%s' notitle, "
+            "\\\n     ",
+            k + 1, POINT[k]);
     for (int k = 0; k < tests; k++) {
         fprintf(g, "'fit.csv' skip 1 using ($1 == %d ? $3 : NaN):5 with lines lw 1.8 lc rgb '%s' ", k + 1,
                 LINE[k]);
@@ -56,7 +57,7 @@ static void put_deviations(FILE *g, const sf_compression_fit *fit) {
             const char *branch = side ? "unloading" : "loading";
             fprintf(g,
                     "'fit.csv' skip 1 using ($1 == %d && strcol(2) eq '%s' ? $3 : NaN):7 with points pt %d "
-                    "ps 0.7 lc rgb '%s' ",
+                    "ps 0.7*dot lc rgb '%s' ",
                     k + 1, branch, side ? 6 : 7, side ? POINT[k] : LINE[k]);
             if (k == 0)
                 fprintf(g, "title '%s', \\\n     ", branch);
@@ -72,7 +73,7 @@ sf_status sf_compression_write_plot(const sf_staging *output, const sf_compressi
     if (!g)
         return err->status;
     double end = fit->data.end;
-    fputs("set xlabel 'compressive strain'\n", g);
+    fputs("set xlabel 'compressive strain'\nset xtics 0.1\n", g);
     fprintf(g, "set multiplot title '%s: compression tests (points) and fit (lines)'\n",
             fit->data.config->name);
     fprintf(g, "set xrange [0:%.6g]\nset yrange [0:*]\n", 1.02 * end);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes report.md into the staging directory. `path`: FIT.cfg, as given. */
+/* Writes report.html into the staging directory, after fit.gp, whose picture it takes in. `path`: FIT.cfg, as
+ * given; `command`: the words of the command. */
 #ifndef SF_FIT_COMPRESSION_REPORT_H
 #define SF_FIT_COMPRESSION_REPORT_H
 
@@ -7,6 +8,7 @@
 #include "io/staging.h"
 
 sf_status sf_compression_write_report(const sf_staging *output, const sf_compression_fit *fit,
-                                      const sf_compression_check *check, const char *path, sf_error *err);
+                                      const sf_compression_check *check, const char *path,
+                                      const char *command, sf_error *err);
 
 #endif

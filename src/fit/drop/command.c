@@ -2,6 +2,7 @@
 #include "core/program.h"
 #include "fit/drop/command.h"
 
+#include "fit/command_line.h"
 #include "fit/drop/report.h"
 #include "io/folder.h"
 #include "io/process.h"
@@ -13,7 +14,7 @@
 #include <unistd.h>
 
 typedef struct options {
-    const char *input, *directory;
+    const char *input, *directory, *command;
     bool force;
     int threads;
 } options;
@@ -56,9 +57,9 @@ typedef struct names {
 static void name_files(const sf_fit_input *in, names *n) {
     snprintf(n->card, sizeof n->card, "%s.cfg", in->material_name);
     snprintf(n->curve, sizeof n->curve, "%s.csv", in->material_name);
-    const char *const list[] = {n->curve,        n->card,     "fit-curve.csv",
-                                "fit-drops.csv", "fit.gp",    "fit.png",
-                                "fit.json",      "report.md", NULL};
+    const char *const list[] = {n->curve,        n->card,       "fit-curve.csv",
+                                "fit-drops.csv", "fit.gp",      "fit.png",
+                                "fit.json",      "report.html", NULL};
     memcpy(n->list, list, sizeof list);
 }
 
@@ -91,11 +92,11 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_st
            in->unknown_count, in->drop_count, runs);
     print_curves(in);
     if (sf_drop_fit_run(fit, err) != SF_OK ||
-        sf_drop_report_write(fit, o->input, output, warning, sizeof warning, err) != SF_OK ||
+        sf_drop_report_write(fit, o->input, o->command, output, warning, sizeof warning, err) != SF_OK ||
         sf_staging_commit(output, err) != SF_OK)
         return err->status;
     sf_drop_report_print(fit, stdout);
-    printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.md, fit.json, fit.png\n",
+    printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.html, fit.json, fit.png\n",
            (long long)runner.simulated, (long long)runner.reused, o->directory, in->material_name);
     fflush(stdout);
     const sf_sink sink = sf_program_sink("softfall-fit");
@@ -118,7 +119,9 @@ int sf_fit_drop_main(int argc, char **argv) {
                                        .parser = parse,
                                        .args_doc = "FIT.cfg -o DIR",
                                        .doc = "Identifies a foam from measured drops, and predicts others."};
-    options o = {.threads = (int)sysconf(_SC_NPROCESSORS_ONLN)};
+    char *command = sf_fit_command_line(argc, argv);
+    options o = {.threads = (int)sysconf(_SC_NPROCESSORS_ONLN),
+                 .command = command ? command : "softfall-fit drop"};
     sf_error err = SF_ERROR_INIT;
     sf_fit_input input = {0};
     sf_drop_fit fit = {0};
@@ -132,5 +135,6 @@ int sf_fit_drop_main(int argc, char **argv) {
     sf_staging_end(&output);
     sf_drop_fit_free(&fit);
     sf_fit_input_free(&input);
+    free(command);
     return sf_error_report(&err, "softfall-fit");
 }

@@ -4,6 +4,7 @@
 #include "build_info.h"
 #include "campaign/material_file.h"
 #include "io/gnuplot.h"
+#include "io/html.h"
 #include "io/json.h"
 #include "solver/material/foam.h"
 #include <gsl/gsl_cdf.h>
@@ -77,60 +78,55 @@ static bool has_predictions(const sf_fit_input *in) {
     return in->drop_count > 0 && in->drop[in->drop_count - 1].predicted;
 }
 
-/* ---- report.md ---- */
-
-static void put_measured(FILE *f, double value, const char *format) {
-    if (isnan(value))
-        fputs("–", f);
-    else
-        fprintf(f, format, value);
-}
+/* ---- report.html ---- */
 
 /* "+1.2 %" of the response against what was measured. */
-static void put_difference(FILE *f, double scaled, double measured) {
+static void put_difference(sf_html_table *table, double scaled, double measured) {
     if (isnan(measured) || isnan(scaled))
-        fputs("–", f);
+        sf_html_cell(table, "–");
     else
-        fprintf(f, "%+.1f %%", 100 * (exp(scaled) / measured - 1));
+        sf_html_cell(table, "%+.1f %%", 100 * (exp(scaled) / measured - 1));
+}
+
+static void put_response(sf_html_table *table, const sf_drop_fit *fit, int d, int which, double measured,
+                         int digits) {
+    sf_html_number(table, digits, measured);
+    sf_html_number(table, digits, response(fit, d, which));
+    put_difference(table, fit->y[fit->row[d] + which], measured);
+    put_difference(table, fit->without[fit->row[d] + which], measured);
 }
 
 static void put_drops(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
-    fputs("## Drops\n\nThe simulation with the identified material against the measurement. \"from the "
-          "others\": the same drop left out of the fit and predicted by the rest (corrected surrogate).\n\n"
-          "| drop | a_max measured (g) | simulated | | from the others | HIC measured | simulated | | from "
-          "the others | curve RMSE (g) | largest local strain "
-          "|\n|---|---|---|---|---|---|---|---|---|---|---|\n",
-          f);
+    sf_html_heading(f, "Drops");
+    sf_html_note(
+        f, "The simulation with the identified material against the measurement. \"from the others\": the "
+           "same drop left out of the fit and predicted by the rest (corrected surrogate).");
+    sf_html_table table = sf_html_table_begin(
+        f, "dense",
+        "drop|>a_max measured (g)|>simulated|>|>from the others|>HIC measured|>simulated|>|>from the others|>curve "
+        "RMSE (g)|>largest local strain");
     for (int d = 0; d < in->drop_count && !in->drop[d].predicted; d++) {
         const sf_fit_drop *drop = &in->drop[d];
-        const double *y = &fit->y[fit->row[d]], *without = &fit->without[fit->row[d]];
-        fprintf(f, "| %s | ", drop->name);
-        put_measured(f, drop->a_max_g, "%.1f");
-        fprintf(f, " | %.1f | ", response(fit, d, SF_FIT_A_MAX));
-        put_difference(f, y[SF_FIT_A_MAX], drop->a_max_g);
-        fputs(" | ", f);
-        put_difference(f, without[SF_FIT_A_MAX], drop->a_max_g);
-        fputs(" | ", f);
-        put_measured(f, drop->hic, "%.0f");
-        fprintf(f, " | %.0f | ", response(fit, d, SF_FIT_HIC));
-        put_difference(f, y[SF_FIT_HIC], drop->hic);
-        fputs(" | ", f);
-        put_difference(f, without[SF_FIT_HIC], drop->hic);
-        fputs(" | ", f);
-        put_measured(f, curve_rmse(fit, d), "%.2f");
-        fprintf(f, " | %.3f |\n", fit->simulated[d].max_local_strain);
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", drop->name);
+        put_response(&table, fit, d, SF_FIT_A_MAX, drop->a_max_g, 1);
+        put_response(&table, fit, d, SF_FIT_HIC, drop->hic, 0);
+        sf_html_number(&table, 2, curve_rmse(fit, d));
+        sf_html_number(&table, 3, fit->simulated[d].max_local_strain);
     }
-    fprintf(f,
-            "\nMisfit: %.2f (sum of squared residuals over their standard deviations) with %.1f degrees of "
-            "freedom",
-            fit->result.misfit, fit->result.freedom);
+    sf_html_table_end(&table);
+    sf_html_paragraph(
+        f,
+        "Misfit: %.2f (sum of squared residuals over their standard deviations) with %.1f degrees of "
+        "freedom.",
+        fit->result.misfit, fit->result.freedom);
     if (fit->result.scale > 1)
-        fprintf(f,
-                "; the model misses the data by more than their stated standard deviations, so theirs are "
-                "multiplied by %.2f in the intervals",
-                fit->result.scale);
-    fputs(".\n\n", f);
+        sf_html_paragraph(
+            f,
+            "The model misses the data by more than their stated standard deviations, so theirs are "
+            "multiplied by %.2f in the intervals.",
+            fit->result.scale);
 }
 
 /* Fitted speeds, for drops whose speed is not known exactly. */
@@ -140,86 +136,115 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
         any = any || fit->speed[d] >= 0;
     if (!any)
         return;
-    fputs("The speeds are known with a standard deviation only, and are unknowns of the fit; the table above "
-          "is simulated with the given ones.\n\n| drop | given (m/s) | standard deviation (%) | in the fit "
-          "(%) | 95 % |\n|---|---|---|---|---|\n",
-          f);
+    sf_html_paragraph(
+        f, "The speeds are known with a standard deviation only, and are unknowns of the fit; the table "
+           "above is simulated with the given ones.");
+    sf_html_table table =
+        sf_html_table_begin(f, "dense", "drop|>given (m/s)|>standard deviation (%)|>in the fit (%)|>95 %");
     for (int d = 0; d < fit->measured_drops; d++) {
         int k = fit->speed[d];
         if (k < 0)
             continue;
         double shift = fit->result.u[k], width = half_width(fit) * sqrt(fit->result.covariance[k][k]);
-        fprintf(f, "| %s | %.4g | %.2f | %+.2f | %+.2f to %+.2f |\n", fit->input->drop[d].name,
-                fit->columns[d].speed, 100 * fit->input->drop[d].speed_sd, 100 * expm1(shift),
-                100 * expm1(shift - width), 100 * expm1(shift + width));
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", fit->input->drop[d].name);
+        sf_html_cell(&table, "%.4g", fit->columns[d].speed);
+        sf_html_cell(&table, "%.2f", 100 * fit->input->drop[d].speed_sd);
+        sf_html_cell(&table, "%+.2f", 100 * expm1(shift));
+        sf_html_cell(&table, "%+.2f to %+.2f", 100 * expm1(shift - width), 100 * expm1(shift + width));
     }
-    fputc('\n', f);
+    sf_html_table_end(&table);
 }
 
 static void put_predictions(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     if (!has_predictions(in))
         return;
-    fputs("## Predictions\n\nDrops that were not used. The 95 % intervals hold the uncertainty of the "
-          "parameters; that of the discretisation and of the model's form come on top.\n\n"
-          "| drop | a_max (g) | 95 % | HIC | 95 % | largest local strain |\n|---|---|---|---|---|---|\n",
-          f);
+    sf_html_heading(f, "Predictions");
+    sf_html_note(
+        f,
+        "Drops that were not used. The 95 %% intervals hold the uncertainty of the parameters; that of the "
+        "discretisation and of the model's form come on top.");
+    sf_html_table table =
+        sf_html_table_begin(f, "dense", "drop|>a_max (g)|>95 %|>HIC|>95 %|>largest local strain");
     for (int d = 0; d < in->drop_count; d++) {
         if (!in->drop[d].predicted)
             continue;
         double a = response(fit, d, SF_FIT_A_MAX), h = response(fit, d, SF_FIT_HIC),
                sa = half_width(fit) * response_sd(fit, d, SF_FIT_A_MAX),
                sh = half_width(fit) * response_sd(fit, d, SF_FIT_HIC);
-        fprintf(f, "| %s | %.1f | %.1f to %.1f | %.0f | %.0f to %.0f | %.3f |\n", in->drop[d].name, a,
-                a * exp(-sa), a * exp(sa), h, h * exp(-sh), h * exp(sh), fit->simulated[d].max_local_strain);
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", in->drop[d].name);
+        sf_html_number(&table, 1, a);
+        sf_html_cell(&table, "%.1f to %.1f", a * exp(-sa), a * exp(sa));
+        sf_html_number(&table, 0, h);
+        sf_html_cell(&table, "%.0f to %.0f", h * exp(-sh), h * exp(sh));
+        sf_html_number(&table, 3, fit->simulated[d].max_local_strain);
     }
-    fputc('\n', f);
+    sf_html_table_end(&table);
+}
+
+/* A heading for each unknown parameter after the first one, all of numbers. */
+static sf_html_table begin_matrix(FILE *f, const sf_fit_input *in, const char *first) {
+    char columns[1024];
+    size_t used = (size_t)snprintf(columns, sizeof columns, "%s", first);
+    for (int k = 0; k < in->unknown_count && used < sizeof columns; k++)
+        used += (size_t)snprintf(columns + used, sizeof columns - used, "|>%s",
+                                 sf_parameter_get(in->unknown[k])->name);
+    return sf_html_table_begin(f, "dense", columns);
+}
+
+static void put_correlations(FILE *f, const sf_drop_fit *fit) {
+    sf_html_paragraph(f, "Correlation of their logarithms:");
+    sf_html_table table = begin_matrix(f, fit->input, "");
+    for (int j = 0; j < fit->input->unknown_count; j++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", sf_parameter_get(fit->input->unknown[j])->name);
+        for (int k = 0; k < fit->input->unknown_count; k++)
+            sf_html_cell(&table, "%+.2f",
+                         fit->result.covariance[j][k] /
+                             sqrt(fit->result.covariance[j][j] * fit->result.covariance[k][k]));
+    }
+    sf_html_table_end(&table);
 }
 
 static void put_parameters(FILE *f, const sf_drop_fit *fit) {
-    fputs("## Parameters\n\n95 % intervals (of the logarithm, linearised). A parameter that keeps 90 % or "
-          "more of its prior's width was hardly seen by the drops.\n\n"
-          "| parameter | value | 95 % | prior | prior factor (1 sd) | width left of the prior | meaning |\n"
-          "|---|---|---|---|---|---|---|\n",
-          f);
+    sf_html_heading(f, "Parameters");
+    sf_html_note(
+        f,
+        "95 %% intervals (of the logarithm, linearised). A parameter that keeps 90 %% or more of its prior's "
+        "width was hardly seen by the drops.");
+    sf_html_table table = sf_html_table_begin(
+        f, "dense", "parameter|>value|>95 %|>prior|>prior factor (1 sd)|>width left of the prior|meaning");
     for (int k = 0; k < fit->input->unknown_count; k++) {
         estimate e = estimate_of(fit, k);
         double s = e.about->per_unit;
-        fprintf(f, "| %s%s%s | %.4g | %.4g to %.4g | %.4g | %.2f | %.0f %% | %s |\n", e.about->name,
-                *e.about->unit ? ", " : "", e.about->unit, e.value / s, e.low / s, e.high / s, e.prior / s,
-                exp(fit->input->prior_sd[k]), 100 * e.shrinkage, e.about->description);
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s%s%s", e.about->name, *e.about->unit ? ", " : "", e.about->unit);
+        sf_html_cell(&table, "%.4g", e.value / s);
+        sf_html_cell(&table, "%.4g to %.4g", e.low / s, e.high / s);
+        sf_html_cell(&table, "%.4g", e.prior / s);
+        sf_html_cell(&table, "%.2f", exp(fit->input->prior_sd[k]));
+        sf_html_cell(&table, "%.0f %%", 100 * e.shrinkage);
+        sf_html_cell(&table, "%s", e.about->description);
     }
-    fputs("\nCorrelation of their logarithms:\n\n| |", f);
-    for (int k = 0; k < fit->input->unknown_count; k++)
-        fprintf(f, " %s |", sf_parameter_get(fit->input->unknown[k])->name);
-    fputs("\n|---|", f);
-    for (int k = 0; k < fit->input->unknown_count; k++)
-        fputs("---|", f);
-    for (int j = 0; j < fit->input->unknown_count; j++) {
-        fprintf(f, "\n| %s |", sf_parameter_get(fit->input->unknown[j])->name);
-        for (int k = 0; k < fit->input->unknown_count; k++)
-            fprintf(f, " %+.2f |",
-                    fit->result.covariance[j][k] /
-                        sqrt(fit->result.covariance[j][j] * fit->result.covariance[k][k]));
-    }
-    fputs("\n\n", f);
+    sf_html_table_end(&table);
+    put_correlations(f, fit);
 }
 
 static void put_sensitivities(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
-    fputs("## Sensitivity\n\nChange of the response in % for 1 % more of the parameter.\n\n| response |", f);
-    for (int k = 0; k < in->unknown_count; k++)
-        fprintf(f, " %s |", sf_parameter_get(in->unknown[k])->name);
-    fputs("\n|---|", f);
-    for (int k = 0; k < in->unknown_count; k++)
-        fputs("---|", f);
+    sf_html_heading(f, "Sensitivity");
+    sf_html_note(f, "Change of the response in %% for 1 %% more of the parameter.");
+    sf_html_table table = begin_matrix(f, in, "response");
     for (int d = 0; d < in->drop_count; d++)
         for (int which = 0; which < SF_FIT_SAMPLES; which++) {
-            fprintf(f, "\n| %s, %s |", in->drop[d].name, which == SF_FIT_A_MAX ? "a_max" : "HIC");
+            sf_html_row(&table);
+            sf_html_cell(&table, "%s, %s", in->drop[d].name, which == SF_FIT_A_MAX ? "a_max" : "HIC");
             for (int k = 0; k < in->unknown_count; k++)
-                fprintf(f, " %+.3f |", fit->gradient[(fit->row[d] + which) * fit->parameters + k]);
+                sf_html_cell(&table, "%+.3f", fit->gradient[(fit->row[d] + which) * fit->parameters + k]);
         }
-    fputs("\n\n", f);
+    sf_html_table_end(&table);
 }
 
 static void put_strains(FILE *f, const sf_drop_fit *fit) {
@@ -227,38 +252,71 @@ static void put_strains(FILE *f, const sf_drop_fit *fit) {
     informed_strains(fit, &low, &high);
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
         sum += fit->information[b];
-    fprintf(f,
-            "## Which strains the drops see\n\nNine tenths of the information lie between strains of %.2f "
-            "and %.2f. Outside, its form and the priors determine the curve.\n\n"
-            "| strain | part of the information | standard deviation of the stress | before the data |\n"
-            "|---|---|---|---|\n",
-            low, high);
-    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
-        fprintf(f, "| %.2f to %.2f | %.1f %% | %.1f %% | %.0f %% |\n", 0.05 * b, 0.05 * (b + 1),
-                100 * fit->information[b] / fmax(sum, 1e-300), 100 * expm1(fit->curve_sd[b]),
-                100 * expm1(fit->curve_prior_sd[b]));
-    fputc('\n', f);
+    sf_html_heading(f, "Which strains the drops see");
+    sf_html_note(
+        f,
+        "Nine tenths of the information lie between strains of %.2f and %.2f. Outside, its form and the priors "
+        "determine the curve.",
+        low, high);
+    sf_html_table table = sf_html_table_begin(
+        f, "dense", "strain|>part of the information|>standard deviation of the stress|>before the data");
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%.2f to %.2f", 0.05 * b, 0.05 * (b + 1));
+        sf_html_cell(&table, "%.1f %%", 100 * fit->information[b] / fmax(sum, 1e-300));
+        sf_html_cell(&table, "%.1f %%", 100 * expm1(fit->curve_sd[b]));
+        sf_html_cell(&table, "%.0f %%", 100 * expm1(fit->curve_prior_sd[b]));
+    }
+    sf_html_table_end(&table);
 }
 
-static sf_status write_report(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
-                              bool picture, sf_error *err) {
-    FILE *f = sf_staging_open(output, "report.md", err);
+static void put_banner(FILE *f, const sf_drop_fit *fit) {
+    double low, high;
+    bool misses = fit->result.scale > 1;
+    informed_strains(fit, &low, &high);
+    sf_html_banner(
+        f,
+        !fit->result.converged ? "bad"
+        : misses               ? "fair"
+                               : "good",
+        fit->result.converged ? "converged" : "not converged",
+        "After %d simulations of every measured drop; misfit %.2f with %.1f degrees of freedom%s. The drops "
+        "inform the curve between strains of %.2f and %.2f.",
+        fit->result.iterations, fit->result.misfit, fit->result.freedom,
+        misses ? ", more than the stated standard deviations allow: the intervals are widened" : "", low,
+        high);
+}
+
+static void put_picture(FILE *f, const sf_staging *output) {
+    char warning[320];
+    char *svg = sf_gnuplot_svg(output, "fit", warning, sizeof warning);
+    if (svg)
+        sf_html_figure(
+            f, svg,
+            "Identified curve with its 95 %% band, information of the drops about it, and the drops.");
+    else
+        sf_html_figure(f, NULL, "%s.", warning);
+    free(svg);
+}
+
+static sf_status write_report(const sf_drop_fit *fit, const char *input_path, const char *command,
+                              const sf_staging *output, sf_error *err) {
+    char title[256];
+    snprintf(title, sizeof title, "Identification from drops: %s", fit->input->material_name);
+    FILE *f = sf_html_begin(output, title, input_path, err);
     if (!f)
         return err->status;
-    fprintf(f,
-            "# Identification from drops: %s\n\nsoftfall-fit %s (%s) from %s: %s after %d simulations of "
-            "every measured drop.\n\n",
-            fit->input->material_name, SF_VERSION, SF_GIT_REVISION, input_path,
-            fit->result.converged ? "converged" : "**not converged**", fit->result.iterations);
+    put_banner(f, fit);
+    put_picture(f, output);
     put_drops(f, fit);
     put_speeds(f, fit);
     put_predictions(f, fit);
     put_parameters(f, fit);
     put_sensitivities(f, fit);
     put_strains(f, fit);
-    if (picture)
-        fputs("![Identified curve, information of the drops about it, and the drops](fit.png)\n", f);
-    return sf_staging_close(f, "report.md", err);
+    sf_html_heading(f, "The command that repeats this report");
+    sf_html_pre(f, command);
+    return sf_html_end(f, "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }
 
 /* ---- fit.json ---- */
@@ -451,7 +509,7 @@ static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
           f);
     for (int d = 0; d < fit->measured_drops; d++)
         if (!isnan(fit->input->drop[d].a_max_g))
-            fprintf(f, "set label '' at %.6g,%.6g point pt 6 ps 2 lw 2 lc %d\n",
+            fprintf(f, "set label '' at %.6g,%.6g point pt 6 ps 2*dot lw 2 lc %d\n",
                     peak_time_ms(&fit->simulated[d].curve), fit->input->drop[d].a_max_g, d + 1);
     fputs("plot ", f);
     for (int d = 0; d < fit->input->drop_count; d++) {
@@ -459,15 +517,14 @@ static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
         fprintf(f, "'fit-drops.csv' index %d u 1:2 w l lw 3 dt %d lc %d t '%s%s', ", d,
                 drop->predicted ? 2 : 1, d + 1, drop->name, drop->predicted ? " (predicted)" : "");
     }
-    fputs("NaN w p pt 6 ps 2 lw 2 lc rgb '#404040' t 'measured peak'\n", f);
+    fputs("NaN w p pt 6 ps 2*dot lw 2 lc rgb '#404040' t 'measured peak'\n", f);
 }
 
 static sf_status write_script(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
     FILE *f = sf_gnuplot_begin(output, "fit", 1800, 640, err);
     if (!f)
         return err->status;
-    fprintf(f,
-            "set multiplot layout 1,3 title 'Identification from drops: %s' \n",
+    fprintf(f, "set multiplot layout 1,3 title 'Identification from drops: %s' \n",
             fit->input->material_name);
     put_strain_panels(f);
     put_drop_panel(f, fit);
@@ -475,14 +532,14 @@ static sf_status write_script(const sf_drop_fit *fit, const sf_staging *output, 
     return sf_staging_close(f, "fit.gp", err);
 }
 
-sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
-                               char *warning, size_t size, sf_error *err) {
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const char *command,
+                               const sf_staging *output, char *warning, size_t size, sf_error *err) {
     if (write_strain_data(fit, output, err) != SF_OK || write_drop_data(fit, output, err) != SF_OK ||
         write_script(fit, output, err) != SF_OK || write_material(fit, input_path, output, err) != SF_OK ||
         write_json(fit, input_path, output, err) != SF_OK)
         return err->status;
     sf_gnuplot_draw(output, "fit", warning, size);
-    return write_report(fit, input_path, output, *warning == '\0', err);
+    return write_report(fit, input_path, command, output, err);
 }
 
 void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {

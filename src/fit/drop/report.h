@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The output of `softfall-fit drop`: report.md, fit.json, fit.png with its data, and the material file. */
+/* The output of `softfall-fit drop`: report.html, fit.json, fit.png with its data, and the material file. */
 #ifndef SF_FIT_DROP_REPORT_H
 #define SF_FIT_DROP_REPORT_H
 
 #include "fit/drop/fit.h"
 #include "io/staging.h"
 
-/* Writes everything into the staging directory; `warning` (size bytes) says why there is no picture, or is
+/* Writes everything into the staging directory; `command`: the words of the command; `warning` (size bytes)
+ * says why there is no picture, or is
  * "". */
-sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
-                               char *warning, size_t size, sf_error *err);
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const char *command,
+                               const sf_staging *output, char *warning, size_t size, sf_error *err);
 
 /* The short form, for the terminal. */
 void sf_drop_report_print(const sf_drop_fit *fit, FILE *file);
