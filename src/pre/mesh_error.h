@@ -6,7 +6,7 @@
 #include "core/model.h"
 
 /* The law: C (h/t)^2 + D (h/w)^2 with the thickness t and the half width w of the contact zone; C and D are
- * calibrated in docs/verification.md, section "Expected error of the mesh". And the error from which a
+ * calibrated in docs/theory.md, section 11. And the error from which a
  * warning is due. */
 #define SF_MESH_ERROR_THICKNESS 0.5
 #define SF_MESH_ERROR_WIDTH 0.35
