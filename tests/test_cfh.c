@@ -3,6 +3,7 @@
 #include "model_fixture.h"
 
 #include "cfh/search.h"
+#include "cfh/series.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -305,6 +306,37 @@ static void tables_of_the_rig_that_make_no_sense_are_refused(void **state) {
     remove(path);
 }
 
+/* A drop that is not to be used has no point to interpolate through, and the report says why. */
+static void a_drop_that_is_not_to_be_used_is_left_out_with_its_reason(void **state) {
+    (void)state;
+    static const law a_max = {200, 1.63, 1.7, 0.34};
+    sf_cfh_points points = {0};
+    sf_cfh_result result;
+    const double limit[SF_CFH_CRITERIA] = {200, 1e9};
+    for (int k = 0; k < POINTS; k++) {
+        sf_runner_result drop = {
+            .a_max_g = evaluate(&a_max, heights[k]), .hic = 100 * heights[k], .v_rebound = 1};
+        if (k == 3) {
+            drop.a_max_g *= 3;
+            drop.grade = SF_GRADE_DO_NOT_USE;
+            strcpy(drop.verdict, "do not use: energy error 30 %");
+        } else if (k == 4) {
+            drop.grade = SF_GRADE_REMARKS;
+            strcpy(drop.verdict, "valid with remarks: contact energy 2 %");
+        }
+        sf_cfh_point point = {.height = heights[k], .speed = 1};
+        sf_cfh_take_result(&drop, 0.9, &point);
+        sf_cfh_points_add(&points, &point);
+    }
+    assert_true(points.point[3].failed && points.point[3].grade == SF_GRADE_DO_NOT_USE);
+    assert_string_equal(points.point[3].note, "do not use: energy error 30 %");
+    assert_true(!points.point[4].failed && points.point[4].grade == SF_GRADE_REMARKS);
+    assert_string_equal(points.point[4].note, "valid with remarks: contact energy 2 %");
+    sf_cfh_evaluate(&points, limit, &result);
+    assert_int_equal(result.verdict, SF_CFH_FOUND);
+    assert_relative(result.crossing[SF_CFH_A_MAX].height, a_max.at, 1e-6);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_crossing_of_an_exact_quadratic_is_exact),
@@ -317,6 +349,7 @@ int main(void) {
         cmocka_unit_test(a_list_of_heights_is_followed),
         cmocka_unit_test(the_rig_of_the_paper),
         cmocka_unit_test(tables_of_the_rig_that_make_no_sense_are_refused),
+        cmocka_unit_test(a_drop_that_is_not_to_be_used_is_left_out_with_its_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

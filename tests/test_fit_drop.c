@@ -515,6 +515,17 @@ static void hidden_foam_is_found(void **state) {
     again = program_succeed(&place, "fit", "drop fit.cfg -o out -t 1 --force");
     assert_non_null(strstr(again.out, "\n0 drops simulated"));
     program_succeed(&place, "pre", "case.cfg --set material=@out/material.cfg -o m.h5 --force");
+    /* The strains that the drops inform are data of the material, and each drop has its grade. */
+    assert_int_equal(program_shell(&place, "grep -q '^informed_strain = 0\\.[2-9]' out/material.cfg").code,
+                     0);
+    assert_int_equal(program_shell(&place, "test \"$(grep -c '\"grade\": \"valid' out/fit.json)\" = 2").code,
+                     0);
+    /* A drop that ends before its peak is no measure. */
+    program_shell(&place, "sed 's/end_time = \"[^\"]*\"/end_time = \"4 ms\"/' case.cfg > short.cfg && sed "
+                          "'s/\"case.cfg\"/\"short.cfg\"/' fit.cfg > bad.cfg");
+    program_result refused = program_run(&place, "fit", "drop bad.cfg -o bad -t 1");
+    assert_int_equal(refused.code, SF_ERR_NUMERIC);
+    assert_non_null(strstr(refused.err, "the drop slow: do not use: deceleration left at the end"));
     program_tear_down(&place);
 }
 

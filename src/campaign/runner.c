@@ -38,6 +38,14 @@ static sf_status result_path(const char *path, sf_runner_result *out, sf_error *
     return SF_OK;
 }
 
+static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *out) {
+    sf_verdict verdict;
+    const sf_limits limits = SF_DEFAULT_LIMITS; /* no part of the grade */
+    sf_verdict_compute(r, f, &limits, &verdict);
+    out->grade = verdict.grade;
+    sf_verdict_line(&verdict, out->verdict, sizeof out->verdict);
+}
+
 static sf_status read_result(const char *path, sf_runner_result *out, sf_error *err) {
     sf_results r;
     sf_figures f = {0};
@@ -56,6 +64,7 @@ static sf_status read_result(const char *path, sf_runner_result *out, sf_error *
                                   .nodes = r.node_count,
                                   .steps = r.steps,
                                   .curve = f.filtered};
+        judge(&r, &f, out);
         f.filtered = (sf_series){0};
         result_path(path, out, err);
     }

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "post/signal.h"
+#include "post/verdict.h"
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -39,6 +40,8 @@ typedef struct sf_runner_result {
     double max_indentation;  /* m */
     double max_local_strain; /* - */
     double energy_error;     /* - */
+    sf_grade grade;          /* of the run, as softfall-post gives it */
+    char verdict[1024];      /* sf_verdict_line of it, cut */
     int64_t nodes, steps;
     sf_series curve; /* s, g: filtered; owned */
     char *path;      /* of its results.h5; owned */

@@ -6,6 +6,7 @@
 
 #include "cfh/crossing.h"
 #include "cfh/rig.h"
+#include "post/verdict.h"
 #include <stdbool.h>
 
 typedef enum sf_cfh_criterion { SF_CFH_A_MAX, SF_CFH_HIC, SF_CFH_CRITERIA } sf_cfh_criterion;
@@ -13,9 +14,11 @@ typedef enum sf_cfh_criterion { SF_CFH_A_MAX, SF_CFH_HIC, SF_CFH_CRITERIA } sf_c
 enum { SF_CFH_MAX_POINTS = 16, SF_CFH_NOTE_SIZE = 1100 };
 
 typedef struct sf_cfh_point {
-    double height;                 /* m */
-    double speed;                  /* m s-1, at contact */
-    bool failed;                   /* the simulation failed: only height, speed and note are set */
+    double height;  /* m */
+    double speed;   /* m s-1, at contact */
+    bool failed;    /* no figures: the simulation failed, or its verdict is "do not use"; only height, speed,
+                       grade and note are set */
+    sf_grade grade; /* of the run; "do not use" if it failed */
     double value[SF_CFH_CRITERIA]; /* g, - */
     double v_rebound;              /* m s-1, NaN: contact had not ended */
     double max_indentation;        /* m */

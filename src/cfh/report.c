@@ -167,6 +167,7 @@ static void put_points(sf_json *json, const sf_cfh_report *r) {
             sf_json_number(json, "rig_height_m", sf_cfh_rig_height(r->rig, p->height));
         sf_json_number(json, "speed_m_s", p->speed);
         sf_json_bool(json, "failed", p->failed);
+        sf_json_text(json, "grade", sf_verdict_phrase(p->grade));
         sf_json_number(json, "a_max_g", p->failed ? NAN : p->value[SF_CFH_A_MAX]);
         sf_json_number(json, "hic", p->failed ? NAN : p->value[SF_CFH_HIC]);
         sf_json_number(json, "a_max_residual", residual(r, SF_CFH_A_MAX, p));

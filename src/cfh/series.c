@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cfh/series.h"
 
-#include "core/good_run.h"
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
@@ -18,7 +17,13 @@ __attribute__((format(printf, 2, 3))) static void add_note(sf_cfh_point *point, 
     va_end(args);
 }
 
-static void take_result(const sf_runner_result *r, double table_end, sf_cfh_point *p) {
+void sf_cfh_take_result(const sf_runner_result *r, double table_end, sf_cfh_point *p) {
+    p->grade = r->grade;
+    if (r->grade == SF_GRADE_DO_NOT_USE) {
+        p->failed = true;
+        add_note(p, "%s", r->verdict);
+        return;
+    }
     p->value[SF_CFH_A_MAX] = r->a_max_g;
     p->value[SF_CFH_HIC] = r->hic;
     p->v_rebound = r->v_rebound;
@@ -27,11 +32,11 @@ static void take_result(const sf_runner_result *r, double table_end, sf_cfh_poin
     p->energy_error = r->energy_error;
     if (isnan(r->v_rebound))
         add_note(p, "contact had not ended at the end of the run: a_max and HIC may be too low");
-    if (r->energy_error > sf_good_run_limits()->energy_error)
-        add_note(p, "energy error %.1f %%: do not trust these figures", 100 * r->energy_error);
     if (r->max_local_strain > table_end + SF_CFH_STRAIN_MARGIN)
         add_note(p, "largest local strain %.3f, the compression table ends at %.3f: extrapolated curve",
                  r->max_local_strain, table_end);
+    if (r->grade == SF_GRADE_REMARKS)
+        add_note(p, "%s", r->verdict);
 }
 
 static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, double height, sf_cfh_point *p,
@@ -47,6 +52,7 @@ static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, double heig
     drop.overrides[drop.override_count++] = velocity;
     if (sf_runner_run(runner, &drop, &result, &failure) == SF_ERR_NUMERIC) {
         p->failed = true;
+        p->grade = SF_GRADE_DO_NOT_USE;
         add_note(p, "the simulation failed: %s", failure.text);
         fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
         return SF_OK;
@@ -55,7 +61,9 @@ static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, double heig
         *err = failure;
         return err->status;
     }
-    take_result(&result, s->table_end, p);
+    sf_cfh_take_result(&result, s->table_end, p);
+    if (p->failed)
+        fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
     sf_runner_result_free(&result);
     return SF_OK;
 }

@@ -16,6 +16,10 @@ typedef struct sf_cfh_series {
     double table_end;           /* -, strain up to which the compression curve is given */
 } sf_cfh_series;
 
+/* The point at height and speed of `point` with the result of its drop: figures and, for one with remarks,
+ * the verdict as a note; or, with a verdict of "do not use", a point that failed, with the reason. */
+void sf_cfh_take_result(const sf_runner_result *result, double table_end, sf_cfh_point *point);
+
 /* Runs the search. A drop whose simulation fails numerically becomes a point that failed, with a note; every
  * other failure ends the series. SF_INTERRUPTED: run the same command again to resume. */
 sf_status sf_cfh_simulate(const sf_cfh_series *series, sf_runner *runner, sf_cfh_points *points,

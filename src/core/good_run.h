@@ -38,7 +38,7 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "the mesh is too coarse to show the strain below the missile")                                                   \
     X(local_collapse, 0.1, 0.3, SF_AS_NUMBER, "strain of a node above its neighbours", "`local_collapse`",                \
       "single nodes collapse or carry the missile alone: the foam is unstable or the mesh too coarse")                  \
-    X(mesh, 0.03, 0.1, SF_AS_PERCENT, "expected error of a_max from the mesh",                                          \
+    X(mesh, 0.03, 0.25, SF_AS_PERCENT, "expected error of a_max from the mesh",                                          \
       "`/model/expected_mesh_error` of results.h5", "the spacing under the missile is too coarse for its pad")         \
     X(informed, 0.01, 0.5, SF_AS_PERCENT, "energy of the foam beyond the strains that its data inform",                \
       "`energy_beyond_data`", "there the material's curve is extrapolated, and with it the peak")                       \

@@ -140,6 +140,12 @@ static sf_status simulate_drop(sf_drop_fit *fit, int d, const char *material, do
     sf_runner_result result;
     if (sf_runner_run(fit->runner, &request, &result, err) != SF_OK)
         return err->status;
+    if (result.grade == SF_GRADE_DO_NOT_USE && !drop->predicted) {
+        SF_FAIL(err, SF_ERR_NUMERIC, "the fit does not go through the drop %s: %.800s", drop->name,
+                result.verdict);
+        sf_runner_result_free(&result);
+        return err->status;
+    }
     sf_fit_simulated *last = &fit->simulated[d];
     if (fit->columns[d].count == 0)
         find_columns(result.path, &fit->columns[d], err);
@@ -148,7 +154,9 @@ static sf_status simulate_drop(sf_drop_fit *fit, int d, const char *material, do
     *last = (sf_fit_simulated){.max_local_strain = result.max_local_strain,
                                .v_rebound = result.v_rebound,
                                .energy_error = result.energy_error,
+                               .grade = result.grade,
                                .curve = result.curve};
+    snprintf(last->verdict, sizeof last->verdict, "%s", result.verdict);
     result.curve = (sf_series){0};
     sf_runner_result_free(&result);
     return err->status;
@@ -163,6 +171,7 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
     if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
         return err->status;
+    card.informed_strain = 0; /* that of the start says nothing about an iterate */
     const sf_material material = sf_foam_material(&card);
     sf_material_write(fit->folder, name, &material, &text, err);
     sf_foam_card_free(&card);

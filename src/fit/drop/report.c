@@ -339,6 +339,8 @@ static void json_drop(sf_json *j, const sf_drop_fit *fit, int d) {
     sf_json_number(j, "max_local_strain", fit->simulated[d].max_local_strain);
     sf_json_number(j, "v_rebound_m_s", fit->simulated[d].v_rebound);
     sf_json_number(j, "energy_error", fit->simulated[d].energy_error);
+    sf_json_text(j, "grade", sf_verdict_phrase(fit->simulated[d].grade));
+    sf_json_text(j, "verdict", fit->simulated[d].verdict);
     sf_json_close(j, '}');
 }
 

@@ -50,9 +50,10 @@ void sf_solve_print_ledger(const sf_model *m, const sf_state *s, const sf_run *r
     const sf_good_run *good = sf_good_run_limits();
     if (l->largest_error > good->energy_error || fabs(x->stabilisation_share) > good->stabilisation ||
         fabs(x->contact_share) > good->contact)
-        sf_sink_tell(&sink, SF_WARNING,
-                     "energy error %.2f %% (good: %g), stabilisation %.2f %% (%g), contact %.2f %% (%g): do "
-                     "not trust these figures",
-                     100 * l->largest_error, 100 * good->energy_error, 100 * x->stabilisation_share,
-                     100 * good->stabilisation, 100 * x->contact_share, 100 * good->contact);
+        sf_sink_tell(
+            &sink, SF_WARNING,
+            "energy error %.2f %% (good: %g), stabilisation %.2f %% (%g), contact %.2f %% (%g): beyond "
+            "the limits of a good run, softfall-post gives the verdict",
+            100 * l->largest_error, 100 * good->energy_error, 100 * x->stabilisation_share,
+            100 * good->stabilisation, 100 * x->contact_share, 100 * good->contact);
 }
