@@ -25,9 +25,12 @@ void sf_origin_put_key(sf_html_table *table, const char *parameters, const char 
         sf_html_fact(table, title, "%s", key.value);
 }
 
+/* The keys of the material that the case gives, and whether it says what its data inform. */
 static void put_given(sf_html_table *table, const char *parameters) {
     static const char group[] = "material.";
     sf_origin_key key;
+    if (sf_origin_find(parameters, "material.informed_strain", &key) && !key.given)
+        sf_html_fact(table, "informed_strain", "not given: the end of the curve is taken for it");
     while (sf_origin_next(&parameters, &key))
         if (key.given && strncmp(key.name, group, strlen(group)) == 0)
             sf_html_fact(table, key.name + strlen(group), "%s", key.value);
