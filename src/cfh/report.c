@@ -332,9 +332,9 @@ static void put_point_table(FILE *page, const sf_cfh_report *r) {
     sf_html_table table = sf_html_table_begin(
         page, "dense",
         rig ? ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
-              "strain|>on the rig (m)"
+              "strain|>on the rig (m)|verdict"
             : ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
-              "strain");
+              "strain|verdict");
     for (int k = 0; k < r->points->count; k++) {
         const sf_cfh_point *p = &r->points->point[k];
         sf_html_row(&table);
@@ -348,6 +348,7 @@ static void put_point_table(FILE *page, const sf_cfh_report *r) {
         sf_html_number(&table, 3, p->failed ? NAN : p->max_local_strain);
         if (rig)
             sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, p->height));
+        sf_html_cell(&table, "%s", p->failed ? "failed" : sf_verdict_phrase(p->grade));
     }
     sf_html_table_end(&table);
 }
