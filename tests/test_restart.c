@@ -9,6 +9,7 @@
 #include "io/model_io.h"
 #include "io/provenance.h"
 #include "io/seal.h"
+#include "core/foam_card.h"
 #include "post/results.h"
 #include <hdf5.h>
 #include <math.h>
@@ -34,7 +35,9 @@ static int kill_count(void) {
     return kills ? atoi(kills) : 10;
 }
 
-static double run_time; /* s of the processor, of one run without interruption in this build */
+/* s of the processor, in this build: of a run before its first steps, and of the rest of a run without
+ * interruption. */
+static double start_time, run_time;
 
 /* Processor time of the children that have ended. */
 static double time_of_children(void) {
@@ -62,8 +65,10 @@ static int set_up(void **state) {
         "--set solver.end_time='\"20 ms\"'",
         fixture_source(EXAMPLE), program_coarse(20), 2.0 / kill_count());
     double start = time_of_children();
+    program_succeed(p, "solve", "model.h5 -o start.h5 --threads 1 --no-checkpoint --end-time '0.05 ms'");
+    start_time = time_of_children() - start;
     program_succeed(p, "solve", "model.h5 -o full.h5 --threads 1");
-    run_time = time_of_children() - start;
+    run_time = time_of_children() - start - 2 * start_time;
     return 0;
 }
 
@@ -214,7 +219,8 @@ static void run_with_signals(const program_place *p, const char *results, const 
         const char *again[] = {"--restart", results, "--checkpoint-every", "0.02 s", NULL};
         pid_t child = start_solver(p, is_there(p, checkpoint) ? again : anew);
         int status = 0, number = numbers[turn % count];
-        double wait = killed < least ? 0.5 * longest * (1 + fixture_random(&seed)) : 100 * run_time;
+        double wait =
+            killed < least ? start_time + 0.5 * longest * (1 + fixture_random(&seed)) : 1e3 * run_time;
         while (time_of(child) < wait && waitpid(child, &status, WNOHANG) == 0)
             sleep_for(0.002);
         if (kill(child, number) == 0 && waitpid(child, &status, 0) == child)
@@ -358,10 +364,9 @@ static void failed_run_keeps_two_peaks(void **state) {
 static void failure_in_the_first_step_has_results(void **state) {
     const program_place *p = *state;
     program_succeed(p, "pre",
-                    "'%s' -o stiff.h5 %s --set material.E='\"9 GPa\"' --set solver.end_time='\"1000 s\"' "
-                    "--set output.frame_interval='\"1 s\"'",
+                    "'%s' -o stiff.h5 %s --set material.E='\"9 GPa\"' --set output.frame_interval='\"1 s\"'",
                     fixture_source(EXAMPLE), program_coarse(20));
-    program_result result = program_run(p, "solve", "stiff.h5 -o stiff_results.h5 -t 1");
+    program_result result = program_run(p, "solve", "stiff.h5 -o stiff_results.h5 -t 1 --end-time '1000 s'");
     assert_int_equal(result.code, SF_ERR_NUMERIC);
     assert_non_null(strstr(result.err, "at t = 0 s the stable time step fell to"));
     assert_false(is_there(p, "stiff_results.h5.restart") || is_there(p, "stiff_results.h5.run"));
@@ -589,6 +594,64 @@ static void failed_run_leaves_its_state(void **state) {
     assert_int_equal(program_run(p, "solve", "fast.h5 -o gone.h5 --on-failure ask").code, 64);
 }
 
+/* A foam whose curve ends in absurd stresses, which no case can name: forces overflow in one step. The
+ * results end with the last valid state, and softfall-post reads them. */
+static void overflow_leaves_the_last_finite_state(void **state) {
+    const program_place *p = *state;
+    const sf_provenance provenance = {.program = "test_restart"};
+    sf_error err = SF_ERROR_INIT;
+    sf_model m;
+    sf_results r;
+    sf_frame frame;
+    program_succeed(p, "pre", "'%s' -o absurd.h5 %s", fixture_source(EXAMPLE), program_coarse(20));
+    assert_int_equal(sf_model_read(program_path(p, "absurd.h5"), &m, NULL, &err), SF_OK);
+    sf_foam_card *card = m.material[0].card;
+    for (int64_t i = 0; i < card->curve_points; i++)
+        if (card->curve_strain[i] > 0.5)
+            card->curve_stress[i] = 1e300 * card->curve_strain[i];
+    assert_int_equal(sf_model_write(program_path(p, "absurd.h5"), &m, &provenance, &err), SF_OK);
+    sf_model_free(&m);
+    for (int kept = 0; kept < 2; kept++) {
+        program_result run = program_run(p, "solve", "absurd.h5 -o over.h5 --force -t 1 %s",
+                                         kept ? "--checkpoint-time '1 ms'" : "--no-checkpoint");
+        if (run.code != SF_ERR_NUMERIC || !strstr(run.err, "ends with the last frame that is finite"))
+            fail_msg("exit code %d: %s", run.code, run.err);
+        assert_true(last_frame(p, "over.h5", &r) > 0);
+        assert_true(r.has_peak && r.frame_count > (kept ? 1 : 0));
+        assert_int_equal(sf_frame_read(&r, &r.frames[r.frame_count - 1], &frame, &err), SF_OK);
+        sf_frame_free(&frame);
+        assert_int_equal(sf_frame_read(&r, &r.peak, &frame, &err), SF_OK);
+        sf_frame_free(&frame);
+        if (kept)
+            assert_true(r.frames[r.frame_count - 1].time == r.history.time[r.history.rows - 1]);
+        sf_results_close(&r);
+        program_succeed(p, "post", "over.h5 -o over --force");
+    }
+}
+
+/* ---- resuming after the rebound ---- */
+
+static void rebounded_run_goes_on_when_an_end_time_is_given(void **state) {
+    const program_place *p = *state;
+    sf_results r;
+    program_succeed(p, "pre", "'%s' -o bounce.h5 %s", fixture_source(EXAMPLE), program_coarse(20));
+    program_succeed(p, "solve", "bounce.h5 -o bounced.h5 -t 1");
+    double rebound = last_frame(p, "bounced.h5", &r);
+    assert_string_equal(r.status, "rebound");
+    sf_results_close(&r);
+    program_result same = program_succeed(p, "solve", "--restart bounced.h5 -t 1");
+    assert_non_null(strstr(same.out, "the run had ended by rebound at"));
+    assert_true(last_frame(p, "bounced.h5", &r) == rebound);
+    sf_results_close(&r);
+    program_succeed(p, "solve", "--restart bounced.h5 -t 1 --end-time '%.9g s'", rebound + 2e-3);
+    assert_true(last_frame(p, "bounced.h5", &r) >= rebound + 2e-3);
+    assert_string_equal(r.status, "finished");
+    sf_results_close(&r);
+    program_succeed(p, "solve", "--restart bounced.h5 -t 1 --end-time '%.9g s'", rebound + 3e-3);
+    assert_true(last_frame(p, "bounced.h5", &r) >= rebound + 3e-3);
+    sf_results_close(&r);
+}
+
 /* ---- campaigns ---- */
 
 static void run_drop(const program_place *p, const char *folder, sf_runner_result *result, sf_error *err) {
@@ -657,6 +720,8 @@ int main(void) {
         cmocka_unit_test(model_may_change_during_a_run),
         cmocka_unit_test(model_that_cannot_be_built_costs_nothing),
         cmocka_unit_test(failed_run_leaves_its_state),
+        cmocka_unit_test(overflow_leaves_the_last_finite_state),
+        cmocka_unit_test(rebounded_run_goes_on_when_an_end_time_is_given),
         cmocka_unit_test(campaign_goes_on_with_an_interrupted_drop),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);

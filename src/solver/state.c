@@ -126,6 +126,19 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
     return err->status;
 }
 
+static bool all_finite(const double *value, int64_t count) {
+    bool finite = true;
+    for (int64_t i = 0; i < count; i++)
+        finite &= isfinite(value[i] * value[i]) != 0;
+    return finite;
+}
+
+bool sf_state_is_finite(const sf_model *m, const sf_state *s) {
+    return all_finite(s->d, 3 * m->node_count) && all_finite(s->v, 3 * m->node_count) &&
+           all_finite(s->force, 3 * m->node_count) && all_finite(s->stress, 9 * m->node_count) &&
+           all_finite(&s->missile.displacement, 1) && all_finite(s->missile.force, 3);
+}
+
 void sf_state_free(sf_state *s) {
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
         free(*(void **)((char *)s + arrays[k].offset));

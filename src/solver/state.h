@@ -143,6 +143,8 @@ const sf_state_array *sf_state_arrays(size_t *count);
 int64_t sf_state_rows(const sf_model *model, char rows);
 
 sf_status sf_state_create(const sf_model *model, sf_state *state, sf_error *err);
+/* Can the state be shown: are displacements, velocities, forces and the squares of stresses finite? */
+bool sf_state_is_finite(const sf_model *model, const sf_state *state);
 void sf_state_free(sf_state *state);
 
 #endif

@@ -71,12 +71,14 @@ static void remove_all(const sf_output *output) {
 }
 
 /* After a failure: removes the files, or reports which of them remain. */
-static void handle_failure(const sf_solve_options *o, const sf_output *output, const sf_state *state) {
+static void handle_failure(const sf_solve_options *o, const sf_output *output, const sf_state *state,
+                           bool shown) {
     if (o->remove_failed) {
         remove_all(output);
         return;
     }
-    fprintf(stderr, "softfall-solve: %s has the frame of the failure", output->results);
+    fprintf(stderr, "softfall-solve: %s %s", output->results,
+            shown ? "has the frame of the failure" : "ends with the last frame that is finite");
     if (!o->no_checkpoint && access(output->checkpoint, F_OK) == 0)
         fprintf(stderr, "; %s is step %lld, t = %.6g s, the last valid step", output->checkpoint,
                 (long long)state->step, state->time);
@@ -138,6 +140,7 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
                   .log = stdout,
                   .terminal = isatty(STDOUT_FILENO),
                   .threads = o->threads,
+                  .to_end_time = o->end_time > 0,
                   .checkpoints = !o->no_checkpoint,
                   .checkpoint_wall = o->checkpoint_wall,
                   .checkpoint_time = o->checkpoint_time,
@@ -147,7 +150,7 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     if (state.step > 0)
         sf_solve_print_ledger(&model, &state, &run);
     if (err->status == SF_ERR_NUMERIC)
-        handle_failure(o, &output, &state);
+        handle_failure(o, &output, &state, run.shown);
 done:
     sf_output_close(&output);
     sf_checkpoint_close(&from);

@@ -17,7 +17,8 @@
     X(double, next_frame, , "s", "time of the next one by the interval")                                               \
     X(int64_t, next_extra, , "1", "index in model->frame_time")                                                        \
     X(double, wall_time, , "s", "until the last checkpoint")                                                           \
-    X(int64_t, restarts, , "1", "times that the run was resumed")
+    X(int64_t, restarts, , "1", "times that the run was resumed")                                                      \
+    X(int64_t, past_rebound, , "1", "1: resumed after its rebound, which ends the run no more")
 /* clang-format on */
 
 typedef struct sf_recorder {

@@ -24,6 +24,7 @@ typedef struct drop {
     double first_time;                        /* s, where this part of the run begins */
     double next_checkpoint;                   /* s, simulated */
     double start, last_line, last_checkpoint; /* s, wall clock */
+    double left;                              /* s, as it was told last */
 } drop;
 
 static void print_progress(drop *d, bool last) {
@@ -43,8 +44,11 @@ static void print_progress(drop *d, bool last) {
             driven ? "force" : "a", sf_recorder_measure(m, s) / (driven ? 1 : SF_STANDARD_GRAVITY),
             driven ? "N" : "g", 1e3 * sf_missile_depth(m, &s->missile), s->largest_compression,
             100 * s->ledger.error);
-    if (done > 0 && !last)
-        fprintf(run->log, "  left <= %.0f s  ", spent * (1 - done) / done);
+    if (done > 0 && !last) {
+        d->left =
+            fmin(d->left, spent * (1 - done) / done); /* steps shrink, but the rebound ends the run early */
+        fprintf(run->log, "  left about %.0f s  ", d->left);
+    }
     if (!run->terminal || last)
         fputc('\n', run->log);
     fflush(run->log);
@@ -92,7 +96,7 @@ static const char *find_ending(const drop *d) {
         return d->s->step == d->last_step ? "failed" : NULL;
     if (*d->run->stop)
         return "interrupted";
-    if (sf_ending_rebounded(d->m, d->s))
+    if (!d->r.past_rebound && sf_ending_rebounded(d->m, d->s))
         return "rebound";
     return sf_ending_finished(d->m, d->s) ? "finished" : NULL;
 }
@@ -159,13 +163,15 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
                         s->missile.contact_time, err);
 }
 
-/* The complete results.h5, with a frame of the last step. */
+/* The complete results.h5, with a frame of the last step; a state that holds a NaN or infinity is not shown.
+ */
 static sf_status conclude(drop *d, const char *status, sf_error *err) {
     sf_h5 *file = NULL;
     int64_t frames = d->r.frames;
-    if (d->r.frame_step != d->s->step)
+    bool shown = sf_state_is_finite(d->m, d->s);
+    if (shown && d->r.frame_step != d->s->step)
         sf_output_frame(d->out, d->m, d->op, d->s, frames++, err);
-    if (err->status == SF_OK && sf_recorder_peak_ahead(&d->r))
+    if (shown && err->status == SF_OK && sf_recorder_peak_ahead(&d->r))
         sf_output_peak(d->out, d->m, d->op, d->s, err);
     if (err->status == SF_OK && sf_output_begin(d->out, true, frames, &file, err) == SF_OK &&
         sf_history_write(&d->r.history, file, err) == SF_OK &&
@@ -181,6 +187,16 @@ static sf_status load(drop *d, const sf_checkpoint *from, sf_error *err) {
         sf_checkpoint_read(from, d->m, d->out, d->s, &d->r, err);
     d->first_time = d->s->time;
     return err->status;
+}
+
+/* A run that had ended by rebound goes on if an end time is asked for; else it ends again at once. */
+static void resume_rebounded(drop *d) {
+    if (d->r.past_rebound || !sf_ending_rebounded(d->m, d->s))
+        return;
+    d->r.past_rebound = d->run->to_end_time;
+    if (!d->run->to_end_time)
+        fprintf(d->run->log, "the run had ended by rebound at %.3f ms; --end-time continues it\n",
+                1e3 * d->s->time);
 }
 
 /* After a failure: repeats the steps up to the last valid one, for a checkpoint there. */
@@ -209,8 +225,11 @@ static void end_run(drop *d, const sf_error *failure, sf_error *late) {
     if (d->run->checkpoints && !failed)
         save(d, &unsaved);
     d->run->wall_time = d->r.wall_time + sf_clock() - d->start;
+    d->run->shown = sf_state_is_finite(d->m, d->s);
+    if (d->run->checkpoints && !d->run->shown)
+        replay(d, &unsaved); /* the last valid step is shown instead */
     bool whole = conclude(d, failed ? failure->text : d->run->ending, late) == SF_OK;
-    if (d->run->checkpoints && failed)
+    if (d->run->checkpoints && failed && d->run->shown)
         replay(d, &unsaved);
     if (whole)
         sf_output_clear(d->out);
@@ -220,11 +239,13 @@ static void end_run(drop *d, const sf_error *failure, sf_error *late) {
 
 sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf_run *run, sf_output *out,
                       const sf_checkpoint *from, sf_error *err) {
-    drop d = {.m = m, .op = op, .s = s, .run = run, .out = out, .start = sf_clock()};
+    drop d = {.m = m, .op = op, .s = s, .run = run, .out = out, .start = sf_clock(), .left = INFINITY};
     sf_error late = SF_ERROR_INIT;
     d.last_checkpoint = d.start;
     run->ending = "failed";
     if (load(&d, from, err) == SF_OK && sf_output_recover(out, d.r.frames, err) == SF_OK) {
+        if (from)
+            resume_rebounded(&d);
         d.next_checkpoint = s->time + run->checkpoint_time;
         d.r.restarts += from != NULL;
         run_steps(&d, from != NULL, err);

@@ -24,10 +24,12 @@ typedef struct sf_run {
     double checkpoint_wall;          /* s of wall time between two */
     double checkpoint_time;          /* s of simulated time between two */
     const sf_provenance *provenance; /* of the checkpoints; borrowed */
+    bool to_end_time;                /* resumed after its rebound, a run goes on to the end time */
     char note[1024];                 /* a sentence of the program for /summary/notes, or "" */
     /* out */
     double wall_time; /* s, with the time before a restart */
     sf_extremes extremes;
+    bool shown;         /* the last frame is of the last step, and not of one before it that was finite */
     const char *ending; /* "finished", "rebound", "interrupted", "failed" */
 } sf_run;
 
