@@ -186,6 +186,26 @@ static void raw_and_filtered_peaks_agree(void **state) {
     history_free(&h);
 }
 
+/* The estimate of softfall-pre knows the rate terms of the foam, which shorten the steps. */
+static void estimate_of_the_steps_knows_the_rate_terms(void **state) {
+    const char *const foam[] = {"material.ED='\"0 Pa\"'", "material.ED='\"40 MPa\"'",
+                                "material.eta='\"200 Pa s\"'"};
+    for (int k = 0; k < 3; k++) {
+        double expected = 0;
+        program_result pre = program_succeed(*state, "pre", "'%s' -o cost.h5 --force %s --set %s",
+                                             fixture_source(EXAMPLE), program_coarse(20), foam[k]);
+        const char *line = strstr(pre.out, "for about ");
+        assert_true(line && sscanf(line, "for about %lf steps", &expected) == 1);
+        program_result solve = program_succeed(*state, "solve", "cost.h5 -o cost_results.h5 --force -t 1");
+        double steps = 0, milliseconds = 0;
+        line = strstr(solve.out, "ended: rebound at ");
+        assert_true(line &&
+                    sscanf(line, "ended: rebound at %lf ms after %lf steps", &milliseconds, &steps) == 2);
+        if (!(expected < 2.5 * steps && steps < 2.5 * expected))
+            fail_msg("%s: %g steps, expected about %g", foam[k], steps, expected);
+    }
+}
+
 static void no_local_collapse(void **state) {
     double mean = summary_number(*state, "max_mean_strain"),
            local = summary_number(*state, "max_local_strain");
@@ -454,6 +474,7 @@ int main(void) {
         cmocka_unit_test(impulses_balance_momenta),
         cmocka_unit_test(history_is_recorded_at_50_kHz_or_more),
         cmocka_unit_test(raw_and_filtered_peaks_agree),
+        cmocka_unit_test(estimate_of_the_steps_knows_the_rate_terms),
         cmocka_unit_test(no_local_collapse),
         cmocka_unit_test(files_say_where_they_come_from),
         cmocka_unit_test(existing_output_is_replaced_only_with_force),

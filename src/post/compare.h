@@ -41,15 +41,15 @@ typedef struct sf_compare_options {
 } sf_compare_options;
 
 typedef struct sf_comparison {
-    sf_series measured; /* s on its own clock, g, filtered like the model; owned */
-    sf_series raw;      /* the points of the file; owned */
+    sf_series measured;                       /* s on its own clock, g, filtered like the model; owned */
+    sf_series raw;                            /* the points of the file; owned */
     char understood[SF_REFERENCE_UNDERSTOOD]; /* how the file was read */
-    double cfc;                                             /* of the measured curve; 0: not filtered here */
-    bool inverted;                                          /* on the user's word */
-    sf_injury injury;                                       /* of the measured curve */
-    double shift;                                           /* s, as used */
-    int shift_given;                                        /* 1 if the caller gave it */
-    double peak_error;                                      /* model a_max / measured a_max - 1 */
+    double cfc;                               /* of the measured curve; 0: not filtered here */
+    bool inverted;                            /* on the user's word */
+    sf_injury injury;                         /* of the measured curve */
+    double shift;                             /* s, as used */
+    int shift_given;                          /* 1 if the caller gave it */
+    double peak_error;                        /* model a_max / measured a_max - 1 */
     int64_t fit_count;
     sf_fit *fits; /* [fit_count]: for the window, then each region: at 0.25 and at 0.50 ms; owned */
 } sf_comparison;

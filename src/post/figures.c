@@ -171,6 +171,7 @@ static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
     f->cfc = cfc;
     f->touched = sf_results_touched(r);
     f->driven = r->driven;
+    f->kinematic = r->kinematic;
     f->v0 = f->driven ? NAN : r->missile_speed;
     f->missile_mass = f->driven ? NAN : r->missile_mass;
     f->area = sf_results_cross_section(r);
@@ -213,4 +214,8 @@ void sf_figures_free(sf_figures *figures) {
     sf_series_free(&figures->raw);
     sf_series_free(&figures->filtered);
     *figures = (sf_figures){0};
+}
+
+const char *sf_figures_acceleration(const sf_figures *figures) {
+    return figures->kinematic ? "kinematic deceleration" : "acceleration as an accelerometer reads it";
 }

@@ -68,6 +68,7 @@
     X(FACT_TEXT, status, "status", 1, "how the run ended: as /summary/status in results.h5")                           \
     X(FLAG, touched, "touched", 1, "the missile touched the pad")                                                      \
     X(FLAG, driven, "prescribed_motion", 1, "the missile's motion was prescribed")                                     \
+    X(FLAG, kinematic, "kinematic_acceleration", 1, "the figures are of the kinematic acceleration, not of the reading of an accelerometer") \
     X(FLAG, rebounded, "rebounded", 1, "contact had ended before the last row, upwards")                               \
     X(FACT, contact_time, "contact_time_ms", 1e3, "first contact")                                                     \
     X(NUMBER, end_time, "end_time_ms", 1e3, "time of the last row of the history")                                     \
@@ -119,5 +120,8 @@ const sf_figure *sf_figure_find(const char *key);
 /* Release with sf_figures_free. */
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *figures, sf_error *err);
 void sf_figures_free(sf_figures *figures);
+
+/* What the curves show, a few words; static storage. */
+const char *sf_figures_acceleration(const sf_figures *figures);
 
 #endif

@@ -132,7 +132,8 @@ static void put_limit(FILE *g, const picture *p) {
 
 static void put_axes(FILE *g, const picture *p) {
     put_title(g, p);
-    fputs("set xlabel 'time (ms)'\nset ylabel 'deceleration (g)'\nset xzeroaxis lw 1 lc rgb '#808080'\n", g);
+    fprintf(g, "set xlabel 'time (ms)'\nset ylabel '%s (g)'\nset xzeroaxis lw 1 lc rgb '#808080'\n",
+            sf_figures_acceleration(p->figures));
     fprintf(g, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", p->time[0] * 1e3, p->time[1] * 1e3,
             p->value[0], p->value[1]);
     put_limit(g, p);

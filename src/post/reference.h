@@ -23,8 +23,8 @@ typedef struct sf_reference_options {
 } sf_reference_options;
 
 typedef struct sf_reference {
-    sf_series raw;        /* the points of the file, s and g, inverted if asked for; owned */
-    sf_series curve;      /* sampled and filtered; without a filter the same as raw; owned */
+    sf_series raw;   /* the points of the file, s and g, inverted if asked for; owned */
+    sf_series curve; /* sampled and filtered; without a filter the same as raw; owned */
     char understood[SF_REFERENCE_UNDERSTOOD]; /* how the file was read, for the report */
 } sf_reference;
 

@@ -148,11 +148,11 @@ static void put_curve(const page *p, const sf_staging *output) {
     else if (f->driven)
         sf_html_figure(p->file, svg, "Nominal stress over strain (indentation over thickness).");
     else if (f->injury.hic.value > 0)
-        sf_html_figure(p->file, svg,
-                       "Deceleration of the missile, filtered (CFC %.0f); shaded: the HIC window.", f->cfc);
+        sf_html_figure(p->file, svg, "Missile: %s, filtered (CFC %.0f); shaded: the HIC window.",
+                       sf_figures_acceleration(f), f->cfc);
     else
-        sf_html_figure(p->file, svg, "Deceleration of the missile, filtered with CFC %.0f, over time.",
-                       f->cfc);
+        sf_html_figure(p->file, svg, "Missile: %s, filtered with CFC %.0f, over time.",
+                       sf_figures_acceleration(f), f->cfc);
     free(svg);
 }
 

@@ -235,8 +235,8 @@ static void print_comparison(FILE *out, const char *path, const sf_comparison *c
 
 static void print_drop(FILE *out, const sf_summary *s) {
     const sf_figures *f = s->figures;
-    fprintf(out, "Drop of %.4g kg at %.4g m/s on %.4g mm (CFC %.0f)\n", s->results->missile_mass, f->v0,
-            s->results->thickness * 1e3, f->cfc);
+    fprintf(out, "Drop of %.4g kg at %.4g m/s on %.4g mm (CFC %.0f%s)\n", s->results->missile_mass, f->v0,
+            s->results->thickness * 1e3, f->cfc, f->kinematic ? ", kinematic acceleration" : "");
     print_lines(out, s, drop_lines);
 }
 

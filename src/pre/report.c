@@ -6,9 +6,8 @@
 #include <math.h>
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
- * that rebounds half-way to the end time, over those that the guaranteed first step would need to get there.
- */
-static const double RATE = 3.5e6, TYPICAL = 0.5;
+ * that rebounds half-way to the end time, over those that the guaranteed steps would need to the end. */
+static const double RATE = 3.5e6, TYPICAL = 0.32;
 
 static void print_range(FILE *out, const char *name, const double *value, int64_t count, double scale,
                         const char *unit) {
@@ -90,14 +89,14 @@ static void print_mesh_error(FILE *out, const sf_model *m, const sf_contact_zone
 
 static void print_cost(FILE *out, const sf_model *m, const sf_build_report *r) {
     double step = fmin(m->run.step_safety * r->first_step, m->run.step_limit);
-    double steps = TYPICAL * m->run.end_time / step, n = (double)m->node_count;
+    double steps = TYPICAL * r->slowdown * m->run.end_time / step, n = (double)m->node_count;
     double bytes = 26 * (double)m->domain_nnz + 12 * (double)m->phi_nnz + 7 * (double)m->edge_nnz + 541 * n +
                    720 * (double)(m->fixed_count + m->contact_count);
     fprintf(out, "%-26s%.2f us (bound %.2f us)\n", "first time step, at least", 1e6 * step,
             1e6 * r->first_step);
     fprintf(out, "%-26s%.0f MB (%.2f kB per node)\n", "memory of the solver", bytes / 1e6, bytes / n / 1e3);
-    fprintf(out, "%-26s%.0f s on two cores, for about %.0f steps\n", "typical run time", steps * n / RATE,
-            steps);
+    fprintf(out, "%-26s%.0f s on two cores, for about %.0f steps (to a factor of 2)\n", "typical run time",
+            steps * n / RATE, steps);
 }
 
 void sf_report_print(FILE *out, const sf_model *m, const sf_build_report *r) {
