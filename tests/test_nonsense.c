@@ -192,6 +192,7 @@ static void geometries(void **state) {
          {"cut open", "x = 0 mm", "whole pad"}},
         {"--set pad.fixed='[\"floor\"]'", {"pad.fixed", "\"floor\"", "\"base\""}},
         {"--set pad.fixed='[\"top\", \"base\"]'", {"pad.contact", "every node", "\"top\""}},
+        {"--set pad.sliding='[\"top\"]'", {"pad.contact", "held along z", "pad.sliding"}},
         {"--set geometry.file=files/pad.txt --set geometry.parameters='{}'", {"pad.txt", "must end in .geo"}},
         {"--set geometry.file=files/run.geo --set geometry.parameters='{}'", {"run.geo:1", "\"SystemCall\""}},
         {"--set geometry.file=files/save.geo --set geometry.parameters='{}'", {"save.geo:1", "\"Save\""}},

@@ -33,7 +33,7 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
     X(step_artefact, 0, INFINITY, SF_AS_NUMBER, "raw peak of one or two time steps",                                   \
       "1 if `a_max_raw_rows` < 3, else 0",                                                                             \
       "the raw peak grows as the time step shrinks and means nothing; the filtered figures do not depend on it")       \
-    X(coarse, 0, INFINITY, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
+    X(coarse, 0.01, INFINITY, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
       "-`local_strain_excess`, at least 0",                                                                            \
       "the mesh is too coarse to show the strain below the missile")                                                   \
     X(local_collapse, 0.1, 0.3, SF_AS_NUMBER, "strain of a node above its neighbours", "`local_collapse`",                \

@@ -37,6 +37,18 @@ int64_t sf_history_row_of_largest(const sf_history *h, const double *column) {
     return row;
 }
 
+double sf_history_lasting(const double *column, int64_t row) {
+    return row < 2 ? 0 : fmin(column[row], fmin(column[row - 1], column[row - 2]));
+}
+
+int64_t sf_history_row_of_lasting(const sf_history *h, const double *column) {
+    int64_t row = 0;
+    for (int64_t i = 1; i < h->rows; i++)
+        if (sf_history_lasting(column, i) > sf_history_lasting(column, row))
+            row = i;
+    return row;
+}
+
 static double internal_energy(const sf_history *h, int64_t i) {
     return h->energy_stored[i] + h->energy_hysteresis[i] + h->energy_viscous[i] + h->energy_stabilisation[i];
 }

@@ -31,6 +31,17 @@ sf_status sf_csv_write_history(const sf_staging *output, const sf_results *resul
     return sf_staging_close(file, "history.csv", err);
 }
 
+sf_status sf_csv_write_acceleration(const sf_staging *output, const sf_figures *figures, sf_error *err) {
+    const sf_series *curve = &figures->filtered;
+    FILE *file = sf_staging_open(output, "acceleration.csv", err);
+    if (!file)
+        return err->status;
+    fprintf(file, "time_ms,acceleration_cfc%.0f_g\n", figures->cfc);
+    for (int64_t i = 0; i < curve->count; i++)
+        fprintf(file, "%.9g,%.9g\n", curve->time[i] * 1e3, curve->value[i]);
+    return sf_staging_close(file, "acceleration.csv", err);
+}
+
 sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *results,
                                    const sf_figures *figures, sf_error *err) {
     FILE *file = sf_staging_open(output, "compression.csv", err);

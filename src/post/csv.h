@@ -11,6 +11,9 @@
 sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err);
 
+/* acceleration.csv: the filtered curve of which a_max and HIC are, uniform samples from free flight on. */
+sf_status sf_csv_write_acceleration(const sf_staging *output, const sf_figures *figures, sf_error *err);
+
 /* compression.csv: engineering strain (indentation / thickness) and nominal stress (contact force / mean
  * cross-section at rest) of every row; of a run with a prescribed motion. */
 sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *results,

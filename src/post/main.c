@@ -218,19 +218,13 @@ static sf_status parse_command(int argc, char **argv, options *o) {
 }
 
 /* Every file that this program may write. pad.h5 is moved before pad.xdmf, which refers to it. */
-static const char *const output_names[] = {"pad.h5",
-                                           "pad.xdmf",
-                                           "history.csv",
-                                           "section.csv",
-                                           "reference.csv",
-                                           "compression.csv",
-                                           "compression.gp",
-                                           "compression.png",
-                                           "acceleration.gp",
-                                           "acceleration.png",
-                                           "report.html",
-                                           "summary.json",
-                                           NULL};
+static const char *const output_names[] = {"pad.h5",           "pad.xdmf",
+                                           "history.csv",      "section.csv",
+                                           "reference.csv",    "compression.csv",
+                                           "compression.gp",   "compression.png",
+                                           "acceleration.csv", "acceleration.gp",
+                                           "acceleration.png", "report.html",
+                                           "summary.json",     NULL};
 
 static sf_status write_output(const options *o, job *j, sf_error *err) {
     bool section = false;
@@ -238,6 +232,7 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
     if (sf_staging_begin(o->directory, output_names, o->force, &j->output, err) != SF_OK ||
         sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
         (j->figures.driven && sf_csv_write_compression(&j->output, &j->results, &j->figures, err) != SF_OK) ||
+        (!j->figures.driven && sf_csv_write_acceleration(&j->output, &j->figures, err) != SF_OK) ||
         (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
         sf_section_write(&j->output, &j->results, &section, err) != SF_OK ||
         sf_xdmf_write(&j->output, &j->results, j->command_line, &j->frames, err) != SF_OK ||
@@ -279,6 +274,7 @@ static void print_files(const job *j) {
         {"report.html", "everything on two pages, to read or to print"},
         {"summary.json", "the figures"},
         {"acceleration.png", "the curves and the HIC window"},
+        {"acceleration.csv", "the filtered curve of a_max and HIC, from 5 ms before contact"},
         {"history.csv", "acceleration, speed, indentation, forces, energies over time"},
         {"compression.png", "stress over strain"},
         {"compression.csv", "strain and nominal stress over time"},

@@ -152,10 +152,11 @@ static void put_peak(FILE *g, const picture *p) {
 }
 
 static void put_hic(FILE *g, const sf_hic *hic) {
-    fprintf(g,
-            "'history.csv' skip 1 using 1:($1 >= %.9g && $1 <= %.9g ? $3 : NaN) with filledcurves y=0 fc "
-            "rgb '#c6dbef' title 'HIC %.1f: %.2f to %.2f ms', \\\n     ",
-            hic->t1 * 1e3, hic->t2 * 1e3, hic->value, hic->t1 * 1e3, hic->t2 * 1e3);
+    fprintf(
+        g,
+        "'acceleration.csv' skip 1 using 1:($1 >= %.9g && $1 <= %.9g ? $2 : NaN) with filledcurves y=0 fc "
+        "rgb '#c6dbef' title 'HIC %.1f: %.2f to %.2f ms', \\\n     ",
+        hic->t1 * 1e3, hic->t2 * 1e3, hic->value, hic->t1 * 1e3, hic->t2 * 1e3);
 }
 
 /* Thin and pale behind the curves, as they may be noisy. */
@@ -185,7 +186,7 @@ static void put_curves(FILE *g, const picture *p) {
         put_points(g);
     if (p->raw)
         fputs("'history.csv' skip 1 using 1:2 with lines lw 1.2 lc rgb '#fd8d3c' title 'raw', \\\n     ", g);
-    fprintf(g, "'history.csv' skip 1 using 1:3 with lines lw 4 lc rgb '#08519c' title '%sCFC %.0f'",
+    fprintf(g, "'acceleration.csv' skip 1 using 1:2 with lines lw 4 lc rgb '#08519c' title '%sCFC %.0f'",
             p->comparison ? "model, " : "", f->cfc);
     if (p->comparison)
         put_measured(g, p->comparison);

@@ -22,12 +22,12 @@ static double ending_value(const sf_results *r, const sf_figures *f) {
 }
 
 static double ended_in_contact_value(const sf_results *r, const sf_figures *f) {
-    const sf_history *h = &r->history;
+    (void)r;
     if (!f->touched || f->driven)
         return NAN;
     if (f->rebounded)
         return 0;
-    double left = h->acceleration[h->rows - 1] / SF_STANDARD_GRAVITY / f->injury.a_max_g;
+    double left = f->raw.value[f->raw.count - 1] / f->injury.a_max_g;
     return fmax(left, 1e-6); /* still in contact: never 0 */
 }
 

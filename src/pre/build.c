@@ -237,7 +237,10 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const double 
     for (int64_t k = 0; k < contact->count; k++)
         if (mask[contact->node[k]] != (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
             m->contact_node[m->contact_count++] = contact->node[k];
-    report->contact_held = m->contact_count == 0;
+    int64_t free_along = 0; /* can be pressed */
+    for (int64_t k = 0; k < contact->count; k++)
+        free_along += !(mask[contact->node[k]] & SF_FIX_Z);
+    report->contact_held = free_along == 0;
     if (report->contact_held) {
         memcpy(m->contact_node, contact->node, (size_t)contact->count * sizeof *contact->node);
         m->contact_count = contact->count;

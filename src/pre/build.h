@@ -23,7 +23,7 @@ typedef struct sf_build_report {
     double worst_position[3]; /* m */
     double first_step;        /* s, before any safety factor */
     double slowdown;          /* -, first step over the mean one of a compression (estimate_slowdown) */
-    bool contact_held;        /* every contact point is held: nothing to drop on */
+    bool contact_held;        /* every contact point is held along z: nothing to drop on */
     sf_contact_zone zone;
     sf_invariants invariants;
 } sf_build_report;

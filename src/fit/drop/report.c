@@ -105,7 +105,7 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
     sf_html_table table = sf_html_table_begin(
         f, "dense",
         "drop|>a_max measured (g)|>simulated|>|>from the others|>HIC measured|>simulated|>|>from the others|>curve "
-        "RMSE (g)|>largest local strain");
+        "RMSE (g)|>largest local strain|verdict");
     for (int d = 0; d < in->drop_count && !in->drop[d].predicted; d++) {
         const sf_fit_drop *drop = &in->drop[d];
         sf_html_row(&table);
@@ -114,6 +114,7 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
         put_response(&table, fit, d, SF_FIT_HIC, drop->hic, 0);
         sf_html_number(&table, 2, curve_rmse(fit, d));
         sf_html_number(&table, 3, fit->simulated[d].max_local_strain);
+        sf_html_cell(&table, "%s", sf_verdict_phrase(fit->simulated[d].grade));
     }
     sf_html_table_end(&table);
     sf_html_paragraph(
@@ -166,7 +167,7 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
         "Drops that were not used. The 95 %% intervals hold the uncertainty of the parameters; that of the "
         "discretisation and of the model's form come on top.");
     sf_html_table table =
-        sf_html_table_begin(f, "dense", "drop|>a_max (g)|>95 %|>HIC|>95 %|>largest local strain");
+        sf_html_table_begin(f, "dense", "drop|>a_max (g)|>95 %|>HIC|>95 %|>largest local strain|verdict");
     for (int d = 0; d < in->drop_count; d++) {
         if (!in->drop[d].predicted)
             continue;
@@ -180,6 +181,7 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
         sf_html_number(&table, 0, h);
         sf_html_cell(&table, "%.0f to %.0f", h * exp(-sh), h * exp(sh));
         sf_html_number(&table, 3, fit->simulated[d].max_local_strain);
+        sf_html_cell(&table, "%s", sf_verdict_phrase(fit->simulated[d].grade));
     }
     sf_html_table_end(&table);
 }
@@ -475,7 +477,7 @@ static sf_status write_drop_data(const sf_drop_fit *fit, const sf_staging *outpu
     FILE *f = sf_staging_open(output, "fit-drops.csv", err);
     if (!f)
         return err->status;
-    fputs("# one block per drop: time after the run's start (ms), deceleration (g)\n", f);
+    fputs("# one block per drop: time after the run's start (ms), acceleration (g)\n", f);
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_series *s = &fit->simulated[d].curve;
         fprintf(f, "\n\n# %s\n", fit->input->drop[d].name);
@@ -494,21 +496,25 @@ static double peak_time_ms(const sf_series *curve) {
 }
 
 static void put_strain_panels(FILE *f) {
-    fputs("set key left top Left reverse samplen 2\nset xlabel 'engineering strain'\nset xrange [0:0.95]\n"
-          "set ylabel 'nominal stress (kPa)'\nset logscale y\n"
-          "plot 'fit-curve.csv' skip 1 u 1:3:4 w filledcurves fc rgb '#c6dbef' t '95 %', '' skip 1 u 1:2 w l "
-          "lw 3 lc rgb '#08519c' t 'loading curve'\n"
-          "unset logscale y\nset ylabel 'share of the information of the drops'\nset yrange [0:*]\n"
-          "set boxwidth 0.045\nset style fill solid 0.6\n"
-          "plot 'fit-curve.csv' skip 1 u 1:5 w boxes lc rgb '#fd8d3c' t 'information by strain'\n",
-          f);
+    fputs(
+        "set size 0.5,0.5\nset origin 0,0.46\nset xtics 0.2\n"
+        "set key left top Left reverse samplen 2\nset xlabel 'engineering strain'\nset xrange [0:0.95]\n"
+        "set ylabel 'nominal stress (kPa)'\nset logscale y\n"
+        "plot 'fit-curve.csv' skip 1 u 1:3:4 w filledcurves fc rgb '#c6dbef' t '95 %', '' skip 1 u 1:2 w l "
+        "lw 3 lc rgb '#08519c' t 'loading curve'\n"
+        "unset logscale y\nset origin 0.5,0.46\nunset key\nset ylabel 'information of the drops (share)'\nset yrange [0:*]\n"
+        "set boxwidth 0.045\nset style fill solid 0.6\n"
+        "plot 'fit-curve.csv' skip 1 u 1:5 w boxes lc rgb '#fd8d3c' t 'information by strain'\n",
+        f);
 }
 
 /* Simulated curves; a circle at each measured peak. */
 static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
-    fputs("set autoscale\nset xrange [0:*]\nset yrange [0:*]\nset xlabel 'time after contact (ms)'\n"
-          "set ylabel 'deceleration (g)'\nset key below maxcols 2\n",
-          f);
+    fputs(
+        "set size 1,0.46\nset origin 0,0\nset autoscale\nset xtics auto\nset xrange [0:*]\nset yrange [0:*]\nset xlabel 'time after contact (ms)'\n"
+        "set ylabel 'acceleration (g)'\nset key on\n",
+        f);
+    sf_gnuplot_key(f, fit->input->drop_count + 1, 3);
     for (int d = 0; d < fit->measured_drops; d++)
         if (!isnan(fit->input->drop[d].a_max_g))
             fprintf(f, "set label '' at %.6g,%.6g point pt 6 ps 2*dot lw 2 lc %d\n",
@@ -523,11 +529,10 @@ static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
 }
 
 static sf_status write_script(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
-    FILE *f = sf_gnuplot_begin(output, "fit", 1800, 640, err);
+    FILE *f = sf_gnuplot_begin(output, "fit", 1700, 1350, err);
     if (!f)
         return err->status;
-    fprintf(f, "set multiplot layout 1,3 title 'Identification from drops: %s' \n",
-            fit->input->material_name);
+    fprintf(f, "set multiplot title 'Identification from drops: %s'\n", fit->input->material_name);
     put_strain_panels(f);
     put_drop_panel(f, fit);
     fputs("unset multiplot\n", f);

@@ -12,11 +12,10 @@ static void tell_depth(const sf_model *m, const sf_extremes *x, const sf_sink *s
         sf_sink_tell(sink, SF_WARNING, "the missile went %.4g mm deep, beyond its spherical cap of %.4g mm",
                      1e3 * x->largest_indentation, 1e3 * height);
     if (x->largest_indentation > m->thickness)
-        sf_sink_tell(
-            sink, SF_WARNING,
-            "the missile went %.4g mm into a pad of %.4g mm: it is smaller than the spacing of the contact "
-            "points and passed between them",
-            1e3 * x->largest_indentation, 1e3 * m->thickness);
+        sf_sink_tell(sink, SF_WARNING, "the missile went %.4g mm into a pad of %.4g mm: %s",
+                     1e3 * x->largest_indentation, 1e3 * m->thickness,
+                     x->bare_at_deepest ? "it met no contact point there; is it smaller than their spacing?"
+                                        : "the foam collapsed, or the pad's base is not held");
 }
 
 void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, const sf_sink *sink) {

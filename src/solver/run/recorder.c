@@ -28,25 +28,31 @@ sf_extremes sf_recorder_extremes(const sf_recorder *r) {
     if (h->rows > 0)
         internal = sf_history_internal_energy(h);
     bool any = internal.peak > 0;
-    return (sf_extremes){.peak_value = r->peak_value,
-                         .peak_time = r->peak_time,
-                         .largest_compression = sf_history_largest(h, h->largest_compression),
-                         .largest_indentation = sf_history_largest(h, h->indentation),
-                         .largest_penetration = sf_history_largest(h, h->penetration),
-                         .largest_residual = sf_history_largest(h, h->constraint_residual),
-                         .largest_momentum = sf_history_largest(h, h->momentum_error),
-                         .peak_internal = internal.peak,
-                         .stabilisation_share = any ? internal.stabilisation : 0,
-                         .contact_share = any ? internal.contact : 0};
+    return (sf_extremes){
+        .peak_value = r->peak_value,
+        .peak_time = r->peak_time,
+        .largest_compression = sf_history_largest(h, h->largest_compression),
+        .largest_indentation = sf_history_largest(h, h->indentation),
+        .bare_at_deepest = h->rows > 0 && h->contact_nodes[sf_history_row_of_largest(h, h->indentation)] == 0,
+        .largest_penetration = sf_history_largest(h, h->penetration),
+        .largest_residual = sf_history_largest(h, h->constraint_residual),
+        .largest_momentum = sf_history_largest(h, h->momentum_error),
+        .peak_internal = internal.peak,
+        .stabilisation_share = any ? internal.stabilisation : 0,
+        .contact_share = any ? internal.contact : 0};
 }
 
 sf_status sf_recorder_add(sf_recorder *r, const sf_model *m, const sf_state *s, sf_error *err) {
-    double value = sf_recorder_measure(m, s);
+    sf_history *h = &r->history;
+    if (sf_history_add(h, m, s, err) != SF_OK)
+        return err->status;
+    double value =
+        sf_history_lasting(sf_missile_is_driven(m) ? h->contact_force : h->acceleration, h->rows - 1);
     if (value > r->peak_value) {
         r->peak_value = value;
         r->peak_time = s->time;
     }
-    return sf_history_add(&r->history, m, s, err);
+    return SF_OK;
 }
 
 static bool has_grown(const sf_recorder *r) {
