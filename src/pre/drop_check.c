@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/drop_check.h"
 
+#include "core/good_run.h"
 #include "core/mat3.h"
 #include "pre/mesh/missile_shape.h"
 #include <math.h>
@@ -258,7 +259,7 @@ void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, cons
                   const sf_sink *sink) {
     char reason[REASON_SIZE];
     tell_free_planes(c, mesh, sink);
-    if (!(m->expected_mesh_error >= SF_MESH_ERROR_WARNING))
+    if (!(m->expected_mesh_error >= sf_good_run_limits()->mesh))
         return;
     describe_spacing(m, zone, reason);
     sf_sink_tell(sink, SF_WARNING, "%s", reason);

@@ -6,11 +6,9 @@
 #include "core/model.h"
 
 /* The law: C (h/t)^2 + D (h/w)^2 with the thickness t and the half width w of the contact zone; C and D are
- * calibrated in docs/theory.md, section 11. And the error from which a
- * warning is due. */
+ * calibrated in docs/theory.md, section 11. */
 #define SF_MESH_ERROR_THICKNESS 0.5
 #define SF_MESH_ERROR_WIDTH 0.35
-#define SF_MESH_ERROR_WARNING 0.03
 
 /* The part of the pad that the missile touches when it stands half a thickness deep in it. */
 typedef struct sf_contact_zone {
