@@ -36,9 +36,10 @@ static void texts_are_escaped_and_valid_utf8(void **state) {
 
 static void a_picture_keeps_no_prologue_and_its_own_ids(void **state) {
     (void)state;
-    char *svg = sf_gnuplot_element("<?xml version=\"1.0\"?>\n<svg id=\"canvas\"><circle id='p'/>"
-                                   "<use xlink:href='#p'/><rect fill=\"url(#p)\"/><text>wid='1'</text></svg>",
-                                   "force");
+    char *svg = sf_gnuplot_element(
+        "<?xml version=\"1.0\"?>\n<svg id=\"canvas\"><title>gnuplot_plot_1</title><circle id='p'/>"
+        "<use xlink:href='#p'/><rect fill=\"url(#p)\"/><text>wid='1'</text></svg>",
+        "force");
     assert_string_equal(svg, "<svg id=\"force-canvas\"><circle id='force-p'/><use xlink:href='#force-p'/>"
                              "<rect fill=\"url(#force-p)\"/><text>wid='1'</text></svg>");
     free(svg);
@@ -73,11 +74,12 @@ static void comments_give_title_and_origin_of_the_material(void **state) {
     (void)state;
     static const char text[] =
         "# EVA pad\n#  second line\n\n# not this\ngeometry: {\n# nor this\n};\n"
-        "material: {\n# from ../foam.cfg:\n# Foam of 35 kg/m3\nE = \"1 MPa\";\n# informed to 0.8\n"
+        "material: {\n# from ../foam.cfg:\n# from the supplier's data sheet\n# from 2024\n# Foam of 35 kg/m3\nE = \"1 MPa\";\n# informed to 0.8\n"
         "};\nmissile: { # nor this\n};\n";
     char *title = sf_origin_title(text), *origin = sf_origin_material(text);
     assert_string_equal(title, "EVA pad\nsecond line\n");
-    assert_string_equal(origin, "Foam of 35 kg/m3\ninformed to 0.8\n");
+    assert_string_equal(origin,
+                        "from the supplier's data sheet\nfrom 2024\nFoam of 35 kg/m3\ninformed to 0.8\n");
     free(title);
     free(origin);
     char replaced[600];
@@ -218,13 +220,20 @@ static void a_picture_that_cannot_be_made_is_replaced_by_the_reason(void **state
     snprintf(code, sizeof code, "%sassert 'No frame near: half the peak force' in shown\n", page_check);
     assert_python(p, code);
     post_fixture(p, &(fixture_options){.untouched = true, .status = "finished"}, "");
-    assert_python(p, page_check);
+    snprintf(code, sizeof code,
+             "%sassert 'limit 200 g: not evaluated' in shown and 'limit 1000: not evaluated' in shown\n"
+             "assert 'failed' not in shown\n",
+             page_check);
+    assert_python(p, code);
     const char *programs = getenv("SF_BIN_DIR");
     assert_non_null(programs);
     program_result bare =
         program_shell(p, "PATH=/nonexistent '%s/softfall-post' results.h5 -o out --force", programs);
     assert_int_equal(bare.code, 0);
-    snprintf(code, sizeof code, "%sassert shown.count('gnuplot cannot be run') >= 2\n", page_check);
+    snprintf(code, sizeof code,
+             "%sassert shown.count('install gnuplot and run softfall-post again') >= 2\n"
+             "assert 'run \"gnuplot' not in shown\n",
+             page_check);
     assert_python(p, code);
 }
 
@@ -257,6 +266,47 @@ static void a_script_runs_from_anywhere_and_writes_beside_itself(void **state) {
     assert_int_equal(run.code, 0);
     assert_string_equal(run.out, "");
     assert_int_equal(program_shell(p, "rm out/acceleration.svg; cd out && gnuplot acceleration.gp").code, 0);
+}
+
+/* As many entries as post draws; in both pictures the key needs no more rows than are kept free. */
+static void the_key_lies_below_the_title_of_the_axis(void **state) {
+    const program_place *p = *state;
+    if (program_shell(p, "command -v gnuplot").code != 0)
+        skip();
+    for (int entries = 1; entries <= 5; entries++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_staging output = {0};
+        char warning[320];
+        static const char *const only[] = {"key.gp", NULL};
+        assert_int_equal(sf_staging_begin(program_path(p, "key"), only, true, &output, &err), SF_OK);
+        FILE *g = sf_gnuplot_begin(&output, "key", 1600, 830, &err);
+        assert_non_null(g);
+        fputs("set xlabel 'time (ms)'\nset ylabel 'deceleration (g)'\n", g);
+        sf_gnuplot_key(g, entries, SF_PLOT_KEY_COLUMNS);
+        static const char *const title[] = {"HIC 1253.4: 12.34 to 23.45 ms", "CFC 1000", "raw",
+                                            "measured, as in its file", "measured, CFC 1000: a_max 123.4 g"};
+        for (int k = 0; k < entries; k++)
+            fprintf(g, "%s x*%d title '%s'", k ? "," : "plot", k + 1, title[k]);
+        fputc('\n', g);
+        assert_int_equal(sf_staging_close(g, "key.gp", &err), SF_OK);
+        char *svg = sf_gnuplot_svg(&output, "key", "softfall-post", warning, sizeof warning);
+        sf_staging_end(&output);
+        assert_non_null(svg);
+        program_write_text(p, "key.svg", svg);
+        free(svg);
+        program_write_text(
+            p, "check.py",
+            "import re\n"
+            "texts = re.findall(r'translate\\([-0-9.]+,([-0-9.]+)\\)[^>]*>\\s*<text>(.*?)</text>',"
+            " open('key.svg').read(), re.S)\n"
+            "place = {re.sub('<.*?>', '', t).strip(): float(y) for y, t in texts}\n"
+            "axis = place.pop('time (ms)')\n"
+            "below = [y for t, y in place.items() if t in ('CFC 1000', 'raw') or t[:3] in ('HIC', 'mea')]\n"
+            "assert below and min(below) > axis + 10, (axis, place)\n");
+        program_result result = program_shell(p, "python3 check.py");
+        if (result.code != 0)
+            fail_msg("%d entries: %s", entries, result.err);
+    }
 }
 
 /* The raw curve of the half sine lies below the filtered one. */
@@ -307,6 +357,7 @@ int main(void) {
         cmocka_unit_test(a_picture_that_cannot_be_made_is_replaced_by_the_reason),
         cmocka_unit_test(words_of_the_reference_cannot_leave_their_place),
         cmocka_unit_test(a_script_runs_from_anywhere_and_writes_beside_itself),
+        cmocka_unit_test(the_key_lies_below_the_title_of_the_axis),
         cmocka_unit_test(a_hidden_curve_has_no_entry),
         cmocka_unit_test(a_noisy_measured_curve_stands_thin_behind_what_the_filter_leaves),
     };

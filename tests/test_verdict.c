@@ -2,6 +2,7 @@
 /* The verdict on a run: its rows from figures at and beyond their bounds, and softfall-post as it shows them
  * on synthetic results. */
 #include "post/verdict.h"
+#include "post/results_check.h"
 #include "post_fixture.h"
 
 #include <math.h>
@@ -171,6 +172,70 @@ static void what_the_solver_noted_is_a_remark(void **state) {
     close_run(&run);
 }
 
+/* How the run ended is a row of its own; the notes still list it. */
+static void a_note_that_repeats_the_ending_is_not_counted(void **state) {
+    static const fixture_options ended[] = {
+        {.status = "interrupted"},
+        {.no_summary = true},
+        {.untouched = true, .notes = "the missile never touched the pad\n", .status = "finished"}};
+    for (size_t k = 0; k < sizeof ended / sizeof ended[0]; k++) {
+        sound_run run = open_run(*state, ended[k]);
+        judge(&run);
+        assert_int_equal(run.results.note_count, 1);
+        assert_close(row(&run, "notes")->value, 0, 0);
+        assert_int_equal(row(&run, "notes")->grade, SF_GRADE_VALID);
+        assert_int_not_equal(row(&run, "ending")->grade, SF_GRADE_VALID);
+        close_run(&run);
+    }
+    sound_run run = open_run(*state, (fixture_options){.status = "interrupted", .no_peak = true});
+    sf_results_note(&run.results, "something else");
+    judge(&run);
+    assert_non_null(strstr(row(&run, "notes")->text, "first: something else"));
+    close_run(&run);
+}
+
+/* The note is cut at 200 bytes, in the middle of a character. */
+static void a_long_note_is_not_cut_inside_a_character(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0});
+    char note[400] = "x";
+    for (int k = 0; k < 150; k++)
+        strcat(note, "\xc3\xa4");
+    sf_results_note(&run.results, "%s", note);
+    judge(&run);
+    const char *text = row(&run, "notes")->text;
+    assert_int_equal(strlen(strchr(text, 'x')), 199);
+    assert_int_equal((unsigned char)text[strlen(text) - 1], 0xa4);
+    close_run(&run);
+}
+
+static void the_line_names_three_findings_the_worst_first(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0});
+    char line[SF_VERDICT_LINE_SIZE];
+    run.figures.energy_error = 0.03;
+    run.figures.stabilisation_energy_fraction = 0.1;
+    run.figures.contact_energy_fraction = 0.03;
+    judge(&run);
+    sf_verdict_line(&run.verdict, line, sizeof line);
+    assert_null(strstr(line, "more"));
+    run.figures.max_mean_strain = 0.99;
+    run.figures.raw_peak_rows = 1;
+    assert_int_equal(judge(&run), SF_GRADE_DO_NOT_USE);
+    sf_verdict_line(&run.verdict, line, sizeof line);
+    const char *first = "do not use: indentation over the thickness 0.99", *last = "; and 2 more";
+    if (strncmp(line, first, strlen(first)) != 0 || strcmp(line + strlen(line) - strlen(last), last) != 0 ||
+        strstr(line, "contact energy"))
+        fail_msg("%s", line);
+    close_run(&run);
+}
+
+static void a_raw_peak_of_a_single_step_is_told_without_numbers(void **state) {
+    sound_run run = open_run(*state, (fixture_options){0});
+    run.figures.raw_peak_rows = 1;
+    assert_int_equal(judge(&run), SF_GRADE_REMARKS);
+    assert_string_equal(row(&run, "step_artefact")->text, "the raw peak is one or two time steps long");
+    close_run(&run);
+}
+
 /* Nodes 0 to 9 of the fixture are compressed by more than 0.6905, and hold 2000 to 2090 J m-3 at the peak. */
 static void strain_beyond_the_data_is_the_share_of_its_energy(void **state) {
     sound_run run = open_run(*state, (fixture_options){.informed_strain = 0.6905});
@@ -273,7 +338,8 @@ static void a_warning_of_softfall_solve_reaches_the_verdict(void **state) {
     program_shell(p, "rm -rf out");
     assert_int_equal(program_run(p, "post", "results.h5 -o out --strict").code, 9);
     assert_prints(p, "s['notes']", "['the missile never touched the pad']");
-    assert_prints(p, "c['notes']['value'], c['notes']['grade']", "1 valid with remarks");
+    assert_prints(p, "c['notes']['value'], c['notes']['grade']", "0 valid");
+    assert_prints(p, "c['ending']['value'], c['ending']['grade']", "2 do not use");
 }
 
 static double collapse_of_drop(program_place *p, const char *set) {
@@ -312,6 +378,10 @@ int main(void) {
         cmocka_unit_test(a_run_that_ends_late_in_the_rebound_has_a_remark),
         cmocka_unit_test(failed_interrupted_and_untouched_runs_are_graded),
         cmocka_unit_test(what_the_solver_noted_is_a_remark),
+        cmocka_unit_test(a_note_that_repeats_the_ending_is_not_counted),
+        cmocka_unit_test(a_long_note_is_not_cut_inside_a_character),
+        cmocka_unit_test(the_line_names_three_findings_the_worst_first),
+        cmocka_unit_test(a_raw_peak_of_a_single_step_is_told_without_numbers),
         cmocka_unit_test(strain_beyond_the_data_is_the_share_of_its_energy),
         cmocka_unit_test(what_a_run_does_not_define_is_not_judged),
         cmocka_unit_test(limits_pass_and_fail_beside_the_verdict),

@@ -35,13 +35,13 @@ typedef struct sf_runner_drop {
 
 /* The results of a drop for a campaign; figures of the CFC 1000 curve. */
 typedef struct sf_runner_result {
-    double a_max_g, hic;     /* g, - */
-    double v0, v_rebound;    /* m s-1; v_rebound NaN if contact had not ended */
-    double max_indentation;  /* m */
-    double max_local_strain; /* - */
-    double energy_error;     /* - */
-    sf_grade grade;          /* of the run, as softfall-post gives it */
-    char verdict[1024];      /* sf_verdict_line of it, cut */
+    double a_max_g, hic;                /* g, - */
+    double v0, v_rebound;               /* m s-1; v_rebound NaN if contact had not ended */
+    double max_indentation;             /* m */
+    double max_local_strain;            /* - */
+    double energy_error;                /* - */
+    sf_grade grade;                     /* of the run, as softfall-post gives it */
+    char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */
     int64_t nodes, steps;
     sf_series curve; /* s, g: filtered; owned */
     char *path;      /* of its results.h5; owned */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/source.h"
 
+#include "io/provenance.h"
 #include <errno.h>
 #include <limits.h>
 #include <stdbool.h>
@@ -143,7 +144,7 @@ static sf_status copy_include(text_copy *copy, const char *name, const char *pat
         included = NULL;
     if (!included)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-    fprintf(copy->out, "# from %s:\n", name);
+    fprintf(copy->out, SF_INCLUDED_BEGIN "%s" SF_INCLUDED_END "\n", name);
     copy->lines++;
     if (copy_text(copy, included, path, line, depth + 1, err) == SF_OK)
         begin_piece(copy, path, line + 1, err);

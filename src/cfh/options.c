@@ -3,6 +3,7 @@
 
 #include "build_info.h"
 #include "core/units.h"
+#include "post/verdict.h"
 #include <argp.h>
 #include <math.h>
 #include <omp.h>
@@ -170,8 +171,10 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         {"threads", 't', "N", 0, "OpenMP threads (default: all processors, or OMP_NUM_THREADS)", 0},
         {"set", KEY_SET, "GROUP.KEY=VALUE", 0, "override a key of the case, as softfall-pre does", 1},
         {"material", KEY_MATERIAL, "FILE", 0, "another foam: replaces the case's group material", 1},
-        {"limit-g", KEY_LIMIT_G, "G", 0, "limit of a_max in g (default 200)", 2},
-        {"limit-hic", KEY_LIMIT_HIC, "HIC", 0, "limit of HIC (default 1000)", 2},
+        {"limit-g", KEY_LIMIT_G, "G", 0,
+         "limit of a_max in g (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) ")", 2},
+        {"limit-hic", KEY_LIMIT_HIC, "HIC", 0,
+         "limit of HIC (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_HIC) ")", 2},
         {"height", KEY_HEIGHT, "LENGTH", 0,
          "first drop height, e.g. \"1.5 m\" (default: that of the case's velocity)", 3},
         {"max-height", KEY_MAX, "LENGTH", 0, "go no higher (default \"10 m\")", 3},
@@ -186,15 +189,17 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         .options = known,
         .parser = parse_option,
         .args_doc = "CASE -o DIR",
-        .doc = "Critical fall height of a pad: the lowest drop height at which a_max reaches 200 g or HIC "
-               "1000.\vSimulates up to 8 drops with softfall-pre and softfall-solve and writes cfh.json, "
-               "cfh.csv, cfh.png (and .gp) and report.html. After an interruption run the same "
-               "command again to resume. The height is indicative, not a certification.",
+        .doc =
+            "Critical fall height of a pad: the lowest drop height at which a_max or HIC reaches its limit "
+            "(--limit-g, --limit-hic).\vSimulates up to 8 drops with softfall-pre and softfall-solve and "
+            "writes cfh.json, cfh.csv, cfh.png (and .gp) and report.html. After an interruption run the same "
+            "command again to resume. The height is indicative, not a certification.",
     };
     parser_state state = {.options = options, .err = err};
     argp_program_version_hook = print_version;
-    *options = (sf_cfh_options){
-        .threads = omp_get_max_threads(), .limit = {200, 1000}, .max_height = DEFAULT_MAX_HEIGHT};
+    *options = (sf_cfh_options){.threads = omp_get_max_threads(),
+                                .limit = {SF_DEFAULT_LIMIT_G, SF_DEFAULT_LIMIT_HIC},
+                                .max_height = DEFAULT_MAX_HEIGHT};
     if (argp_parse(&parser, argc, argv, 0, NULL, &state) != 0)
         return SF_FAIL(err, SF_ERR_INPUT, "the command line cannot be read");
     return err->status == SF_OK ? parse_heights(&state, err) : err->status;

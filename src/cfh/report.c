@@ -383,7 +383,7 @@ static void put_bodies(FILE *page, const sf_cfh_report *r) {
 
 static void put_picture(FILE *page, const sf_staging *output) {
     char warning[320];
-    char *svg = sf_gnuplot_svg(output, "cfh", warning, sizeof warning);
+    char *svg = sf_gnuplot_svg(output, "cfh", "softfall-cfh", warning, sizeof warning);
     if (svg)
         sf_html_figure(page, svg, "a_max and HIC over the drop height; bands: intervals of the crossings.");
     else

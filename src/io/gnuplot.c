@@ -50,29 +50,36 @@ void sf_gnuplot_key(FILE *script, int entries, int columns) {
             3.4 + 1.2 * rows, (entries + rows - 1) / rows);
 }
 
-/* Runs NAME.gp for a picture of that ending. */
-static void run(const sf_staging *output, const char *name, const char *ending, char *warning, size_t size) {
-    char script[NAME_SIZE], picture[NAME_SIZE];
+/* Runs NAME.gp for a picture of that ending. `program`: that writes the page of the picture, or NULL if the
+ * script stays and draws it later. */
+static void run(const sf_staging *output, const char *name, const char *ending, const char *program,
+                char *warning, size_t size) {
+    char script[NAME_SIZE], picture[NAME_SIZE], command[NAME_SIZE];
     snprintf(script, sizeof script, "%s.gp", name);
     snprintf(picture, sizeof picture, "%s.%s", name, ending);
+    snprintf(command, sizeof command, "gnuplot %s.gp", name);
     warning[0] = '\0';
     const char *const arguments[] = {"gnuplot", "-c", script, ending, NULL};
     const sf_process gnuplot = {.arguments = arguments, .folder = output->aside};
     int code = 0, reason = sf_process_run(&gnuplot, &code);
     if (reason != 0)
         snprintf(warning, size,
-                 "%s was not drawn, as gnuplot cannot be run (%s): install it and run \"gnuplot %s\" in the "
-                 "output directory",
-                 picture, strerror(reason), script);
+                 program
+                     ? "%s was not drawn, as gnuplot cannot be run (%s): install gnuplot and run %s again"
+                     : "%s was not drawn, as gnuplot cannot be run (%s): install it and run \"%s\" in the "
+                       "output directory",
+                 picture, strerror(reason), program ? program : command);
     else if (code != 0 || !sf_staging_has(output, picture))
         snprintf(warning, size,
-                 "%s was not drawn: gnuplot ended with code %d; run \"gnuplot %s\" in the output directory "
-                 "to see why",
-                 picture, code, script);
+                 program
+                     ? "%s was not drawn: gnuplot ended with code %d; try another gnuplot and run %s again"
+                     : "%s was not drawn: gnuplot ended with code %d; run \"%s\" in the output directory "
+                       "to see why",
+                 picture, code, program ? program : command);
 }
 
 void sf_gnuplot_draw(const sf_staging *output, const char *name, char *warning, size_t size) {
-    run(output, name, "png", warning, size);
+    run(output, name, "png", NULL, warning, size);
 }
 
 /* Reads a file of the staging directory and removes it; NULL on failure. */
@@ -102,6 +109,14 @@ static size_t id_prefix(const char *text) {
     return 0;
 }
 
+/* The length of the element <title> that begins here; 0 if none does. A browser would show gnuplot's names of
+ * the curves. */
+static size_t title_length(const char *text) {
+    static const char end[] = "</title>";
+    const char *behind = strncmp(text, "<title>", 7) == 0 ? strstr(text, end) : NULL;
+    return behind ? (size_t)(behind - text) + strlen(end) : 0;
+}
+
 char *sf_gnuplot_element(const char *text, const char *name) {
     const char *at = strstr(text, "<svg");
     char *element = NULL;
@@ -110,6 +125,11 @@ char *sf_gnuplot_element(const char *text, const char *name) {
     if (!out)
         return NULL;
     while (*at) {
+        size_t title = title_length(at);
+        if (title > 0) {
+            at += title;
+            continue;
+        }
         size_t length = id_prefix(at);
         fwrite(at, 1, length > 0 ? length : 1, out);
         if (length > 0)
@@ -122,9 +142,10 @@ char *sf_gnuplot_element(const char *text, const char *name) {
     return NULL;
 }
 
-char *sf_gnuplot_svg(const sf_staging *output, const char *name, char *warning, size_t size) {
+char *sf_gnuplot_svg(const sf_staging *output, const char *name, const char *program, char *warning,
+                     size_t size) {
     char picture[NAME_SIZE], *element = NULL;
-    run(output, name, "svg", warning, size);
+    run(output, name, "svg", program, warning, size);
     snprintf(picture, sizeof picture, "%s.svg", name);
     char *text = take_file(output, picture);
     if (text && !*warning)

@@ -8,6 +8,10 @@
 
 enum { SF_FORMAT_VERSION = 3 };
 
+/* A case's text holds the files that it includes, each below the line "# from NAME:". */
+#define SF_INCLUDED_BEGIN "# from "
+#define SF_INCLUDED_END ":"
+
 /* Borrowed strings; NULL members are not written. Version, revision, compiler, flags and date are added. */
 typedef struct sf_provenance {
     const char *program;

@@ -2,6 +2,7 @@
 #include "io/utf8.h"
 
 #include <stddef.h>
+#include <string.h>
 
 int sf_utf8_length(const unsigned char *s) {
     static const struct {
@@ -23,4 +24,13 @@ int sf_utf8_length(const unsigned char *s) {
         return forms[k].length;
     }
     return 0;
+}
+
+int sf_utf8_cut(const char *text, int size) {
+    int length = (int)strnlen(text, (size_t)size + 1);
+    if (length <= size)
+        return length;
+    for (length = size; length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80;)
+        length--;
+    return length;
 }

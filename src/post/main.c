@@ -166,9 +166,13 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier run in DIR", 0},
         {"filter", KEY_FILTER, "CFC", 0, "channel frequency class: 60, 180, 600 or 1000 (default)", 0},
         {"strict", KEY_STRICT, NULL, 0,
-         "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"", 0},
-        {"limit-g", KEY_LIMIT_G, "G", 0, "limit of a_max in g (default 200)", 0},
-        {"limit-hic", KEY_LIMIT_HIC, "HIC", 0, "limit of HIC (default 1000)", 0},
+         "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"; it says nothing about limits that "
+         "are exceeded",
+         0},
+        {"limit-g", KEY_LIMIT_G, "G", 0,
+         "limit of a_max in g (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) ")", 0},
+        {"limit-hic", KEY_LIMIT_HIC, "HIC", 0,
+         "limit of HIC (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_HIC) ")", 0},
         {"reference", KEY_REFERENCE, "CSV", 0,
          "compare with a measured curve: columns such as time_ms and acceleration_g, or \"Time (ms)\" and "
          "\"Acceleration (m/s2)\"; separators , ; tab or blanks",
@@ -271,7 +275,7 @@ static void print_files(const job *j) {
     static const struct {
         const char *name, *meaning;
     } files[] = {
-        {"report.html", "everything on two pages, to read or to print"},
+        {"report.html", "a page to read or print, usually two sides of A4"},
         {"summary.json", "the figures"},
         {"acceleration.png", "the curves and the HIC window"},
         {"acceleration.csv", "the filtered curve of a_max and HIC, from 5 ms before contact"},

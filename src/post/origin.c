@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/origin.h"
 
+#include "io/provenance.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,6 +83,13 @@ static void put_comment(FILE *out, const char *begin, const char *end) {
     fprintf(out, "%.*s\n", (int)(end - begin), begin);
 }
 
+/* True of the comment that stands where a case includes a file, from begin to end. */
+static bool is_included(const char *begin, const char *end) {
+    const size_t before = strlen(SF_INCLUDED_BEGIN), behind = strlen(SF_INCLUDED_END);
+    return (size_t)(end - begin) > before + behind && strncmp(begin, SF_INCLUDED_BEGIN, before) == 0 &&
+           strncmp(end - behind, SF_INCLUDED_END, behind) == 0;
+}
+
 /* Comments from `line` on; `prefix` stands before each. Blank lines and others are passed over, or end it. */
 static char *collect(const char *line, const char *prefix, bool to_brace) {
     char *text = NULL;
@@ -96,7 +104,7 @@ static char *collect(const char *line, const char *prefix, bool to_brace) {
         const char *p = line + before + strspn(line + before, " \t");
         if (to_brace && *p == '}')
             break;
-        if (*p == '#' && strncmp(p, "# from ", 7) != 0) /* what @include becomes */
+        if (*p == '#' && !is_included(line + before, line + length))
             put_comment(out, p + 1, line + length);
         else if (*p != '#' && !to_brace)
             break;

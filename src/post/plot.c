@@ -132,7 +132,9 @@ static void put_limit(FILE *g, const picture *p) {
 
 static void put_axes(FILE *g, const picture *p) {
     put_title(g, p);
-    fprintf(g, "set xlabel 'time (ms)'\nset ylabel '%s (g)'\nset xzeroaxis lw 1 lc rgb '#808080'\n",
+    fprintf(g,
+            "set xlabel 'time (ms)'\nset ylabel '%s (g)'\nset xzeroaxis lw 1 lc rgb '#808080'\n"
+            "if (svg) { set ylabel 'acceleration (g)' } # its caption says which\n",
             sf_figures_acceleration(p->figures));
     fprintf(g, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", p->time[0] * 1e3, p->time[1] * 1e3,
             p->value[0], p->value[1]);
@@ -178,7 +180,7 @@ static void put_measured(FILE *g, const sf_comparison *c) {
 static void put_curves(FILE *g, const picture *p) {
     const sf_figures *f = p->figures;
     bool hic = f->injury.hic.value > 0;
-    sf_gnuplot_key(g, 1 + hic + p->raw + (p->comparison != NULL) + p->points, 3);
+    sf_gnuplot_key(g, 1 + hic + p->raw + (p->comparison != NULL) + p->points, SF_PLOT_KEY_COLUMNS);
     fputs("plot ", g);
     if (hic)
         put_hic(g, &f->injury.hic);

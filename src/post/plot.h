@@ -10,6 +10,9 @@
 #include "post/verdict.h"
 #include "io/staging.h"
 
+/* Of the key: three entries such as "HIC 595.2: 6.54 to 15.33 ms" do not fit beside each other. */
+enum { SF_PLOT_KEY_COLUMNS = 2 };
+
 /* The name of the script without its ending. */
 const char *sf_plot_name(const sf_figures *figures);
 

@@ -36,7 +36,7 @@ static const char *kind_of(sf_grade grade) {
 /* ---- the top ---- */
 
 static void put_verdict_line(const page *p) {
-    char line[2048];
+    char line[SF_VERDICT_LINE_SIZE];
     sf_verdict_line(p->verdict, line, sizeof line);
     const char *findings = strstr(line, ": ");
     sf_html_banner(p->file, kind_of(p->verdict->grade), sf_verdict_phrase(p->verdict->grade), "%s. %s",
@@ -46,13 +46,16 @@ static void put_verdict_line(const page *p) {
 static void put_limit_tile(const page *p, const sf_limit *limit) {
     char value[48], remark[96];
     const char *unit = strcmp(limit->unit, "1") == 0 ? "" : limit->unit, *blank = *unit ? " " : "";
-    if (isfinite(limit->value))
+    bool known = isfinite(limit->value);
+    if (known)
         snprintf(value, sizeof value, "%.1f%s%s", limit->value, blank, unit);
     else
         snprintf(value, sizeof value, "–");
     snprintf(remark, sizeof remark, "limit %g%s%s: %s", limit->bound, blank, unit,
-             limit->passed ? "passed" : "failed");
-    sf_html_tile(p->file, limit->passed ? "good" : "bad", limit->title, value, remark);
+             !known          ? "not evaluated"
+             : limit->passed ? "passed"
+                             : "failed");
+    sf_html_tile(p->file, !known ? "plain" : limit->passed ? "good" : "bad", limit->title, value, remark);
 }
 
 static void put_tile(const page *p, const char *title, double value, int digits, const char *unit,
@@ -142,7 +145,7 @@ static void put_bodies(const page *p) {
 static void put_curve(const page *p, const sf_staging *output) {
     char warning[320];
     const sf_figures *f = p->figures;
-    char *svg = sf_gnuplot_svg(output, sf_plot_name(f), warning, sizeof warning);
+    char *svg = sf_gnuplot_svg(output, sf_plot_name(f), "softfall-post", warning, sizeof warning);
     if (!svg)
         sf_html_figure(p->file, NULL, "%s.", warning);
     else if (f->driven)
@@ -189,9 +192,15 @@ static void put_check(sf_html_table *table, const sf_check *c) {
     sf_html_row(table);
     sf_html_hint(table, c->why);
     sf_html_cell(table, "%s", c->title);
-    put_number(table, c->value);
-    put_number(table, c->bound);
-    put_number(table, c->use_bound);
+    if (sf_check_is_flag(c)) {
+        sf_html_cell(table, "%s", isnan(c->value) ? "–" : c->value > 0 ? "yes" : "no");
+        sf_html_cell(table, "no");
+        sf_html_cell(table, "–");
+    } else {
+        put_number(table, c->value);
+        put_number(table, c->bound);
+        put_number(table, c->use_bound);
+    }
     sf_html_cell(table, "%s", isnan(c->value) ? "not judged" : sf_verdict_phrase(c->grade));
 }
 

@@ -157,7 +157,7 @@ static char *draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], c
 static char *take_curve(const sf_staging *output, const char *name, char *text, size_t size) {
     char warning[320], file[64];
     sf_error ignored = SF_ERROR_INIT;
-    char *svg = sf_gnuplot_svg(output, name, warning, sizeof warning);
+    char *svg = sf_gnuplot_svg(output, name, "softfall-post", warning, sizeof warning);
     snprintf(file, sizeof file, "%s.gp", name);
     char *path = sf_staging_path(output, file, &ignored);
     if (path)

@@ -75,6 +75,7 @@ typedef struct sf_results {
     int note_count;
     char notes[SF_RESULTS_NOTES][SF_RESULTS_NOTE_SIZE]; /* sentences for the user: the solver's, and about
                                                            what was left out */
+    bool note_of_ending[SF_RESULTS_NOTES]; /* that only says how the run ended, as the check `ending` does */
 } sf_results;
 
 /* Opens, reads and checks; on success release with sf_results_close. On failure `results` is already

@@ -24,6 +24,13 @@ void sf_results_note(sf_results *r, const char *format, ...) {
     va_end(args);
 }
 
+void sf_results_note_ending(sf_results *r, const char *sentence) {
+    int k = r->note_count;
+    sf_results_note(r, "%s", sentence);
+    if (r->note_count > k)
+        r->note_of_ending[k] = true;
+}
+
 sf_status sf_results_check_finite(const double *values, int64_t count, const char *path, sf_error *err) {
     for (int64_t i = 0; i < count; i++)
         if (!isfinite(values[i]))

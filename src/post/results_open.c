@@ -124,7 +124,10 @@ static sf_status read_notes(sf_results *r, sf_error *err) {
         return err->status;
     for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
         sf_error_clean(line);
-        sf_results_note(r, "%s", line);
+        if (strcmp(line, "the missile never touched the pad") == 0) /* solver/run/notes.c */
+            sf_results_note_ending(r, line);
+        else
+            sf_results_note(r, "%s", line);
     }
     free(notes);
     return SF_OK;
@@ -135,7 +138,7 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
     r->contact_time = r->wall_time = NAN;
     r->has_summary = sf_h5_exists(r->file, "/summary/status");
     if (!r->has_summary) {
-        sf_results_note(
+        sf_results_note_ending(
             r, "there is no /summary: the run still runs or was killed; the data written so far are used");
         return SF_OK;
     }
@@ -154,7 +157,8 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
     if (!sf_results_ended_well(r))
         sf_results_note(r, "the run stopped with: %s", r->status);
     else if (strcmp(r->status, "interrupted") == 0)
-        sf_results_note(r, "the run was interrupted: the figures are those of the part that was computed");
+        sf_results_note_ending(
+            r, "the run was interrupted: the figures are those of the part that was computed");
     return SF_OK;
 }
 

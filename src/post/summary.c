@@ -247,7 +247,7 @@ static void print_compression(FILE *out, const sf_summary *s) {
 }
 
 static void print_verdict(FILE *out, const sf_verdict *v) {
-    char line[4096];
+    char line[SF_VERDICT_LINE_SIZE];
     sf_verdict_line(v, line, sizeof line);
     fprintf(out, "Verdict: %s\n", line);
     for (int k = 0; k < v->count; k++)

@@ -2,6 +2,7 @@
 #include "post/verdict.h"
 
 #include "core/units.h"
+#include "io/utf8.h"
 #include "post/results_check.h"
 #include <stdio.h>
 #include <string.h>
@@ -89,7 +90,10 @@ static double anvil_value(const sf_results *r, const sf_figures *f) {
 
 static double notes_value(const sf_results *r, const sf_figures *f) {
     (void)f;
-    return r->note_count;
+    int count = 0;
+    for (int k = 0; k < r->note_count; k++)
+        count += !r->note_of_ending[k];
+    return count;
 }
 
 typedef double (*value_of)(const sf_results *results, const sf_figures *figures);
@@ -111,13 +115,25 @@ static void show(double value, bool percent, char text[32]) {
     snprintf(text, 32, percent ? "%.3g %%" : "%.3g", percent ? 100 * value : value);
 }
 
+bool sf_check_is_flag(const sf_check *check) {
+    return check->key == sf_good_run_rule_get(SF_CHECK_step_artefact)->key;
+}
+
+/* The first note that does not only repeat the row `ending`. */
+static const char *first_note(const sf_results *r) {
+    int k = 0;
+    while (k + 1 < r->note_count && r->note_of_ending[k])
+        k++;
+    return r->notes[k];
+}
+
 static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf_figures *f, sf_check *c) {
     char value[32], bound[32];
     show(c->value, rule->percent, value);
     show(c->grade == SF_GRADE_DO_NOT_USE ? c->use_bound : c->bound, rule->percent, bound);
     if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_notes)->key)
-        snprintf(c->text, sizeof c->text, "%d of the programs' notes, the first: %.200s", r->note_count,
-                 r->notes[0]);
+        snprintf(c->text, sizeof c->text, "%.0f of the programs' notes, the first: %.*s", c->value,
+                 sf_utf8_cut(first_note(r), 200), first_note(r));
     else if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_ending)->key)
         snprintf(c->text, sizeof c->text, "%.250s",
                  !f->touched               ? "the missile never touched the pad"
@@ -126,6 +142,9 @@ static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf
                                            : "the run was interrupted");
     else if (isnan(c->value))
         snprintf(c->text, sizeof c->text, "%s: not defined by this run", c->title);
+    else if (sf_check_is_flag(c))
+        snprintf(c->text, sizeof c->text, "the raw peak is %s",
+                 c->value > 0 ? "one or two time steps long" : "longer than two time steps");
     else
         snprintf(c->text, sizeof c->text, "%s %s (%s %s)", c->title, value,
                  c->grade == SF_GRADE_DO_NOT_USE ? "not to be used beyond" : "good up to", bound);
@@ -165,12 +184,14 @@ void sf_verdict_compute(const sf_results *results, const sf_figures *figures, co
 }
 
 void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size) {
+    enum { SHOWN = 3 };
     size_t used = (size_t)snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
-    const char *joint = ": ";
+    int found = 0;
     for (int grade = SF_GRADE_DO_NOT_USE; grade > SF_GRADE_VALID; grade--)
         for (int k = 0; k < verdict->count && used < size; k++)
-            if (verdict->rows[k].grade == (sf_grade)grade) {
-                used += (size_t)snprintf(text + used, size - used, "%s%s", joint, verdict->rows[k].text);
-                joint = "; ";
-            }
+            if (verdict->rows[k].grade == (sf_grade)grade && found++ < SHOWN)
+                used += (size_t)snprintf(text + used, size - used, "%s%s", found == 1 ? ": " : "; ",
+                                         verdict->rows[k].text);
+    if (found > SHOWN && used < size)
+        snprintf(text + used, size - used, "; and %d more", found - SHOWN);
 }

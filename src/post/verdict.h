@@ -33,7 +33,13 @@ typedef struct sf_limits {
     double hic;     /* - */
 } sf_limits;
 
-#define SF_DEFAULT_LIMITS ((sf_limits){200, 1000})
+#define SF_DEFAULT_LIMIT_G 200
+#define SF_DEFAULT_LIMIT_HIC 1000
+#define SF_DEFAULT_LIMITS ((sf_limits){SF_DEFAULT_LIMIT_G, SF_DEFAULT_LIMIT_HIC})
+
+/* The default limits in a text: SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) is "200". */
+#define SF_LIMIT_TEXT(limit) SF_LIMIT_TEXT_(limit)
+#define SF_LIMIT_TEXT_(limit) #limit
 
 enum { SF_LIMITS = 2 }; /* a_max, HIC in this order */
 
@@ -51,7 +57,14 @@ const char *sf_verdict_phrase(sf_grade grade);
 void sf_verdict_compute(const sf_results *results, const sf_figures *figures, const sf_limits *limits,
                         sf_verdict *verdict);
 
-/* "valid", or the phrase and the findings of the rows that are not valid, the worst first. */
+/* Bytes that hold every line of sf_verdict_line. */
+enum { SF_VERDICT_LINE_SIZE = 1280 };
+
+/* True of a check that says yes or no: a sentence or a table shows no numbers of it. */
+bool sf_check_is_flag(const sf_check *check);
+
+/* "valid", or the phrase and the findings of the rows that are not valid, the worst first; after three
+ * findings only the number of the others: "and 2 more". */
 void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size);
 
 #endif

@@ -19,8 +19,8 @@ enum { SF_FIT_STRAIN_BINS = 19 };                  /* 0.05 wide, from 0 to 0.95 
 typedef struct sf_fit_simulated {
     double max_local_strain, v_rebound, energy_error;
     sf_grade grade;
-    char verdict[1024]; /* its sentence */
-    sf_series curve;    /* s, g; owned */
+    char verdict[SF_VERDICT_LINE_SIZE]; /* its sentence */
+    sf_series curve;                    /* s, g; owned */
 } sf_fit_simulated;
 
 typedef struct sf_drop_fit {

@@ -291,7 +291,7 @@ static void put_banner(FILE *f, const sf_drop_fit *fit) {
 
 static void put_picture(FILE *f, const sf_staging *output) {
     char warning[320];
-    char *svg = sf_gnuplot_svg(output, "fit", warning, sizeof warning);
+    char *svg = sf_gnuplot_svg(output, "fit", "softfall-fit", warning, sizeof warning);
     if (svg)
         sf_html_figure(
             f, svg,
