@@ -96,7 +96,7 @@ static void find_values(picture *p) {
     p->limited = high > 0.25 * p->limit;
     if (p->limited)
         high = fmax(high, p->limit);
-    p->value[0] = low < -0.02 * high ? 1.1 * low : 0;
+    p->value[0] = low < -0.02 * high ? 1.1 * low : low < 0 ? -0.02 * high : 0; /* ripples of the filter */
     p->value[1] = high > 0 ? 1.12 * high : 1;
 }
 

@@ -171,7 +171,7 @@ static void put_pictures(const page *p, const sf_staging *output) {
     sf_html_block_end(p->file);
     sf_html_block_begin(p->file);
     sf_html_heading(p->file, p->figures->driven ? "Stress and strain"
-                                                : "Deceleration, and stress through the thickness");
+                                                : "Acceleration, and stress through the thickness");
     sf_html_columns_begin(p->file, "wide");
     put_curve(p, output);
     sf_html_figure(p->file, q->profile, "%s", q->profile_text);
