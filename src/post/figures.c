@@ -25,6 +25,10 @@ const sf_figure *sf_figure_list(size_t *count) {
     return list;
 }
 
+const void *sf_figure_place(const sf_figure *figure, const sf_results *results, const sf_figures *figures) {
+    return (figure->fact ? (const char *)results : (const char *)figures) + figure->offset;
+}
+
 const sf_figure *sf_figure_find(const char *key) {
     size_t count;
     const sf_figure *figure = sf_figure_list(&count);

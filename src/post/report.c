@@ -235,12 +235,8 @@ static double number_of(const sf_figure *figure, const void *place) {
                                                : 0;
 }
 
-static const void *place_of(const page *p, const sf_figure *figure) {
-    return (figure->fact ? (const char *)p->results : (const char *)p->figures) + figure->offset;
-}
-
 static void put_figure(const page *p, sf_html_table *table, const sf_figure *figure) {
-    const void *place = place_of(p, figure);
+    const void *place = sf_figure_place(figure, p->results, p->figures);
     sf_html_row(table);
     sf_html_hint(table, figure->meaning);
     sf_html_cell(table, "%s", figure->key);
@@ -260,14 +256,15 @@ static void put_figures(const page *p) {
     size_t count, defined = 0, next = 0;
     const sf_figure *figure = sf_figure_list(&count);
     for (size_t k = 0; k < count; k++)
-        defined += isfinite(number_of(&figure[k], place_of(p, &figure[k]))) ? 1 : 0;
+        defined +=
+            isfinite(number_of(&figure[k], sf_figure_place(&figure[k], p->results, p->figures))) ? 1 : 0;
     sf_html_block_begin(p->file);
     sf_html_heading(p->file, "Figures");
     sf_html_columns_begin(p->file, "");
     for (size_t c = 0; c < COLUMNS; c++) {
         sf_html_table table = sf_html_table_begin(p->file, "dense", "figure|>value");
         for (size_t put = 0; next < count && put < (defined + COLUMNS - 1) / COLUMNS; next++)
-            if (isfinite(number_of(&figure[next], place_of(p, &figure[next])))) {
+            if (isfinite(number_of(&figure[next], sf_figure_place(&figure[next], p->results, p->figures)))) {
                 put_figure(p, &table, &figure[next]);
                 put++;
             }

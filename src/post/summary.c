@@ -9,11 +9,6 @@
 
 static const char caution[] = "indicative, not a certification";
 
-static const void *place_of(const sf_summary *s, const sf_figure *figure) {
-    const char *base = figure->fact ? (const char *)s->results : (const char *)s->figures;
-    return base + figure->offset;
-}
-
 static void put_hic(sf_json *json, const char *prefix, const sf_hic *hic) {
     char key[32];
     sf_json_number(json, prefix, hic->value);
@@ -28,7 +23,7 @@ static void put_figures(sf_json *json, const sf_summary *s) {
     const sf_figure *figure = sf_figure_list(&count);
     for (size_t k = 0; k < count; k++) {
         const char *key = figure[k].key;
-        const void *place = place_of(s, &figure[k]);
+        const void *place = sf_figure_place(&figure[k], s->results, s->figures);
         switch (figure[k].type) {
         case SF_FIGURE_DOUBLE:
             sf_json_number(json, key, *(const double *)place * figure[k].factor);
@@ -188,7 +183,7 @@ static const report_line common_lines[] = {
 static double find_figure(const sf_summary *s, const char *key) {
     const sf_figure *figure = sf_figure_find(key);
     assert(figure && figure->type == SF_FIGURE_DOUBLE);
-    return *(const double *)place_of(s, figure) * figure->factor;
+    return *(const double *)sf_figure_place(figure, s->results, s->figures) * figure->factor;
 }
 
 static void print_lines(FILE *out, const sf_summary *s, const report_line *line) {
