@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/plain_file.h"
+
+#include "core/hash.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/magic.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+enum { BLOCK = 1 << 16 };
+
+/* "the curve path" */
+#define NAMED "%s%s%s%s"
+#define NAME(what, path) (what) ? "the " : "", (what) ? (what) : "", (what) ? " " : "", path
+
+/* ---- the register ---- */
+
+static struct {
+    pthread_mutex_t lock;
+    size_t count, capacity;
+    sf_plain_record *entry;
+} list = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static bool append(sf_plain_record record) {
+    if (list.count == list.capacity) {
+        size_t capacity = list.capacity ? 2 * list.capacity : 32;
+        sf_plain_record *grown = realloc(list.entry, capacity * sizeof *grown);
+        if (!grown)
+            return false;
+        list.entry = grown;
+        list.capacity = capacity;
+    }
+    record.path = strdup(record.path);
+    if (!record.path)
+        return false;
+    list.entry[list.count++] = record;
+    return true;
+}
+
+static sf_status enter(const char *path, const struct stat *info, const uint64_t *hash, sf_error *err) {
+    const sf_plain_record record = {
+        path, info->st_dev, info->st_ino, (uint64_t)info->st_size, hash ? *hash : 0, hash != NULL};
+    pthread_mutex_lock(&list.lock);
+    bool done = append(record);
+    pthread_mutex_unlock(&list.lock);
+    return done ? SF_OK : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+}
+
+size_t sf_plain_count(void) {
+    pthread_mutex_lock(&list.lock);
+    size_t count = list.count;
+    pthread_mutex_unlock(&list.lock);
+    return count;
+}
+
+sf_plain_record sf_plain_get(size_t index) {
+    pthread_mutex_lock(&list.lock);
+    sf_plain_record record = list.entry[index];
+    pthread_mutex_unlock(&list.lock);
+    return record;
+}
+
+const char *sf_plain_name(uint64_t device, uint64_t inode) {
+    const char *name = NULL;
+    pthread_mutex_lock(&list.lock);
+    for (size_t k = 0; k < list.count && !name; k++)
+        if (list.entry[k].device == device && list.entry[k].inode == inode)
+            name = list.entry[k].path;
+    pthread_mutex_unlock(&list.lock);
+    return name;
+}
+
+void sf_plain_forget(void) {
+    pthread_mutex_lock(&list.lock);
+    for (size_t k = 0; k < list.count; k++)
+        free((char *)list.entry[k].path);
+    free(list.entry);
+    list.entry = NULL;
+    list.count = list.capacity = 0;
+    pthread_mutex_unlock(&list.lock);
+}
+
+/* ---- opening ---- */
+
+/* What it is instead of a plain file; NULL if it is one. */
+static const char *other_kind(mode_t mode) {
+    switch (mode & S_IFMT) {
+    case S_IFREG:
+        return NULL;
+    case S_IFDIR:
+        return "a folder";
+    case S_IFIFO:
+        return "a pipe";
+    case S_IFSOCK:
+        return "a socket";
+    default:
+        return "a device";
+    }
+}
+
+/* The file system makes the contents up while they are read. */
+static bool is_made_up(long type) {
+    /* clang-format off */
+    static const unsigned long known[] = {
+        PROC_SUPER_MAGIC, SYSFS_MAGIC, DEBUGFS_MAGIC, TRACEFS_MAGIC, SECURITYFS_MAGIC, CGROUP_SUPER_MAGIC,
+        CGROUP2_SUPER_MAGIC, BPF_FS_MAGIC, PSTOREFS_MAGIC, EFIVARFS_MAGIC, SELINUX_MAGIC, SMACK_MAGIC,
+        DEVPTS_SUPER_MAGIC, BINFMTFS_MAGIC, NSFS_MAGIC, PIPEFS_MAGIC, SOCKFS_MAGIC, ANON_INODE_FS_MAGIC,
+        0x07655821 /* resctrl */, 0x62656570 /* configfs */, 0x65735543 /* fusectl */,
+        0x19800202 /* mqueue */, 0x67596969 /* rpc_pipefs */};
+    /* clang-format on */
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++)
+        if ((unsigned long)type == known[k])
+            return true;
+    return false;
+}
+
+static sf_status refuse_kind(const char *path, const char *what, const struct stat *info, sf_error *err) {
+    const char *kind = other_kind(info->st_mode);
+    return kind ? SF_FAIL(err, SF_ERR_INPUT, NAMED " is not a plain file: it is %s", NAME(what, path), kind)
+                : SF_OK;
+}
+
+static sf_status fail_reading(const char *path, const char *what, sf_status status, sf_error *err) {
+    return SF_FAIL(err, status, NAMED " cannot be read: %s", NAME(what, path), strerror(errno));
+}
+
+/* Opens what is plain. A device is not even opened: with some that sets something going. */
+static sf_status pass(const char *path, const char *what, int *handle, struct stat *info, sf_error *err) {
+    struct statfs system;
+    *handle = -1;
+    if (stat(path, info) != 0)
+        return fail_reading(path, what, SF_ERR_INPUT, err);
+    if (refuse_kind(path, what, info, err) != SF_OK)
+        return err->status;
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    if (file < 0)
+        return fail_reading(path, what, SF_ERR_INPUT, err);
+    if (fstat(file, info) != 0 || fstatfs(file, &system) != 0)
+        fail_reading(path, what, SF_ERR_IO, err);
+    else if (refuse_kind(path, what, info, err) == SF_OK && is_made_up(system.f_type))
+        SF_FAIL(err, SF_ERR_INPUT, NAMED " is not a plain file: the system makes it up", NAME(what, path));
+    if (err->status != SF_OK)
+        close(file);
+    else
+        *handle = file;
+    return err->status;
+}
+
+sf_status sf_plain_open(const char *path, const char *what, int *handle, uint64_t *size, sf_error *err) {
+    struct stat info;
+    if (pass(path, what, handle, &info, err) != SF_OK)
+        return err->status;
+    if (enter(path, &info, NULL, err) != SF_OK) {
+        close(*handle);
+        *handle = -1;
+        return err->status;
+    }
+    if (size)
+        *size = (uint64_t)info.st_size;
+    return SF_OK;
+}
+
+sf_status sf_plain_check(const char *path, const char *what, sf_error *err) {
+    int handle;
+    if (sf_plain_open(path, what, &handle, NULL, err) == SF_OK)
+        close(handle);
+    return err->status;
+}
+
+/* ---- reading ---- */
+
+/* A file on its way. With `keep` the content grows in `text`, else a block at a time stands there. */
+typedef struct reading {
+    const char *path, *what;
+    int file;
+    uint64_t largest, length, hash;
+    bool keep;
+    char *text;
+    size_t room; /* of `text`, without the zero at its end */
+} reading;
+
+static sf_status refuse_size(const reading *r, sf_error *err) {
+    return SF_FAIL(err, SF_ERR_INPUT, NAMED " is larger than %.4g MB", NAME(r->what, r->path),
+                   1e-6 * (double)r->largest);
+}
+
+static sf_status make_room(reading *r, size_t room, sf_error *err) {
+    char *grown = realloc(r->text, room + 1);
+    if (!grown)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for " NAMED, NAME(r->what, r->path));
+    r->text = grown;
+    r->room = room;
+    return SF_OK;
+}
+
+/* The next piece; `*got` 0: the end. */
+static sf_status read_piece(reading *r, size_t *got, sf_error *err) {
+    size_t at = r->keep ? (size_t)r->length : 0;
+    *got = 0;
+    if (at == r->room && make_room(r, r->room < BLOCK ? BLOCK : 2 * r->room, err) != SF_OK)
+        return err->status;
+    ssize_t count;
+    do {
+        count = read(r->file, r->text + at, r->room - at);
+    } while (count < 0 && errno == EINTR);
+    if (count < 0)
+        return fail_reading(r->path, r->what, SF_ERR_IO, err);
+    *got = (size_t)count;
+    r->hash = sf_hash_bytes(r->hash, r->text + at, *got);
+    r->length += *got;
+    return r->length > r->largest ? refuse_size(r, err) : SF_OK;
+}
+
+static bool is_same(const struct stat *a, const struct stat *b) {
+    return a->st_size == b->st_size && a->st_mtim.tv_sec == b->st_mtim.tv_sec &&
+           a->st_mtim.tv_nsec == b->st_mtim.tv_nsec;
+}
+
+/* To the end of the file, which must not have changed meanwhile. */
+static sf_status read_all(reading *r, const struct stat *before, sf_error *err) {
+    struct stat after;
+    size_t got;
+    if ((uint64_t)before->st_size > r->largest)
+        return refuse_size(r, err);
+    SF_TRY(make_room(r, r->keep ? (size_t)before->st_size + 1 : BLOCK, err));
+    do
+        SF_TRY(read_piece(r, &got, err));
+    while (got > 0);
+    if (fstat(r->file, &after) != 0)
+        return fail_reading(r->path, r->what, SF_ERR_IO, err);
+    if (!is_same(before, &after) || r->length != (uint64_t)after.st_size)
+        return SF_FAIL(err, SF_ERR_IO, NAMED " changed while it was read", NAME(r->what, r->path));
+    return enter(r->path, before, &r->hash, err);
+}
+
+static sf_status take(reading *r, sf_error *err) {
+    struct stat info;
+    r->hash = SF_HASH_START;
+    if (pass(r->path, r->what, &r->file, &info, err) != SF_OK)
+        return err->status;
+    read_all(r, &info, err);
+    close(r->file);
+    if (err->status != SF_OK || !r->keep) {
+        free(r->text);
+        r->text = NULL;
+    }
+    return err->status;
+}
+
+sf_status sf_plain_read(const char *path, const char *what, uint64_t largest, char **text, size_t *size,
+                        sf_error *err) {
+    reading r = {.path = path, .what = what, .largest = largest, .keep = true};
+    *text = NULL;
+    if (take(&r, err) != SF_OK)
+        return err->status;
+    r.text[r.length] = '\0';
+    *text = r.text;
+    if (size)
+        *size = (size_t)r.length;
+    return SF_OK;
+}
+
+sf_status sf_plain_hash(const char *path, const char *what, uint64_t largest, uint64_t *hash, sf_error *err) {
+    reading r = {.path = path, .what = what, .largest = largest};
+    if (take(&r, err) == SF_OK)
+        *hash = r.hash;
+    return err->status;
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The gate: the only code that opens a file for reading (tools/gate.py, a test, holds the short list of
+ * exceptions). It takes plain files only, from file systems that store files: no folder, pipe, socket or
+ * device, and nothing of proc, sysfs and the like, whose "files" may be endless or wait for ever. It never
+ * waits for another process, and reads no more than it was told.
+ *
+ * `what` is the word for the file in the sentences, "curve" for "the curve PATH cannot be read: ..."; NULL:
+ * the path alone. SF_ERR_INPUT: the file is missing, not permitted, not plain or too large; SF_ERR_IO:
+ * reading failed, or the file changed meanwhile.
+ *
+ * Every file that passed is entered in the register of this process: an output is never one of them
+ *, and a key can be made of their contents. */
+#ifndef SF_IO_PLAIN_FILE_H
+#define SF_IO_PLAIN_FILE_H
+
+#include "core/error.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Largest text that somebody would write or measure, in bytes. */
+#define SF_PLAIN_TEXT (UINT64_C(1) << 28)
+#define SF_PLAIN_ANY UINT64_MAX
+
+/* The whole content, at most `largest` bytes. `*text` ends with a zero byte that `*size` does not count; from
+ * malloc, owned by the caller, NULL on failure. `size` may be NULL. Registered with its hash. */
+sf_status sf_plain_read(const char *path, const char *what, uint64_t largest, char **text, size_t *size,
+                        sf_error *err);
+
+/* The same without the content: only its hash (sf_hash_bytes from SF_HASH_START). */
+sf_status sf_plain_hash(const char *path, const char *what, uint64_t largest, uint64_t *hash, sf_error *err);
+
+/* Opens for reading (O_CLOEXEC), for a reader that needs the descriptor. `*handle` is owned by the caller
+ * (close), -1 on failure; `size` may be NULL. Registered without a hash. */
+sf_status sf_plain_open(const char *path, const char *what, int *handle, uint64_t *size, sf_error *err);
+
+/* Opens and closes: the sentence for a file that will be read later, here or in another process. Registered
+ * without a hash. */
+sf_status sf_plain_check(const char *path, const char *what, sf_error *err);
+
+/* A file that was read. */
+typedef struct sf_plain_record {
+    const char *path; /* as it was named; owned by the register */
+    uint64_t device, inode, size;
+    uint64_t hash; /* of the content, as sf_plain_hash */
+    bool hashed;   /* the content was read, by sf_plain_read or sf_plain_hash */
+} sf_plain_record;
+
+/* The number of entries, in the order of reading; a file that is read twice has two. The entries from a count
+ * taken earlier on are those of the reading since. */
+size_t sf_plain_count(void);
+/* Entry `index` < sf_plain_count(). Its path is valid until sf_plain_forget. */
+sf_plain_record sf_plain_get(size_t index);
+/* The name under which the file of this device and inode was read; NULL: it was not. */
+const char *sf_plain_name(uint64_t device, uint64_t inode);
+/* Empties the register. */
+void sf_plain_forget(void);
+
+#endif
