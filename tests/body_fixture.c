@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "body_fixture.h"
 
 #include <math.h>
@@ -154,7 +155,7 @@ double body_largest_plane(const body *b, const double x[3]) {
         double n[3], r[3];
         body_face_normal(b, t, n);
         body_vector(&b->surface.position[3 * (int64_t)b->surface.triangle[3 * t]], x, r);
-        largest = fmax(largest, body_dot(n, r));
+        largest = larger(largest, body_dot(n, r));
     }
     return largest;
 }

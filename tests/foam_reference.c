@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "foam_reference.h"
 
 #include <math.h>
@@ -113,14 +114,14 @@ static double overstress(const sf_foam *foam, double dt, const principal *p, con
         extra[i] = sf_foam_overstress(foam, 1 - p->stretch[i], *rate, &slope, &rate_slope);
         s[i] -= extra[i] / p->stretch[i];
         *work -= extra[i] / p->stretch[i] * quadratic(p, i, e) * dt;
-        bound = fmax(bound, slope);
+        bound = larger(bound, slope);
         rates += rate_slope * rate_slope;
     }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
         double gap = p->stretch[j] - p->stretch[i];
         if (fabs(gap) > 1e-7)
-            bound = fmax(bound, (extra[i] - extra[j]) / gap);
+            bound = larger(bound, (extra[i] - extra[j]) / gap);
     }
     return bound + sqrt(rates) / foam->filter_time;
 }
@@ -251,8 +252,8 @@ void foam_reference_update(const sf_foam *foam, double dt, sf_law_batch *b, int 
         b->stretch[i][l] = p.stretch[i];
         b->direction_tangent[i][l] = a[i] + extra + geometric;
         b->direction_viscosity[i][l] = eta[i];
-        b->tangent[l] = fmax(b->tangent[l], a[i] + extra + geometric);
-        b->viscosity[l] = fmax(b->viscosity[l], eta[i]);
+        b->tangent[l] = larger(b->tangent[l], a[i] + extra + geometric);
+        b->viscosity[l] = larger(b->viscosity[l], eta[i]);
     }
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "point_fixture.h"
 
 #include <assert.h>
@@ -105,11 +106,6 @@ void point_transpose(const double a[9], double out[9]) {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             out[3 * j + i] = a[3 * i + j];
-}
-
-/* fmax would lose a NaN. */
-static double larger(double a, double b) {
-    return b <= a ? a : b;
 }
 
 double point_distance(int count, const double *a, const double *b) {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "post/compare.h"
 #include "post/reference.h"
 
@@ -318,8 +319,8 @@ static void measurement_is_filtered_with_the_class(void **state) {
         assert_int_equal(reference.curve.count, k ? 3001 : 1501); /* 100 kHz, or as it is */
         for (double t = 0.008; t < 0.017; t += 1e-5) { /* where the pulse itself passes the filter */
             double pulse = 40 * sin(M_PI * (t - 0.005) / 0.015);
-            away = fmax(away, fabs(sf_series_at(&reference.curve, t) - pulse));
-            raw = fmax(raw, fabs(sf_series_at(&reference.raw, t) - pulse));
+            away = larger(away, fabs(sf_series_at(&reference.curve, t) - pulse));
+            raw = larger(raw, fabs(sf_series_at(&reference.raw, t) - pulse));
         }
         assert_true(raw > 9);
         if (k == 0)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A foam block between platens whose motion is prescribed, against the material's law in closed form: the
  * curve on loading, the curve times (14) on unloading and reloading, the returned energy (17), the ledger. */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "core/curve.h"
@@ -97,7 +98,7 @@ static void stress_follows_the_law_when_loaded_released_and_loaded_again(void **
     for (fixture_step(&f); s->time < time[END]; sf_step_advance(&f.model, s), fixture_step(&f)) {
         double strain = s->missile.displacement / HEIGHT;
         int phase = s->time <= time[TURN] ? 0 : s->time <= time[TOP] ? 1 : 2;
-        work = fmax(work, s->ledger.external);
+        work = larger(work, s->ledger.external);
         assert_close(s->ledger.error, 0, 1e-3);
         assert_close(s->ledger.momentum_error, 0, 1e-10);
         if (s->contact_count == 0 && phase == 1)
@@ -106,7 +107,7 @@ static void stress_follows_the_law_when_loaded_released_and_loaded_again(void **
             continue;
         again = again || (released > 0 && phase == 2);
         double expected = law(&f, &curve, strain, phase == 0 ? strain : 0.8);
-        worst[phase] = fmax(worst[phase], fabs(stress_now(&f) - expected) / largest);
+        worst[phase] = larger(worst[phase], fabs(stress_now(&f) - expected) / largest);
     }
     for (int phase = 0; phase < 3; phase++)
         assert_close(worst[phase], 0, 0.005);
@@ -128,7 +129,7 @@ static void a_release_returns_the_energy_of_the_law(void **state) {
     const sf_foam_card *foam = sf_foam_card_of(&f.model.material[0]);
     double work = 0;
     for (fixture_step(&f); s->time < 0.2; sf_step_advance(&f.model, s), fixture_step(&f))
-        work = fmax(work, s->ledger.external);
+        work = larger(work, s->ledger.external);
     double hu = foam->hysteresis_hu, expected = hu + (1 - hu) / (1 + foam->hysteresis_shape);
     assert_int_equal(s->contact_count, 0);
     assert_close((work - s->ledger.external) / work, expected, 0.005);
@@ -158,7 +159,7 @@ static void missile_follows_its_table_without_drift(void **state) {
         assert_true(s->ledger.kinetic_missile == 0);
         if (s->contact_count == 0)
             assert_true(s->time < 0.0041 || s->time > 0.06);
-        friction = fmax(friction, s->ledger.friction);
+        friction = larger(friction, s->ledger.friction);
     }
     assert_true(friction >= 0);
     assert_close(sf_motion_displacement(&f.model, 0.084), 0.0045, 1e-15); /* the last piece goes on */

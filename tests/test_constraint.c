@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Held displacements: the projection is exact, its reactions are the forces of the base, and dependent
  * constraints are refused. */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "solver/constraint/constraint.h"
@@ -32,8 +33,8 @@ static projection project(const fixture *f, uint64_t seed) {
     for (size_t k = 0; k < n; k++) {
         p.force[k] = f->model.mass[k / 3] * 1e5 * fixture_random(&seed);
         p.v[k] = fixture_random(&seed);
-        p.force_size = fmax(p.force_size, fabs(p.force[k]));
-        p.velocity_size = fmax(p.velocity_size, fabs(p.v[k]));
+        p.force_size = larger(p.force_size, fabs(p.force[k]));
+        p.velocity_size = larger(p.velocity_size, fabs(p.v[k]));
     }
     p.step = (sf_constraint_step){.force = p.force, .v = p.v, .dt = DT, .reaction = p.reaction};
     sf_constraint_project(&f->operators.constraint, &p.step);
@@ -68,7 +69,7 @@ static double held_velocity(const sf_model *m, const double *v, int64_t *count) 
     for (int64_t k = 0; k < m->fixed_count; k++)
         for (int c = 0; c < 3; c++)
             if (m->fixed_mask[k] >> c & 1) {
-                largest = fmax(largest, fabs(value_at(m, v, m->fixed_node[k], c)));
+                largest = larger(largest, fabs(value_at(m, v, m->fixed_node[k], c)));
                 (*count)++;
             }
     return largest;
@@ -180,12 +181,12 @@ static void projecting_an_admissible_motion_again_changes_nothing(void **state) 
     projection p = project(f, 6);
     double first = 0, second = 0;
     for (int64_t k = 0; k < 3 * f->model.node_count; k++)
-        first = fmax(first, fabs(p.reaction[k]));
+        first = larger(first, fabs(p.reaction[k]));
     advance(f, &p);
     memset(p.force, 0, 3 * (size_t)f->model.node_count * sizeof *p.force);
     sf_constraint_project(&f->operators.constraint, &p.step);
     for (int64_t k = 0; k < 3 * f->model.node_count; k++)
-        second = fmax(second, fabs(p.reaction[k]));
+        second = larger(second, fabs(p.reaction[k]));
     assert_close(second / first, 0, 1e-12);
     projection_free(&p);
 }

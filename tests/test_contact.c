@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contact: no penetration, no pull, Coulomb's law, equal and opposite impulses, no energy from nowhere; the
  * exact sphere and its triangles agree. */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "core/mat3.h"
@@ -58,7 +59,7 @@ static void pressed_points_lie_on_the_plate_and_free_ones_outside(void **state) 
         fixture_step(&f);
         double travel = s->dt * m->missile.speed, stiffest = 0;
         for (int64_t c = 0; c < m->contact_count; c++)
-            stiffest = fmax(stiffest, s->contact_force[3 * c + 2] * -1);
+            stiffest = larger(stiffest, s->contact_force[3 * c + 2] * -1);
         sf_step_advance(m, s);
         double plate = m->surface_position[2] - s->missile.displacement;
         for (int64_t c = 0; c < m->contact_count; c++) {
@@ -128,7 +129,7 @@ static void check_coulomb(const fixture *f, double (*old)[3], double travel, fri
     double mu = m->missile.friction, step = s->missile.displacement - s->missile.displacement_old,
            strongest = 0;
     for (int64_t c = 0; c < m->contact_count; c++)
-        strongest = fmax(strongest, -s->contact_force[3 * c + 2]);
+        strongest = larger(strongest, -s->contact_force[3 * c + 2]);
     for (int64_t c = 0; c < m->contact_count; c++) {
         const double *q = &s->contact_force[3 * c];
         double y[3], slip[2], p = -q[2], size = hypot(q[0], q[1]);
@@ -167,7 +168,7 @@ static friction_count press_with_friction(double friction) {
         check_coulomb(&f, old, travel, &count);
         /* A force that turns within a step may give back a little of the last one's work. */
         assert_true(s->ledger.friction >= lost - 1e-4 * s->ledger.reference);
-        lost = fmax(lost, s->ledger.friction);
+        lost = larger(lost, s->ledger.friction);
         assert_close(s->ledger.error, 0, 5e-3);
         assert_true(s->ledger.kinetic_missile + s->ledger.kinetic_pad <= 1.005 * s->ledger.reference);
     }
@@ -217,7 +218,7 @@ static double peak_of(const char *shape, bool all) {
             f.state.contact_room = 0;
         fixture_step(&f);
         assert_true(all || f.state.step < 1 || f.state.contact_near_count < f.model.contact_count);
-        peak = fmax(peak, -f.state.missile.acceleration);
+        peak = larger(peak, -f.state.missile.acceleration);
         for (int64_t c = 0; c < f.model.contact_count;
              c++) /* nowhere does the foam pull, at the rim of the contact least */
             assert_true(sf_dot3(&f.state.contact_force[3 * c], &f.state.contact_normal[3 * c]) >= 0);

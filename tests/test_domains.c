@@ -3,6 +3,7 @@
  * the supports that grow where a cloud is too sparse. Everything is measured here, not by
  * pre/cloud/invariants.c.
  */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "pre/cloud/cloud.h"
@@ -115,7 +116,7 @@ static double worst_row(const cloud *c, bool linear) {
                                                            : c->spacing[i]);
         for (int r = 0; r < (linear ? 3 : 1); r++)
             for (int q = 0; q < 3; q++)
-                worst = fmax(worst, fabs(sum[r][q] - (linear && r == q)));
+                worst = larger(worst, fabs(sum[r][q] - (linear && r == q)));
     }
     return worst;
 }
@@ -298,7 +299,7 @@ static void too_small_supports_are_enlarged(void **state) {
     double largest = 0;
     int64_t enlarged = 0;
     for (int64_t i = 0; i < c.mesh.node_count; i++) {
-        largest = fmax(largest, c.support[i] / (0.8 * c.spacing[i]));
+        largest = larger(largest, c.support[i] / (0.8 * c.spacing[i]));
         enlarged += c.support[i] > 0.8 * c.spacing[i] * (1 + 1e-12);
     }
     assert_relative(c.domains.largest_enlargement, largest, 1e-12);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole drops in memory on the coarse 50 mm pad (10 mm in the impact zone, 20 mm outside) at 4.5 m/s: the
  * balances that every run must keep, symmetry, reproducibility, and closed forms for what comes back. */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "core/curve.h"
@@ -40,12 +41,12 @@ typedef struct drop {
 static void watch(const fixture *f, drop *out) {
     const sf_state *s = &f->state;
     double internal = (double)f->model.symmetry_factor * sf_ledger_internal(&s->ledger);
-    out->peak = fmax(out->peak, -s->missile.acceleration);
-    out->momentum_error = fmax(out->momentum_error, fabs(s->ledger.momentum_error));
-    out->residual = fmax(out->residual, s->constraint_residual);
-    out->indentation = fmax(out->indentation, s->missile.displacement);
-    out->compression = fmax(out->compression, s->largest_compression);
-    out->penetration = fmax(out->penetration, s->penetration);
+    out->peak = larger(out->peak, -s->missile.acceleration);
+    out->momentum_error = larger(out->momentum_error, fabs(s->ledger.momentum_error));
+    out->residual = larger(out->residual, s->constraint_residual);
+    out->indentation = larger(out->indentation, s->missile.displacement);
+    out->compression = larger(out->compression, s->largest_compression);
+    out->penetration = larger(out->penetration, s->penetration);
     if (internal > out->peak_internal) {
         out->peak_internal = internal;
         out->stabilisation_share = (double)f->model.symmetry_factor * s->ledger.stabilisation / internal;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rate-dependent parts of the foam law: Maxwell, Kelvin, DAMP; lanes. */
+#include "extreme.h"
 #include "solver/material/foam.h"
 
 #include <math.h>
@@ -327,7 +328,7 @@ static void viscosity_bounds_the_numerical_viscosity(void **state) {
             point_deformation(&seed, 0.3, 1.3, f);
             double largest = numerical_viscosity(&foam, f, 0.05, &bound);
             assert_true(largest <= bound * (1 + 1e-6));
-            tightest = fmax(tightest, largest / bound);
+            tightest = larger(tightest, largest / bound);
         }
         assert_true(tightest > 0.8);
         sf_foam_free(&foam);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "post/injury.h"
 
 #include <math.h>
@@ -131,7 +132,7 @@ static void hic_search_is_never_below_brute_force(void **state) {
             for (int64_t i = 0; i < POINTS; i++) {
                 for (int64_t j = i + 1; j < POINTS && curve.time[j] - curve.time[i] <= limit; j++) {
                     double dt = curve.time[j] - curve.time[i];
-                    best = fmax(best, dt * pow(fmax(integral[j] - integral[i], 0) / dt, 2.5));
+                    best = larger(best, dt * pow(fmax(integral[j] - integral[i], 0) / dt, 2.5));
                 }
             }
             sf_hic hic = hic_of(&curve, limit);

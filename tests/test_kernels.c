@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The vectorised kernels against plain scalar code, on random states that reach every branch. */
+#include "extreme.h"
 #include "foam_fixture.h"
 #include "model_fixture.h"
 
@@ -80,7 +81,7 @@ static void compare(const char *name, int rows, double a[][SF_LANES], double b[]
     for (int l = 0; l < SF_LANES; l++) {
         double size = 0;
         for (int k = 0; k < rows; k++)
-            size = fmax(size, fabs(b[k][l]));
+            size = larger(size, fabs(b[k][l]));
         for (int k = 0; k < rows; k++)
             if (!(fabs(a[k][l] - b[k][l]) <= tolerance * size))
                 fail_msg("%s %d of lane %d: %.17g, the reference %.17g", name, k, l, a[k][l], b[k][l]);
@@ -261,7 +262,7 @@ static void internal_forces_are_those_of_the_definition(void **state) {
                         f.state.stress[9 * l + 3 * r + c] * m->domain_b[3 * k + c];
     double size = 0;
     for (int64_t q = 0; q < n; q++)
-        size = fmax(size, fabs(plain[q]));
+        size = larger(size, fabs(plain[q]));
     assert_close(point_distance((int)n, f.state.force, plain) / size, 0, 1e-13);
     test_free(plain);
     fixture_free(&f);

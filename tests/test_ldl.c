@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The solution of sparse systems in branches and trunk (solver/constraint/ldl.h). */
+#include "extreme.h"
 #include "solver/constraint/ldl.h"
 
 #include <math.h>
@@ -75,7 +76,7 @@ static double residual(const sf_ldl_entries *a, const sf_ldl *f, const sf_vec *b
     }
     for (int64_t k = 0; k < f->rows; k++)
         for (int c = 0; c < 3; c++)
-            largest = fmax(largest, fabs(has_row(a, f->order[k], c) ? r[k][c] : x[k][c]));
+            largest = larger(largest, fabs(has_row(a, f->order[k], c) ? r[k][c] : x[k][c]));
     free(place);
     free(r);
     return largest;

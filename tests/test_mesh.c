@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Geometries through gmsh to the background mesh and the missile's surface, and the checks of a mesh. */
+#include "extreme.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 
@@ -540,7 +541,7 @@ static void hemisphere_dome_is_a_sphere_turned_outwards(void **state) {
         assert_true(-sum[2] < share * PI * r * r && -sum[2] > 0.99 * share * PI * r * r);
         double lowest = INFINITY;
         for (int64_t n = 0; n < dome.node_count; n++)
-            lowest = fmin(lowest, dome.position[3 * n + 2]);
+            lowest = smaller(lowest, dome.position[3 * n + 2]);
         assert_true(fabs(lowest) < 1e-12);
         sf_surface_free(&dome);
     }

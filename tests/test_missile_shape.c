@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Is the missile a sphere, and where does it touch first? */
+#include "extreme.h"
 #include "pre/mesh/missile_shape.h"
 
 #include <math.h>
@@ -107,7 +108,7 @@ static void cap_cosine_is_that_of_the_outermost_node(void **state) {
     double rim = -2;
     for (int64_t i = 0; i < b.surface.node_count; i++)
         if (body_node(&b, i)[2] < -0.9) {
-            rim = fmax(rim, body_node(&b, i)[2]);
+            rim = larger(rim, body_node(&b, i)[2]);
             memmove(body_node(&b, cap++), body_node(&b, i), 3 * sizeof(double));
         }
     b.surface.node_count = cap;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "solver/contact/missile_surface.h"
 
 #include <math.h>
@@ -100,7 +101,7 @@ static void fine_triangles_agree_with_the_exact_sphere(void **state) {
             body_face_normal(&b, t, n);
             body_vector(centre, body_node(&b, b.surface.triangle[3 * t]), r);
             assert_true(body_dot(n, r) > 0); /* outward */
-            sagitta = fmax(sagitta, 1 - body_dot(n, r));
+            sagitta = larger(sagitta, 1 - body_dot(n, r));
         }
         for (int trial = 0; trial < 3000; trial++) {
             double u[3], x[3], gap, normal[3], distance = point_random(&seed, 0.75, 1.25);
@@ -114,7 +115,7 @@ static void fine_triangles_agree_with_the_exact_sphere(void **state) {
             assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
             assert_true(gap >= distance - 1 - 1e-12 && gap <= distance - 1 + sagitta + 1e-12);
             assert_true(body_dot(normal, u) > cos(3.0 / (12 << level)));
-            worst[level] = fmax(worst[level], gap - (distance - 1));
+            worst[level] = larger(worst[level], gap - (distance - 1));
         }
         body_free(&b, &s);
     }

@@ -2,6 +2,7 @@
 /* Patch tests of the smoothed Galerkin method on a jittered block and on the real pad with its hexahedra,
  * pyramids and tetrahedra: exact affine fields, exact equilibrium with held u_h, invariance under rigid
  * motion, momentum. */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "solver/constraint/constraint.h"
@@ -51,14 +52,14 @@ static int tear_down(void **state) {
 static double largest(const double *a, int64_t count) {
     double value = 0;
     for (int64_t k = 0; k < count; k++)
-        value = fmax(value, fabs(a[k]));
+        value = larger(value, fabs(a[k]));
     return value;
 }
 
 static double smallest_spacing(const sf_model *m) {
     double value = INFINITY;
     for (int64_t i = 0; i < m->node_count; i++)
-        value = fmin(value, m->spacing[i]);
+        value = smaller(value, m->spacing[i]);
     return value;
 }
 
@@ -110,8 +111,8 @@ static double relative_acceleration(fixture *f, const sf_constraint *constraint)
     double free_motion = 0, held_motion = 0;
     sf_constraint_project(constraint, &step);
     for (int64_t k = 0; k < 3 * m->node_count; k++) {
-        free_motion = fmax(free_motion, fabs(s->force[k]) / m->mass[k / 3]);
-        held_motion = fmax(held_motion, fabs(s->force[k] - s->reaction[k]) / m->mass[k / 3]);
+        free_motion = larger(free_motion, fabs(s->force[k]) / m->mass[k / 3]);
+        held_motion = larger(held_motion, fabs(s->force[k] - s->reaction[k]) / m->mass[k / 3]);
     }
     assert_true(free_motion > 0);
     return held_motion / free_motion;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stabilisation: it sees the sawtooth that nodal integration is blind to, leaves smooth fields alone, and
  * its forces are the gradient of its energy. */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "solver/field/domain_stress.h"
@@ -171,7 +172,7 @@ static void forces_are_the_negative_gradient_of_the_energy(void **state) {
                     force[3 * (int64_t)m->domain_node[k] + r] -= couple[3 * r + c] * m->domain_b[3 * k + c];
     }
     for (int64_t q = 0; q < 3 * n; q++)
-        scale = fmax(scale, fabs(force[q]));
+        scale = larger(scale, fabs(force[q]));
     for (int64_t q = 0; q < 3 * n; q += 7) {
         double kept = s->d[q], h = 0.1 * block.spacing;
         s->d[q] = kept + h;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bound on the highest frequency against exact eigenvalues of small clouds. */
+#include "extreme.h"
 #include "core/stability.h"
 
 #include <math.h>
@@ -191,7 +192,7 @@ static void assert_bounds(const cloud *c, const double a[NODES], double (*tangen
     double constant[NODES], bound = 0, exact = exact_largest(c, tangent);
     constants_of(c, constant);
     for (int l = 0; l < c->model.node_count; l++)
-        bound = fmax(bound, a[l] * constant[l]);
+        bound = larger(bound, a[l] * constant[l]);
     if (!(bound >= exact * (1 - 1e-12)))
         fail_msg("the bound %.9g is below the largest eigenvalue %.9g", bound, exact);
     if (!(bound <= slack * exact))
@@ -254,7 +255,7 @@ static void step_is_stable_with_random_tangents_and_viscosities(void **state) {
         for (int l = 0; l < NODES; l++) {
             a[l] = pow(10, point_random(&seed, -2, 2));
             eta[l] = pow(10, point_random(&seed, -3, 1));
-            dt = fmin(dt, sf_stability_step(constant[l], a[l], eta[l]));
+            dt = smaller(dt, sf_stability_step(constant[l], a[l], eta[l]));
         }
         for (int l = 0; l < NODES; l++)
             isotropic_tangent(2 * dt * eta[l] + dt * dt * a[l], tangent[l]);
@@ -283,7 +284,7 @@ static double amplitude(double c, double a, double eta, double dt, int steps) {
     for (int k = 0; k < steps; k++) {
         v -= dt * (c * a * d + c * eta * v);
         d += dt * v;
-        largest = fmax(largest, fabs(d));
+        largest = larger(largest, fabs(d));
     }
     return largest;
 }
@@ -294,7 +295,7 @@ static void central_differences_are_stable_just_below_the_step_and_not_above(voi
     for (int k = 0; k < 4; k++) {
         double c = 3e4, a = 5e5, eta = damping[k] * sqrt(a / c), dt = sf_stability_step(c, a, eta);
         assert_true(amplitude(c, a, eta, 0.995 * dt, 20000) < 100);
-        assert_true(amplitude(c, a, eta, 1.005 * dt, 20000) > 1e6);
+        assert_false(amplitude(c, a, eta, 1.005 * dt, 20000) < 1e6); /* far above, it overflows to NaN */
     }
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The time step against exact eigenvalues of small assembled models, and against what leap-frog really
  * tolerates. */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "solver/step.h"
@@ -54,7 +55,7 @@ static double largest_eigenvalue(double *a, int64_t n) {
     }
     double largest = -INFINITY;
     for (int64_t i = 0; i < n; i++)
-        largest = fmax(largest, a[i * n + i]);
+        largest = larger(largest, a[i * n + i]);
     return largest;
 }
 
@@ -222,7 +223,7 @@ static void partition_bound_is_never_below_the_exact_frequency(void **state) {
             f.state.tangent[i] *= factor;
             for (int k = 0; k < 6; k++)
                 f.state.directional[6 * i + k] *= (float)factor;
-            bound = fmax(bound, f.operators.stability[i] * f.state.tangent[i]);
+            bound = larger(bound, f.operators.stability[i] * f.state.tangent[i]);
         }
         double exact = scalar_eigenvalue(&f);
         assert_true(bound >= exact * (1 - 1e-12));
@@ -274,7 +275,7 @@ static double free_vibration(fixture *f, double dt, int steps) {
         for (int64_t q = 0; q < n; q++) {
             s->v[q] += (step ? dt : 0.5 * dt) * s->force[q] / m->mass[q / 3];
             s->d[q] += dt * s->v[q];
-            largest = fmax(largest, fabs(s->d[q]));
+            largest = larger(largest, fabs(s->d[q]));
         }
         if (largest > 1e3 * start)
             break;
@@ -314,8 +315,8 @@ static void solver_conserves_the_energy_of_a_free_vibration(void **state) {
         if (step == 1)
             first = energy;
         if (step > 0) {
-            largest = fmax(largest, energy / first);
-            smallest = fmin(smallest, energy / first);
+            largest = larger(largest, energy / first);
+            smallest = smaller(smallest, energy / first);
         }
         sf_step_advance(&f.model, s);
     }

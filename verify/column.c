@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "column.h"
 
 #include "formula.h"
@@ -58,7 +59,7 @@ sf_status sf_column_quasi_static(const sf_column *c, double dt, sf_series *force
     for (int64_t step = 0; (double)step * dt < LATEST; step++) {
         double k[4][STATES], z[STATES], now;
         static const double at[4] = {0, 0.5, 0.5, 1};
-        peak = fmax(peak, y[ENERGY]);
+        peak = larger(peak, y[ENERGY]);
         now = column_force(c, y, peak);
         if (append(force, &room, (double)step * dt, now, err) != SF_OK)
             return err->status;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* An independent code: the sphere pressed into a pad of hyperelastic foam, softfall against CalculiX (ccx).
  * Exit code 77, "skipped", without ccx. */
+#include "extreme.h"
 #include "study.h"
 
 #include "calculix/ccx.h"
@@ -43,7 +44,7 @@ static double distance_from_eva(const sf_ogden *law, sf_error *err) {
         SF_FAIL(err, SF_ERR_IO, "%s is missing", path);
     while (file && fgets(line, sizeof line, file))
         if (sscanf(line, "%lf,%lf", &strain, &stress) == 2 && strain >= 0.0999 && strain <= 0.8501)
-            worst = fmax(worst, fabs(-1e-3 * sf_ogden_stress(law, 1 - strain) / stress - 1));
+            worst = larger(worst, fabs(-1e-3 * sf_ogden_stress(law, 1 - strain) / stress - 1));
     if (file)
         fclose(file);
     return worst;
@@ -62,7 +63,7 @@ static double table_error(const sf_indentation *in, sf_error *err) {
         for (int k = 0; k <= 910; k++) {
             double strain = 0.01 + 1e-3 * k + 3e-4, stress, slope, energy;
             sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
-            worst = fmax(worst, fabs(-stress / sf_ogden_stress(&in->law, 1 - strain) - 1));
+            worst = larger(worst, fabs(-stress / sf_ogden_stress(&in->law, 1 - strain) - 1));
         }
     sf_curve_free(&curve);
     sf_case_free(&c);
@@ -78,7 +79,7 @@ static void study_law(sf_study *s, const sf_indentation *in) {
     sf_error err = SF_ERROR_INIT;
     double eva = distance_from_eva(law, &err), table = table_error(in, &err), bend = 0;
     for (int k = 1; k <= 30; k++)
-        bend = fmax(bend, fabs(over_line(law, 1 + 0.01 * k)));
+        bend = larger(bend, fabs(over_line(law, 1 + 0.01 * k)));
     sf_study_text(
         s,
         "### The law\n\nBoth codes use T(λ) = Σ 2μ/α (λ^(α−1) − 1/λ), separable in the principal "
@@ -124,7 +125,7 @@ static void study_element(sf_study *s, const sf_indentation *in) {
             double scale = 1e-6 * sf_ogden_modulus(&in->law);
             for (int k = 0; k < f.count; k++) {
                 double t = 1e-6 * sf_ogden_stress(&in->law, 1 + f.time[k] * (stretch[run][c] - 1));
-                worst[run] = fmax(worst[run], fabs(f.force[3 * k + c] - t) / fmax(fabs(t), 1e-3 * scale));
+                worst[run] = larger(worst[run], fabs(f.force[3 * k + c] - t) / fmax(fabs(t), 1e-3 * scale));
             }
             if (f.count < 50)
                 SF_FAIL(&err, SF_ERR_NUMERIC, "only %d of 50 increments of one element converged", f.count);
@@ -159,7 +160,7 @@ static double largest_difference(const double *a, const double *b, int count, do
     double worst = 0;
     for (int k = 0; k < count; k++)
         if (depth_of(k) > low - 1e-6 && depth_of(k) < high + 1e-6)
-            worst = fmax(worst, fabs(a[k] / b[k] - 1));
+            worst = larger(worst, fabs(a[k] / b[k] - 1));
     return worst;
 }
 
@@ -259,7 +260,7 @@ static double difference_at_touch(const pair *p) {
     double most = 0;
     int ten = point_at(10);
     for (int k = 0; k < ten && ten < p->count; k++)
-        most = fmax(most, fabs(p->softfall.force[k] - p->calculix.force[k]) / p->calculix.force[ten]);
+        most = larger(most, fabs(p->softfall.force[k] - p->calculix.force[k]) / p->calculix.force[ten]);
     return most;
 }
 
@@ -364,7 +365,7 @@ static void print_stretches(sf_study *s, const sf_ogden *law, const sf_indentati
         int k = point_at(depths[i]);
         if (k >= c->frames)
             continue;
-        largest = fmax(largest, c->stretch[k]);
+        largest = larger(largest, c->stretch[k]);
         sf_study_text(s, "| %d mm | %.3f | %.2f %% |\n", depths[i], c->stretch[k], 100 * c->beyond[k]);
     }
     sf_study_text(

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contact and base reaction: Hertz's sphere, a plate dropped on a column, friction, the momentum of the pad,
  * and the energy that contact loses. */
+#include "extreme.h"
 #include "core/units.h"
 #include "column.h"
 #include "formula.h"
@@ -55,7 +56,7 @@ static void build_halfspace(double spacing_mm, fixture *f) {
     fixture_build(&c, &mesh, &surface, f);
     double smallest = INFINITY;
     for (int64_t i = 0; i < f->model.node_count; i++)
-        smallest = fmin(smallest, f->model.spacing[i]);
+        smallest = smaller(smallest, f->model.spacing[i]);
     for (int64_t i = 0; i < f->model.node_count; i++)
         f->model.mass[i] *= pow(smallest / f->model.spacing[i], 2);
     fixture_start(f);
@@ -101,8 +102,8 @@ static void hertz_depths(sf_study *s, double spacing) {
         double depth = f.state.missile.displacement, exact = hertz(modulus, radius, f.model.thickness, depth);
         sf_study_text(s, "| %.4f | %.1f | %.4f | %.4f | %.4f |\n", 1e3 * depth, a / (1e-3 * spacing), force,
                       exact, force / exact);
-        worst = fmax(worst, fabs(force / exact - 1));
-        unbalance = fmax(unbalance, fabs(base / force - 1));
+        worst = larger(worst, fabs(force / exact - 1));
+        unbalance = larger(unbalance, fabs(base / force - 1));
         if (data)
             fprintf(data, "%g %g\n", 1e3 * depth, force);
     }
@@ -227,18 +228,18 @@ static comparison compare(const sf_series *force, const sf_series *reference, FI
     double square = 0, end = reference->time[reference->count - 1];
     int64_t used = 0;
     for (int64_t i = 0; i < b.count; i++)
-        c.reference_peak = fmax(c.reference_peak, b.value[i]);
+        c.reference_peak = larger(c.reference_peak, b.value[i]);
     for (int64_t i = 0; i < a.count && a.time[i] <= end; i++, used++) {
         double t = a.time[i], difference = fabs(a.value[i] - sf_series_at(&b, t)) / c.reference_peak;
-        c.peak = fmax(c.peak, a.value[i]);
-        c.largest = fmax(c.largest, difference);
+        c.peak = larger(c.peak, a.value[i]);
+        c.largest = larger(c.largest, difference);
         square += difference * difference;
         if (data && i % 5 == 0)
             fprintf(data, "%g %g %g\n", 1e3 * t, a.value[i], sf_series_at(&b, t));
     }
     for (int64_t i = 0; i < force->count && force->time[i] <= end; i++)
         c.raw =
-            fmax(c.raw, fabs(force->value[i] - sf_series_at(reference, force->time[i])) / c.reference_peak);
+            larger(c.raw, fabs(force->value[i] - sf_series_at(reference, force->time[i])) / c.reference_peak);
     if (data)
         fprintf(data, "\n\n");
     c.rms = sqrt(square / (double)used);
@@ -399,7 +400,7 @@ static sliding press_obliquely(double friction) {
         for (int64_t c = 0; c < m->contact_count; c++) {
             const double *force = &s->contact_force[3 * c];
             if (force[2] < 0)
-                r.beyond = fmax(r.beyond, hypot(force[0], force[1]) / (-friction * force[2]) - 1);
+                r.beyond = larger(r.beyond, hypot(force[0], force[1]) / (-friction * force[2]) - 1);
         }
         sf_step_advance(m, s);
     }
@@ -433,13 +434,13 @@ static void friction_study(sf_study *s) {
         sliding r = press_obliquely(mu);
         sf_study_text(s, "| %.2f | %.5f | %.5f | %.0f %% | %.2e | %.3e |\n", mu, r.ratio, r.centre,
                       100 * r.sliding, 1e3 * r.slip, r.work);
-        beyond = fmax(beyond, r.beyond);
+        beyond = larger(beyond, r.beyond);
         if (mu < stuck) {
-            sliding_error = fmax(sliding_error, fabs(r.centre / mu - 1));
-            least_work = fmin(least_work, r.work);
+            sliding_error = larger(sliding_error, fabs(r.centre / mu - 1));
+            least_work = smaller(least_work, r.work);
         } else {
-            centre_error = fmax(centre_error, fabs(r.centre / stuck - 1));
-            slip = fmax(slip, r.slip);
+            centre_error = larger(centre_error, fabs(r.centre / stuck - 1));
+            slip = larger(slip, r.slip);
         }
     }
     sf_study_text(s, "\n");
@@ -481,9 +482,9 @@ static drop_record run_drop(double spacing, FILE *data) {
             momentum += m->mass[i] * s->v[3 * i + 2];
         /* The missile pushes the pad down, the base holds it up; the rest is inertia. */
         r.imbalance =
-            fmax(r.imbalance, fabs((momentum - old) / dt + s->missile.force[2] - s->base_reaction[2]));
-        r.reaction = fmax(r.reaction, 4 * s->base_reaction[2]);
-        r.force = fmax(r.force, 4 * s->missile.force[2]);
+            larger(r.imbalance, fabs((momentum - old) / dt + s->missile.force[2] - s->base_reaction[2]));
+        r.reaction = larger(r.reaction, 4 * s->base_reaction[2]);
+        r.force = larger(r.force, 4 * s->missile.force[2]);
         if (sf_ledger_internal(&s->ledger) > internal) {
             internal = sf_ledger_internal(&s->ledger);
             r.lost = s->ledger.contact / internal;
@@ -514,7 +515,7 @@ static void drop_study(sf_study *s) {
         if (data)
             fclose(data);
         lost[k] = r.lost;
-        imbalance = fmax(imbalance, r.imbalance);
+        imbalance = larger(imbalance, r.imbalance);
         sf_study_text(s, "| %.2f | %.1f | %.1f | %.2e |\n", spacing[k], r.force, r.reaction, r.lost);
     }
     sf_study_text(s, "\n");

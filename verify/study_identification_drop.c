@@ -3,6 +3,7 @@
  * noise, identified by space mapping, and the intervals counted. The "simulation" is a stiffer and thinner
  * set of columns than the surrogate, so that the correction has to work; hundreds of drops then cost seconds.
  * The whole chain with three-dimensional drops is in tests/test_fit_drop.c. */
+#include "extreme.h"
 #include "solver/material/foam.h"
 #include "study.h"
 
@@ -63,7 +64,7 @@ static sf_status respond(const laboratory *lab, const double *u, int first, int 
             if (sf_columns_drop(&c, &law, &curve, err) == SF_OK)
                 sf_hic_evaluate(&curve, INFINITY, &hic, err);
             for (int64_t k = 0; k < curve.count; k++)
-                peak = fmax(peak, curve.value[k]);
+                peak = larger(peak, curve.value[k]);
             y[2 * (d - first)] = log(peak);
             y[2 * (d - first) + 1] = log(hic.value);
             sf_series_free(&curve);

@@ -2,6 +2,7 @@
 /* The foam law in homogeneous compression of a cube, run by the solver's own steps: a heavy plate presses a
  * block on a smooth base at constant speed and withdraws. Domains, missile and base are compared with closed
  * forms of the curve, of hysteresis and of every viscous term. */
+#include "extreme.h"
 #include "formula.h"
 #include "model_fixture.h"
 #include "solver/step.h"
@@ -94,13 +95,13 @@ static void compare(const fixture *f, double expected, double size, outcome *o) 
     const sf_state *s = &f->state;
     double area = SIDE * SIDE;
     for (int64_t i = 0; i < f->model.node_count; i++) {
-        o->domains = fmax(o->domains, relative(-s->stress[9 * i + 8] / f->model.volume[i], expected, size));
+        o->domains = larger(o->domains, relative(-s->stress[9 * i + 8] / f->model.volume[i], expected, size));
         for (int k = 0; k < 9; k++)
-            o->uneven = fmax(o->uneven, fabs(s->f[9 * i + k] - s->f[k]));
+            o->uneven = larger(o->uneven, fabs(s->f[9 * i + k] - s->f[k]));
     }
-    o->base = fmax(o->base, relative(s->base_reaction[2] / area, expected, size));
+    o->base = larger(o->base, relative(s->base_reaction[2] / area, expected, size));
     if (expected > 0) /* contact does not pull */
-        o->plate = fmax(o->plate, relative(s->missile.force[2] / area, expected, size));
+        o->plate = larger(o->plate, relative(s->missile.force[2] / area, expected, size));
 }
 
 /* Stress of the second leg by strain (descending), to compare the third with. */
@@ -123,7 +124,7 @@ static void follow(track *t, int leg, double strain, double stress, outcome *o) 
         t->strain[t->count] = strain;
         t->stress[t->count++] = stress;
     } else if (leg == 2) {
-        o->retrace = fmax(o->retrace, track_error(t, strain, stress));
+        o->retrace = larger(o->retrace, track_error(t, strain, stress));
     }
 }
 
@@ -152,7 +153,7 @@ static outcome press(fixture *f, const pressing *program, stress_law *law, FILE 
         fixture_step(f);
         p.time = s->time;
         p.strain = 1 - s->f[8];
-        p.largest_strain = fmax(p.largest_strain, p.strain);
+        p.largest_strain = larger(p.largest_strain, p.strain);
         double expected = law(sf_foam_card_of(&f->model.material[0]), &p, memory),
                stress = s->missile.force[2] / (SIDE * SIDE);
         compare(f, expected, p.size, &o);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Convergence to a manufactured finite-strain solution with a body force, in static equilibrium of the
  * program's own forces under its own constraints, found by dynamic relaxation. */
+#include "extreme.h"
 #include "mms_field.h"
 #include "model_fixture.h"
 #include "order.h"
@@ -231,9 +232,9 @@ static void check_field(sf_study *study) {
         double p[9], stretch[3];
         sf_mms_stress(&field, &foam, x, p, stretch);
         for (int i = 0; i < 3; i++) {
-            smallest = fmin(smallest, stretch[i]);
-            largest = fmax(largest, stretch[i]);
-            nearest = fmin(nearest, fabs(stretch[i] - 1));
+            smallest = smaller(smallest, stretch[i]);
+            largest = larger(largest, stretch[i]);
+            nearest = smaller(nearest, fabs(stretch[i] - 1));
         }
     }
     sf_study_text(

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Same input, same bits: threads, repeated runs, builds, units, mesh. And a quarter against the whole. */
+#include "extreme.h"
 #include "drop.h"
 #include "io/h5.h"
 #include "study.h"
@@ -34,8 +35,8 @@ static double difference(const sf_h5 *a, const sf_h5 *b, const char *path, int r
     if (err->status == SF_OK && na != nb)
         worst = INFINITY;
     for (int64_t i = 0; err->status == SF_OK && na == nb && i < na; i++) {
-        worst = fmax(worst, fabs(x[i] - y[i]));
-        size = fmax(size, fabs(x[i]));
+        worst = larger(worst, fabs(x[i] - y[i]));
+        size = larger(size, fabs(x[i]));
     }
     if (err->status == SF_OK && na == nb && worst == 0 && memcmp(x, y, (size_t)na * sizeof *x) != 0)
         worst = 1e-300; /* zeros of different sign */
@@ -49,10 +50,10 @@ static double compare(const char *first, const char *second, sf_error *err) {
     sf_h5 *a = NULL, *b = NULL;
     double worst = 0;
     if (sf_h5_open(first, &a, err) == SF_OK && sf_h5_open(second, &b, err) == SF_OK) {
-        worst = fmax(worst, difference(a, b, "/history/acceleration", 1, err));
-        worst = fmax(worst, difference(a, b, "/history/indentation", 1, err));
-        worst = fmax(worst, difference(a, b, "/peak/displacement", 2, err));
-        worst = fmax(worst, difference(a, b, "/peak/cauchy_stress", 2, err));
+        worst = larger(worst, difference(a, b, "/history/acceleration", 1, err));
+        worst = larger(worst, difference(a, b, "/history/indentation", 1, err));
+        worst = larger(worst, difference(a, b, "/peak/displacement", 2, err));
+        worst = larger(worst, difference(a, b, "/peak/cauchy_stress", 2, err));
     }
     sf_h5_close(&a, err);
     sf_h5_close(&b, err);

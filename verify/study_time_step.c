@@ -2,6 +2,7 @@
 /* The time step against the exact stability limit of small models whose tangent stiffness is assembled by
  * differences of the solver's own forces: estimate, guaranteed bound, leap-frog on both sides of the limit, a
  * whole drop, and the power iteration at a size where nothing can be assembled. */
+#include "extreme.h"
 #include "model_fixture.h"
 #include "solver/field/domain_stress.h"
 #include "solver/field/internal_force.h"
@@ -172,8 +173,8 @@ static double differentiate(const probe *p, double dt, gsl_matrix *k) {
         for (size_t j = 0; j <= i; j++) {
             double a = gsl_matrix_get(k, i, j), b = gsl_matrix_get(k, j, i);
             double scaled = 0.5 * (a + b) / sqrt(m->mass[i / 3] * m->mass[j / 3]);
-            skew = fmax(skew, fabs(a - b));
-            largest = fmax(largest, fabs(a));
+            skew = larger(skew, fabs(a - b));
+            largest = larger(largest, fabs(a));
             gsl_matrix_set(k, i, j, scaled);
             gsl_matrix_set(k, j, i, scaled);
         }
@@ -253,12 +254,12 @@ static double estimate(const probe *p, double *bound) {
         probe_forces(p, dt);
         *bound = INFINITY;
         for (int64_t k = 0; k < s->chunk_count; k++)
-            *bound = fmin(*bound, s->partial[k].step);
+            *bound = smaller(*bound, s->partial[k].step);
         sf_time_step_choose(&p->f->model, &p->f->operators, s);
         probe_forces(p, dt); /* partial sums with the measured tightness, as in the steps that follow */
         dt = INFINITY;
         for (int64_t k = 0; k < s->chunk_count; k++)
-            dt = fmin(dt, s->partial[k].step);
+            dt = smaller(dt, s->partial[k].step);
     }
     return dt;
 }
@@ -282,7 +283,7 @@ static double vibrate(const probe *p, const double *mode, double dt, int steps, 
             acceleration += mode[i] * (s->force[i] - rest[i]) / sqrt(m->mass[i / 3]);
         v += (step ? dt : 0.5 * dt) * acceleration;
         x += dt * v;
-        largest = fmax(largest, fabs(x) / start);
+        largest = larger(largest, fabs(x) / start);
     }
     memcpy(s->d, p->d, p->size * sizeof *s->d);
     free(rest);
@@ -304,8 +305,8 @@ static void try_leap_frog(const probe *p, const gsl_matrix *k, double limit, ext
     double *mode = malloc(p->size * sizeof *mode);
     for (size_t i = 0; i < p->size; i++)
         mode[i] = gsl_matrix_get(vectors, i, top);
-    e->calm = fmax(e->calm, vibrate(p, mode, 0.95 * limit, 1000, 1e3));
-    e->growth = fmin(e->growth, vibrate(p, mode, 1.05 * limit, 40, 1e3));
+    e->calm = larger(e->calm, vibrate(p, mode, 0.95 * limit, 1000, 1e3));
+    e->growth = smaller(e->growth, vibrate(p, mode, 1.05 * limit, 40, 1e3));
     free(mode);
     gsl_eigen_symmv_free(w);
     gsl_vector_free(values);
@@ -323,11 +324,11 @@ static void one_state(sf_study *s, int cloud, int material, int deformation, ext
     double skew = assemble(&p, k, c), exact = exact_limit(k, c), chosen = estimate(&p, &bound);
     sf_study_text(s, "| %s | %s | %s | %.2f | %.3f | %.3f |\n", CLOUD_NAME[cloud], MATERIAL_NAME[material],
                   DEFORMATION_NAME[deformation], 1e6 * exact, bound / exact, chosen / exact);
-    e->estimate_low = fmin(e->estimate_low, chosen / exact);
-    e->estimate_high = fmax(e->estimate_high, chosen / exact);
-    e->bound_low = fmin(e->bound_low, bound / exact);
-    e->bound_high = fmax(e->bound_high, bound / exact);
-    e->skew = fmax(e->skew, skew);
+    e->estimate_low = smaller(e->estimate_low, chosen / exact);
+    e->estimate_high = larger(e->estimate_high, chosen / exact);
+    e->bound_low = smaller(e->bound_low, bound / exact);
+    e->bound_high = larger(e->bound_high, bound / exact);
+    e->skew = larger(e->skew, skew);
     if (material == ELASTIC && deformation != AT_REST) /* at rest the law has a kink: no linear motion */
         try_leap_frog(&p, k, exact, e);
     gsl_matrix_free(k);
@@ -379,7 +380,7 @@ static double free_vibration(fixture *f, double dt, int steps, double enough) {
             return INFINITY;
         sf_step_advance(&f->model, s);
         for (int64_t i = 0; i < 3 * f->model.node_count; i++)
-            largest = fmax(largest, fabs(s->d[i]) / start);
+            largest = larger(largest, fabs(s->d[i]) / start);
     }
     return largest;
 }
@@ -448,8 +449,8 @@ static void small_drop(sf_study *s) {
             fprintf(steps, "%g %g %g\n", 1e3 * st->time, 1e6 * used, 2e6 / sqrt(st->bound_load));
         if (st->step % 25 == 24) {
             double exact = limit_of(&f, &twin, k, c);
-            low = fmin(low, used / exact);
-            high = fmax(high, used / exact);
+            low = smaller(low, used / exact);
+            high = larger(high, used / exact);
             sum += st->dt / exact;
             count++;
             if (exact_file)
@@ -505,8 +506,8 @@ static void power_iteration(sf_study *s) {
             st->power_iterations = products;
             memcpy(st->mode, mode, n * sizeof *mode);
             free(mode);
-            low = fmin(low, ratio);
-            high = fmax(high, ratio);
+            low = smaller(low, ratio);
+            high = larger(high, ratio);
         }
         sf_step_advance(&f.model, st);
     }

@@ -2,6 +2,7 @@
 /* Longitudinal waves in the linear foam: free vibration of a column and a travelling pulse, run with the
  * program's own steps, against c = sqrt(E / rho); and the dispersion of plane waves on the lattice, from its
  * own forces. The law has no Poisson effect, so that columns are one-dimensional whatever their width. */
+#include "extreme.h"
 #include "model_fixture.h"
 #include "order.h"
 #include "study.h"
@@ -246,7 +247,7 @@ static double lattice_frequency(fixture *f, int axes, double phase) {
         for (int c = 0; c < 3; c++) {
             double x = m->position[3 * i + c] - centre;
             argument += c < axes ? phase * x / h : 0;
-            far = fmax(far, fabs(x));
+            far = larger(far, fabs(x));
         }
         for (int c = 0; c < 3; c++)
             s->d[3 * i + c] = c < axes ? AMPLITUDE * cos(argument) / sqrt(axes) : 0;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "calculix/deck.h"
 
 #include "core/model.h"
@@ -89,9 +90,9 @@ static sf_status put_pad(const sf_deck *deck, const sf_mesh *mesh, FILE *f, sf_e
 static void put_missile(const sf_deck *deck, const sf_mesh *mesh, const sf_surface *s, FILE *f) {
     double top = -INFINITY, tip = INFINITY;
     for (int64_t k = 0; k < mesh->node_count; k++)
-        top = fmax(top, mesh->position[3 * k + 2]);
+        top = larger(top, mesh->position[3 * k + 2]);
     for (int64_t k = 0; k < s->node_count; k++)
-        tip = fmin(tip, s->position[3 * k + 2]);
+        tip = smaller(tip, s->position[3 * k + 2]);
     double centre = top + deck->radius;
     long long first = mesh->node_count + 1, cell = mesh->cell_count + 1;
     fprintf(f, "*NODE,NSET=NMISSILE\n");

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "extreme.h"
 #include "calculix/indentation.h"
 
 #include "calculix/ccx.h"
@@ -101,7 +102,7 @@ static sf_status read_stretches(const sf_results *r, sf_indentation_curve *out, 
         const double *stretch = frame.field[SF_FRAME_PRINCIPAL_STRETCHES];
         for (int64_t i = 0; stretch && i < r->node_count; i++) {
             double most = fmax(stretch[3 * i], fmax(stretch[3 * i + 1], stretch[3 * i + 2]));
-            largest = fmax(largest, most);
+            largest = larger(largest, most);
             volume += r->volume[i];
             beyond += most > 1.3 ? r->volume[i] : 0;
         }
