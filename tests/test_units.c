@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/units.h"
 
+#include "core/unit_text.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
 
@@ -85,9 +88,106 @@ static void wrong_kinds_say_what_was_found(void **state) {
     assert_refused(*state, "4.6 kg", SF_SPEED,
                    "\"4.6 kg\" is a mass; expected a speed, for example \"4.5 m/s\"");
     assert_refused(*state, "5 s", SF_RATE, "is a time; expected a rate");
-    assert_refused(*state, "5 Hz", SF_TIME, "is a rate; expected a time");
-    assert_refused(*state, "3 A", SF_MASS, "is measured in A; expected a mass");
-    assert_refused(*state, "3 radian", SF_LENGTH, "has no dimension; expected a length");
+    assert_refused(*state, "5 1/s", SF_TIME, "is a rate; expected a time");
+    assert_refused(*state, "3 kg m", SF_MASS, "is measured in m.kg; expected a mass");
+    assert_refused(*state, "3 mm/m", SF_LENGTH, "has no dimension; expected a length");
+}
+
+static void every_spelling_of_a_unit_is_read(void **state) {
+    const sf_units *u = *state;
+    assert_value(u, "35 kg/m^3", SF_DENSITY, 35.0);
+    assert_value(u, "35 kg/m\xC2\xB3", SF_DENSITY, 35.0);
+    assert_value(u, "35 kg m-3", SF_DENSITY, 35.0);
+    assert_value(u, "35 kg.m^-3", SF_DENSITY, 35.0);
+    assert_value(u, "35 kg \xC2\xB7 m\xE2\x81\xBB\xC2\xB3", SF_DENSITY, 35.0);
+    assert_value(u, "2 kg/(m s)", SF_VISCOSITY, 2.0);
+    assert_value(u, "2 kg / ( m * s )", SF_VISCOSITY, 2.0);
+    assert_value(u, "9 1/(s)", SF_RATE, 9.0);
+    assert_value(u, "9 (s/m)-2/(m2/s)", SF_RATE, 9.0); /* m2 s-2, by s m-2 */
+    assert_value(u, "20 \xCE\xBCs", SF_TIME, 2e-5);
+    assert_value(u, "+4.5E0m/s", SF_SPEED, 4.5);
+    assert_value(u, ".5 in", SF_LENGTH, 0.0127);
+    assert_value(u, "60 mm/min", SF_SPEED, 0.001);
+}
+
+static void one_number_and_one_unit_and_nothing_else(void **state) {
+    static const struct {
+        const char *text;
+        sf_quantity kind;
+        const char *part;
+    } texts[] = {
+        {"4.5 m/s 2", SF_SPEED, "a second number \"2\" follows"},
+        {"4.5 m 3/s", SF_SPEED, "a second number \"3/s\" follows"},
+        {"4.5 m/3 s", SF_SPEED, "a second number \"3 s\" follows"},
+        {"4.5 m*2/s", SF_SPEED, "a second number \"2/s\" follows"},
+        {"4.6 kg 1000", SF_MASS, "a second number \"1000\" follows"},
+        {"4.6 kg.2", SF_MASS, "a second number \"2\" follows"},
+        {"4.6 kg 1", SF_MASS, "a second number \"1\" follows"},
+        {"4.6 kg (2)", SF_MASS, "a second number \"2)\" follows"},
+        {"4.5 m/s)", SF_SPEED, "\")\" follows it"},
+        {"4.5 (m/s", SF_SPEED, "a bracket is not closed"},
+        {"4.5 ()m/s", SF_SPEED, "a unit's name is missing"},
+        {"4.5 m//s", SF_SPEED, "a unit's name is missing"},
+        {"4.5 m/s/", SF_SPEED, "a unit's name is missing"},
+        {"4.5 m/s,", SF_SPEED, "\",\" follows it"},
+        {"4.5 m/s;", SF_SPEED, "is not a unit"},
+        {"4.5 m/s # fast", SF_SPEED, "is not a unit"},
+        {"4.5 m/s\n", SF_SPEED, "is not a unit"},
+        {"1 Hz", SF_RATE, "there is no unit \"Hz\" here"},
+        {"1 Bq", SF_RATE, "there is no unit \"Bq\" here"},
+        {"1 rpm", SF_RATE, "there is no unit \"rpm\" here"},
+        {"5 Mm", SF_LENGTH, "there is no unit \"Mm\" here"},
+        {"5 mPa", SF_PRESSURE, "there is no unit \"mPa\" here"},
+        {"1 m s-1e0", SF_SPEED, "is not a unit"},
+        {"1 m-11 m12", SF_LENGTH, "is not a power"},
+        {"1 m9 m-8", SF_LENGTH, "is not a power"},
+        {"1 m^", SF_LENGTH, "is not a power"},
+        {"1 m0", SF_LENGTH, "is not a power"},
+        {"1 ((((((m))))))", SF_LENGTH, "nested too deep"},
+        {"1 m m m m m m m m m m", SF_LENGTH, "too many factors"},
+        {"1 ((m4)4)4", SF_LENGTH, "the power of \"m\" is too large"},
+        {"0x10 m", SF_LENGTH, "does not begin with a number"},
+        {"- 5 m", SF_LENGTH, "does not begin with a number"},
+        {". m", SF_LENGTH, "does not begin with a number"},
+        {"1 m\xC2", SF_LENGTH, "is not a unit"},
+    };
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
+        assert_refused(*state, texts[k].text, texts[k].kind, texts[k].part);
+}
+
+/* Every name of the table is one that the database has, and a unit of its kind. */
+static void every_name_of_the_table_is_a_unit(void **state) {
+    static const struct {
+        const char *kind;
+        sf_quantity quantity;
+    } kinds[] = {{"length", SF_LENGTH},
+                 {"mass", SF_MASS},
+                 {"time", SF_TIME},
+                 {"force", SF_FORCE},
+                 {"pressure", SF_PRESSURE}};
+    char *table = NULL, *rest, kind[16] = "";
+    size_t size = 0;
+    int names = 0;
+    FILE *file = open_memstream(&table, &size);
+    sf_unit_text_print(file);
+    fclose(file);
+    rest = table;
+    for (char *line = strsep(&rest, "\n"); line; line = strsep(&rest, "\n"))
+        for (char *name = strchr(line, '`'); name && sscanf(line, "| %15s", kind) == 1;
+             name = strchr(name + strcspn(name + 1, "`") + 2, '`')) {
+            char text[64];
+            size_t k = 0;
+            double value = 0;
+            sf_error err = SF_ERROR_INIT;
+            while (k + 1 < sizeof kinds / sizeof *kinds && strcmp(kinds[k].kind, kind) != 0)
+                k++;
+            snprintf(text, sizeof text, "1 %.*s", (int)strcspn(name + 1, "`"), name + 1);
+            if (sf_units_parse(*state, text, kinds[k].quantity, &value, &err) != SF_OK || !(value > 0))
+                fail_msg("%s: %s", text, err.text);
+            names++;
+        }
+    assert_true(names > 50);
+    free(table);
 }
 
 static void unreadable_quantities_are_refused(void **state) {
@@ -97,7 +197,7 @@ static void unreadable_quantities_are_refused(void **state) {
     assert_refused(u, "fast", SF_SPEED, "does not begin with a number");
     assert_refused(u, "4.5 furlongz", SF_SPEED, "\"furlongz\" is not a unit");
     assert_refused(u, "4,5 m/s", SF_SPEED, "is not a unit");
-    assert_refused(u, "3 4 m", SF_LENGTH, "\"4 m\" is not a unit");
+    assert_refused(u, "3 4 m", SF_LENGTH, "\"4 m\" is not a unit: a second number");
     assert_refused(u, "3 m @ 5", SF_LENGTH, "is not a unit");
     assert_refused(u, "nan m", SF_LENGTH, "is not finite");
     assert_refused(u, "1e400 m", SF_LENGTH, "is not finite");
@@ -110,6 +210,9 @@ int main(void) {
         cmocka_unit_test(every_example_is_of_its_kind),
         cmocka_unit_test(g_is_the_gram),
         cmocka_unit_test(wrong_kinds_say_what_was_found),
+        cmocka_unit_test(every_spelling_of_a_unit_is_read),
+        cmocka_unit_test(one_number_and_one_unit_and_nothing_else),
+        cmocka_unit_test(every_name_of_the_table_is_a_unit),
         cmocka_unit_test(unreadable_quantities_are_refused),
     };
     return cmocka_run_group_tests(tests, open_units, close_units);

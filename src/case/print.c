@@ -2,6 +2,7 @@
 #include "case/print.h"
 
 #include "case/keys.h"
+#include "core/unit_text.h"
 #include "solver/material/law.h"
 #include <stdbool.h>
 #include <string.h>
@@ -136,4 +137,6 @@ void sf_case_print_keys(FILE *file) {
         sf_case_list_keys(sf_law_get(k), &list);
         print_list(file, &list, k ? sf_law_get(k)->name : NULL);
     }
+    fputs("\n### Units\n\n", file);
+    sf_unit_text_print(file);
 }

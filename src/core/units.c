@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/units.h"
 
-#include <ctype.h>
+#include "core/decimal.h"
+#include "core/unit_text.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -105,11 +106,19 @@ static void describe_unit(const sf_units *units, const ut_unit *unit, char *out,
         snprintf(out, size, "is measured in %s", length > 0 ? base : "something else");
 }
 
-/* Units that carry a factor of their own ("3 m") or an offset ("m @ 5") would change the number unseen. */
-static bool is_plain_unit_text(const char *text) {
-    bool starts =
-        isalpha((unsigned char)*text) || (unsigned char)*text >= 0x80 || (text[0] == '1' && text[1] == '/');
-    return starts && !strchr(text, '@') && !strstr(text, "since");
+/* The product of the factors; NULL if the database lacks one. */
+static ut_unit *make_unit(const sf_units *units, const sf_unit_text *text) {
+    ut_unit *product = ut_get_dimensionless_unit_one(units->system);
+    for (int k = 0; k < text->count && product; k++) {
+        ut_unit *name = ut_parse(units->system, text->factor[k].name, UT_ASCII);
+        ut_unit *power = name ? ut_raise(name, text->factor[k].power) : NULL;
+        ut_unit *next = power ? ut_multiply(product, power) : NULL;
+        ut_free(name);
+        ut_free(power);
+        ut_free(product);
+        product = next;
+    }
+    return product;
 }
 
 static sf_status convert(const sf_units *units, const char *text, double number, const ut_unit *unit,
@@ -142,9 +151,9 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
                          sf_error *err) {
     const quantity_info *want = &quantities[kind];
     *si = 0.0;
-    char *rest = NULL;
-    double number = strtod(text, &rest);
-    if (rest == text)
+    double number = 0;
+    const char *rest = sf_decimal_read(text + strspn(text, " \t"), &number);
+    if (!rest)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "\"%s\" does not begin with a number; expected %s, for example \"%s\"", text,
                        want->phrase, want->example);
@@ -153,18 +162,17 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
                        want->phrase, want->example);
     char name[96];
     rest += strspn(rest, " \t");
-    int length = snprintf(name, sizeof name, "%s", rest);
-    ut_trim(name, UT_UTF8);
+    bool fits = snprintf(name, sizeof name, "%s", rest) < (int)sizeof name;
+    for (size_t end = strlen(name); end > 0 && strchr(" \t", name[end - 1]);)
+        name[--end] = '\0';
     if (name[0] == '\0')
         return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" has no unit; expected %s, for example \"%s\"", text,
                        want->phrase, want->example);
-    ut_unit *unit =
-        length < (int)sizeof name && is_plain_unit_text(name) ? ut_parse(units->system, name, UT_UTF8) : NULL;
+    const sf_unit_text factors = sf_unit_text_read(name);
+    ut_unit *unit = fits && !factors.reason[0] ? make_unit(units, &factors) : NULL;
     if (!unit)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "\"%s\": \"%s\" is not a unit in the UDUNITS-2 database; expected %s, for example \"%s\"", text,
-            name, want->phrase, want->example);
+        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\": \"%s\" is not a unit%s%s; expected %s, for example \"%s\"",
+                       text, name, *factors.reason ? ": " : "", factors.reason, want->phrase, want->example);
     sf_status status = convert(units, text, number, unit, kind, si, err);
     ut_free(unit);
     return status;

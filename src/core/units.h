@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quantities with units, read with UDUNITS-2: "4.5 m/s" to 4.5, "160 mm" to 0.16. The only file that includes
- * udunits2.h is units.c. Error messages quote the text and name its kind and the kind expected. */
+/* Quantities with units: "4.5 m/s" to 4.5, "160 mm" to 0.16. UDUNITS-2 knows the size of each unit; the only
+ * file that includes udunits2.h is units.c. Error messages quote the text and name its kind and the kind
+ * expected. */
 #ifndef SF_CORE_UNITS_H
 #define SF_CORE_UNITS_H
 
@@ -36,9 +37,9 @@ typedef struct sf_units sf_units;
 sf_status sf_units_open(sf_units **units, sf_error *err);
 void sf_units_close(sf_units **units);
 
-/* Reads "number unit" into the SI value of `kind`. SF_ERR_INPUT if the number or the unit is missing or
- * unknown, if the unit belongs to another kind (reciprocals too), is an offset or scaled unit, or the value
- * is not finite. */
+/* Reads "number unit" into the SI value of `kind`: one decimal number, one unit in the grammar and of the
+ * names of core/unit_text.h, nothing else. SF_ERR_INPUT if the number or the unit is missing or unknown, if
+ * the unit belongs to another kind (reciprocals too), or the value is not finite. */
 sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity kind, double *si,
                          sf_error *err);
 

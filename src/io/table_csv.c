@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/table_csv.h"
 
+#include "core/decimal.h"
+
 #include "io/table_heading.h"
 
 #include <ctype.h>
@@ -277,15 +279,15 @@ static sf_status unify(csv *file, const char *name, const char *text, char copy[
 }
 
 static sf_status read_number(csv *file, const char *name, const char *text, double *value, sf_error *err) {
-    char *end = NULL, copy[64];
+    char copy[64];
     bool fits = snprintf(copy, sizeof copy, "%s", text) < (int)sizeof copy;
     if (!fits || !sf_table_is_number(text))
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number", file->path, file->line, name,
                        text);
     if (unify(file, name, text, copy, err) != SF_OK)
         return err->status;
-    *value = strtod(copy, &end);
-    if (end == copy || *end)
+    const char *end = sf_decimal_read(copy, value);
+    if (!end || *end)
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number", file->path, file->line, name,
                        text);
     if (!isfinite(*value))

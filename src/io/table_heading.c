@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/table_heading.h"
 
+#include "core/decimal.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -93,14 +95,15 @@ void sf_table_split(char *line, char separator, bool heading, sf_table_cells *ce
 }
 
 bool sf_table_is_number(const char *cell) {
-    char copy[64], *end;
+    char copy[64];
+    double value;
     if (snprintf(copy, sizeof copy, "%s", cell) >= (int)sizeof copy)
         return false;
     for (char *c = copy; *c; c++)
         if (*c == ',')
             *c = '.';
-    strtod(copy, &end);
-    return end != copy && *end == '\0';
+    const char *end = sf_decimal_read(copy, &value);
+    return end && *end == '\0';
 }
 
 /* ---- units ---- */
