@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <cmocka.h>
 
 static program_place place; /* of this run's files; set up once before the tests */
@@ -507,6 +508,102 @@ static void broken_syntax_names_file_and_line(void **state) {
     assert_refused(GOOD, "missile.=3", "--set missile.=3: \"\" is not a valid key", NULL);
 }
 
+static void assert_faults_are_refused(const char *const (*faults)[3], size_t count) {
+    for (size_t k = 0; k < count; k++)
+        assert_refused(faults[k][0], NULL, faults[k][1], faults[k][2], NULL);
+}
+
+/* libconfig 1.5 alone drops or cuts each of these, and reads the rest. */
+static void nothing_of_the_text_is_dropped(void **state) {
+    (void)state;
+    static const char *const faults[][3] = {
+        {GOOD "@include \"empty.cfg\" solver: { };\n", "case.cfg:5: \"solver: { };\" follows", "@include"},
+        {GOOD "@include \"empty.cfg\";\n", "case.cfg:5: \";\" follows @include", "next line"},
+        {GOOD "@include \"empty.cfg\" /* a\nb */\n", "case.cfg:5: \"/* a\" follows @include", "next line"},
+        {GOOD "@include \"empty.cfg\n", "case.cfg:5: @include: the name", "not closed"},
+        {GOOD "@include empty.cfg\n", "case.cfg:5: @include: the name", "in quotes is missing"},
+        {GOOD "@include \"\"\n", "case.cfg:5: @include: the name", "is empty"},
+        {GOOD "pad: { @include \"empty.cfg\"\n};\n", "case.cfg:5: what begins with @", "beginning of a line"},
+        {GOOD "/* a */ @include \"empty.cfg\"\n", "case.cfg:5: what begins with @", "beginning of a line"},
+        {GOOD "/* pad: {};\n\n", "case.cfg:5: the comment that begins here", "not closed"},
+        {GOOD "/* a */ /* pad: {}; *\n/", "case.cfg:5: the comment that begins here", "not closed"},
+        {GOOD "@include \"open.cfg\"\npad: {};\n", "open.cfg:2: the comment that begins here", "not closed"},
+        {GOOD "x = \"abc\n;\n", "case.cfg:5: the text that begins with \"abc is not closed", "on its line"},
+        {GOOD "# a\rpad: {};\n", "case.cfg:5: a line end of another kind", "carriage return"},
+        {GOOD "pad: { group = \"a\\qb\"; };\n", "case.cfg:5: \\q in a text is no character", "\\\\"},
+        {GOOD "pad: { group = \"pad\\x00b\"; };\n", "case.cfg:5: \\x00 in a text", "no character"},
+        {GOOD "missile2: { friction = .; };\n", "case.cfg:5: \".\" is not a number", "."},
+        {GOOD "kernel: { stabilisation = -.e5; };\n", "case.cfg:5: \"-.e5\" is not a number", "-.e5"},
+        {GOOD "kernel: { stabilisation = 99999999999999999999L; };\n", "case.cfg:5: 99999999999999999999L",
+         "too large"},
+        {GOOD "kernel: { stabilisation = 1e999; };\n", "kernel.stabilisation", "not finite"},
+        {GOOD "solver: { end_time = \"1 ms\"; };\n", "case.cfg:5", "duplicate"},
+        {GOOD "};\n", "case.cfg:5", "syntax error"},
+    };
+    sf_case c;
+    write_file("empty.cfg", "");
+    write_file("open.cfg", "\n/* a\n");
+    assert_faults_are_refused(faults, sizeof faults / sizeof *faults);
+    assert_refused(GOOD, "solver.energy_limit=0.1 /* 2", "--set solver.energy_limit=0.1 /* 2: ", "not closed",
+                   NULL);
+    assert_refused(GOOD, "solver.energy_limit=0.1 /* 2 */",
+                   "--set solver.energy_limit=0.1 /* 2 */: ", "a comment", NULL);
+    read_good(GOOD "@include \"empty.cfg\"   # nothing\n\t@include \"empty.cfg\"\t// nothing\n"
+                   "/* @include \"none.cfg\" \" */ pad: { group = \"#/*@\\\"\\x41\"; }; // \" /* @\n",
+              NULL, &c);
+    assert_string_equal(c.pad_group, "#/*@\"A");
+    sf_case_free(&c);
+    read_good("# Windows\r\n" GEOMETRY "\r\n" MATERIAL MISSILE SOLVER, NULL, &c);
+    sf_case_free(&c);
+}
+
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* `count` copies of the line, where %d is the copy's number, after GOOD. */
+static char *repeat(const char *line, int count) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    fputs(GOOD, out);
+    for (int k = 0; k < count; k++)
+        fprintf(out, line, k); /* NOLINT: formats of this file */
+    fclose(out);
+    return text;
+}
+
+/* 49 s and hours before there were limits. */
+static void work_does_not_grow_with_what_a_case_asks_for(void **state) {
+    (void)state;
+    double begin = seconds();
+    char name[16], text[1024];
+    for (int k = 0; k < 9; k++) { /* 20^9 files */
+        size_t used = 0;
+        for (int i = 0; i < 20; i++)
+            used += (size_t)snprintf(text + used, sizeof text - used, "@include \"level%d.cfg\"\n", k + 1);
+        snprintf(name, sizeof name, "level%d.cfg", k);
+        write_file(name, text);
+    }
+    write_file("level9.cfg", "\n");
+    assert_refused(GOOD "@include \"level0.cfg\"\n", NULL, "more than 200 files are included", NULL);
+
+    char *many = repeat("u%06d = 1;\n", 70000), *few = repeat("u%d = 1;\n", 700),
+         *deep = repeat("x%d: (", 40), *wide = repeat("x = [1,1,1,1,1,1,1,1,1,1 /* %d */ ];\n", 2000);
+    assert_refused(many, NULL, "case.cfg:", "more than 20000 names and values", NULL);
+    assert_refused(few, NULL, "case.cfg:5: unknown group \"u0\"",
+                   "; unknown too: u1, u2, u3, u4, u5, u6, u7, u8, u9 and 690 more; the groups are", NULL);
+    assert_refused(deep, NULL, "case.cfg:5: brackets are nested", "32 deep", NULL);
+    assert_refused(wide, NULL, "more than 20000 names and values", NULL);
+    free(many);
+    free(few);
+    free(deep);
+    free(wide);
+    assert_true(seconds() - begin < 20);
+}
+
 static void rate_curves_are_checked(void **state) {
     (void)state;
     assert_refused(GOOD, "material.curves=( { rate = \"1 1/s\"; file = \"foam.csv\"; } )",
@@ -736,6 +833,8 @@ int main(void) {
         cmocka_unit_test(long_whole_numbers_are_numbers),
         cmocka_unit_test(files_that_are_not_there_are_refused),
         cmocka_unit_test(broken_syntax_names_file_and_line),
+        cmocka_unit_test(nothing_of_the_text_is_dropped),
+        cmocka_unit_test(work_does_not_grow_with_what_a_case_asks_for),
         cmocka_unit_test(rate_curves_are_checked),
         cmocka_unit_test(curve_faults_name_file_line_and_value),
         cmocka_unit_test(motion_replaces_mass_and_speed),

@@ -70,16 +70,28 @@ static void list_words(const char *words, char *out, size_t size) {
 
 sf_status sf_config_names(const sf_config *config, const config_setting_t *group, const char *names,
                           sf_error *err) {
+    enum { NAMED = 10 };
+    const config_setting_t *first = NULL;
+    char list[256], others[400] = "", more[32] = "";
+    int unknown = 0;
     for (int k = 0; k < config_setting_length(group); k++) {
         const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
-        char list[256];
+        size_t used = strlen(others);
         if (find_word(config_setting_name(item), names) >= 0)
             continue;
-        list_words(names, list, sizeof list);
-        return sf_config_refuse(config, item, err, "unknown key \"%.80s\"; the keys here are %s",
-                                config_setting_name(item), list);
+        if (unknown++ == 0)
+            first = item;
+        else if (unknown <= NAMED)
+            snprintf(others + used, sizeof others - used, "%s%.24s",
+                     used ? ", " : "; unknown too: ", config_setting_name(item));
     }
-    return SF_OK;
+    if (unknown == 0)
+        return SF_OK;
+    list_words(names, list, sizeof list);
+    if (unknown > NAMED)
+        snprintf(more, sizeof more, " and %d more", unknown - NAMED);
+    return sf_config_refuse(config, first, err, "unknown key \"%.80s\"%s%s; the keys here are %s",
+                            config_setting_name(first), others, more, list);
 }
 
 /* The setting; records the failure if a required one is missing. */

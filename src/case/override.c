@@ -3,6 +3,7 @@
 #include "case/override.h"
 
 #include "case/reader.h"
+#include "case/scan.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -65,19 +66,17 @@ static bool copy_setting(const config_setting_t *from, config_setting_t *parent,
 static sf_status put_value(config_setting_t *parent, const char *name, const char *value, const char *text,
                            sf_error *err) {
     config_t scratch;
-    int length, at;
     config_init(&scratch);
     bool done = false, parsed = false;
     char *line = NULL;
     if (asprintf(&line, "value = %s;", value) >= 0) {
-        parsed = config_read_string(&scratch, line) && config_setting_length(scratch.root) == 1;
+        parsed = !strpbrk(value, "\r\n") && config_read_string(&scratch, line) &&
+                 config_setting_length(scratch.root) == 1;
         free(line);
     }
-    const char *wide = parsed ? sf_case_wide_integer(value, &length, &at) : NULL;
-    if (wide) {
-        SF_FAIL(err, SF_ERR_INPUT,
-                "--set %s: %.*s is too large for a whole number: write it with a decimal point, or with an L",
-                text, length, wide);
+    sf_error fault = SF_ERROR_INIT;
+    if (parsed && sf_case_scan_value("", value, &fault) != SF_OK) {
+        SF_FAIL(err, fault.status, "--set %s%s", text, fault.text);
     } else if (parsed) {
         const copy_source source = {.text = text};
         done = copy_setting(config_setting_get_elem(scratch.root, 0), parent, name, &source);

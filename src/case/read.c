@@ -15,46 +15,71 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAST_STEPS = 3, MOST_FRAMES = 100000 };
+enum { LEAST_STEPS = 3, MOST_FRAMES = 100000, NAMED_UNKNOWN = 10 };
 
-static sf_status unknown_name(const sf_case_reader *reader, const config_setting_t *setting,
-                              const char *group, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE], names[400], near[64];
-    const char *name = config_setting_name(setting);
-    sf_case_list_names(&reader->keys, group, names, sizeof names);
-    const char *hint = sf_case_near_name(&reader->keys, group, name, near, sizeof near);
-    char meant[96] = "";
-    if (hint)
-        snprintf(meant, sizeof meant, " (did you mean \"%s\"?)", hint);
-    sf_case_where(reader, setting, where);
-    if (*group)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown key \"%.80s\" in group %s%s; its keys are %s", where,
-                       name, group, meant, names);
-    return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown group \"%.80s\"%s; the groups are %s", where, name, meant,
-                   names);
+/* Names that are not in the table: the first one in full, the next ones in short. */
+typedef struct unknown {
+    const config_setting_t *first;
+    char group[SF_CASE_GROUP_SIZE]; /* of the first; "": the file */
+    int count;
+    char others[400];
+} unknown;
+
+static void add_unknown(unknown *u, const config_setting_t *item, const char *group) {
+    size_t used = strlen(u->others);
+    if (u->count++ == 0) {
+        u->first = item;
+        snprintf(u->group, sizeof u->group, "%s", group);
+    } else if (u->count <= NAMED_UNKNOWN) {
+        snprintf(u->others + used, sizeof u->others - used, "%s%s%s%.24s", used ? ", " : "", group,
+                 *group ? "." : "", config_setting_name(item));
+    }
 }
 
-/* Refuses everything in `setting` (the group called `group`, "" for the file) that is not in the table. */
-static sf_status check_names(const sf_case_reader *reader, const config_setting_t *setting, const char *group,
-                             sf_error *err) {
+static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE], names[400], near[64], meant[96] = "", more[480] = "";
+    const char *name = config_setting_name(u->first);
+    sf_case_list_names(&reader->keys, u->group, names, sizeof names);
+    const char *hint = sf_case_near_name(&reader->keys, u->group, name, near, sizeof near);
+    if (hint)
+        snprintf(meant, sizeof meant, " (did you mean \"%s\"?)", hint);
+    if (u->count > NAMED_UNKNOWN)
+        snprintf(more, sizeof more, "; unknown too: %s and %d more", u->others, u->count - NAMED_UNKNOWN);
+    else if (u->count > 1)
+        snprintf(more, sizeof more, "; unknown too: %s", u->others);
+    sf_case_where(reader, u->first, where);
+    if (*u->group)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown key \"%.80s\" in group %s%s%s; its keys are %s", where,
+                       name, u->group, meant, more, names);
+    return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown group \"%.80s\"%s%s; the groups are %s", where, name,
+                   meant, more, names);
+}
+
+/* Finds everything in `setting` (the group called `group`, "" for the file) that is not in the table. */
+static sf_status find_unknown(const sf_case_reader *reader, const config_setting_t *setting,
+                              const char *group, unknown *u, sf_error *err) {
     for (int i = 0; i < config_setting_length(setting); i++) {
         const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
         const char *name = config_setting_name(item);
-        char inner[SF_CASE_GROUP_SIZE];
+        char inner[SF_CASE_GROUP_SIZE], where[SF_CASE_WHERE_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
         if (sf_case_find_key(&reader->keys, group, name))
             continue;
         if (length >= (int)sizeof inner || !sf_case_is_group(&reader->keys, inner))
-            return unknown_name(reader, item, group, err);
-        if (!config_setting_is_group(item)) {
-            char where[SF_CASE_WHERE_SIZE];
+            add_unknown(u, item, group);
+        else if (!config_setting_is_group(item))
             return SF_FAIL(err, SF_ERR_INPUT, "%s: %s must be a group: %s: { ... }",
                            sf_case_where(reader, item, where), inner, name);
-        }
-        if (check_names(reader, item, inner, err) != SF_OK)
-            return err->status;
+        else
+            SF_TRY(find_unknown(reader, item, inner, u, err));
     }
     return SF_OK;
+}
+
+static sf_status check_names(const sf_case_reader *reader, sf_error *err) {
+    unknown u = {0};
+    SF_TRY(find_unknown(reader, config_root_setting(&reader->config), "", &u, err));
+    return u.count > 0 ? refuse_unknown(reader, &u, err) : SF_OK;
 }
 
 static void list_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
@@ -307,7 +332,7 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
             return err->status;
     if (choose_law(reader, err) != SF_OK)
         return err->status;
-    return check_names(reader, config_root_setting(config), "", err);
+    return check_names(reader, err);
 }
 
 sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
@@ -355,8 +380,7 @@ sf_status sf_case_check_material(const char *path, sf_error *err) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material %s", path);
     else if (sf_units_open(&reader.units, err) == SF_OK &&
              sf_case_override(&reader.config, override, err) == SF_OK && choose_law(&reader, err) == SF_OK &&
-             check_names(&reader, config_root_setting(&reader.config), "", err) == SF_OK &&
-             read_keys(&reader, err) == SF_OK)
+             check_names(&reader, err) == SF_OK && read_keys(&reader, err) == SF_OK)
         check_material(&reader, err);
     if (reader.listing)
         fclose(reader.listing);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The text of a file in libconfig syntax with its includes put in place, and where each of its lines comes
- * from. libconfig's own @include takes no absolute paths beside relative ones, and its scanner ends the
- * process on a folder. */
+ * from; looked over by case/scan.h. libconfig's own @include takes no absolute paths beside relative ones,
+ * and its scanner ends the process on a folder. */
 #ifndef SF_CASE_SOURCE_H
 #define SF_CASE_SOURCE_H
 
@@ -28,10 +28,6 @@ char *sf_case_load_text(const char *path, int count, const char *const *override
 /* File and line of a line of the text. */
 const char *sf_case_source_find(const sf_case_source *source, int line, int *file_line);
 void sf_case_source_free(sf_case_source *source);
-
-/* libconfig 1.5 cuts a whole number to 32 bits unless an L follows it. The first number of the text that
- * would be cut, with its length and line; NULL if there is none. */
-const char *sf_case_wide_integer(const char *text, int *length, int *line);
 
 /* The folder part of a path, "." if there is none; from malloc. */
 char *sf_case_folder_of(const char *path, sf_error *err);
