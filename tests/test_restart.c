@@ -424,7 +424,7 @@ static void damaged_or_foreign_checkpoint_is_refused(void **state) {
     program_write_file(program_path(p, "part.h5.restart"), good.data, good.size - 24); /* without its seal */
     set_version(p, 99);
     assert_int_equal(sf_seal_add(program_path(p, "part.h5.restart"), &err), SF_OK);
-    assert_refused(p, SF_ERR_IO, "has format version 99; this program reads version 3", "");
+    assert_refused(p, SF_ERR_IO, "has format version 99; this program reads version", "");
     program_shell(p, "cp model.h5 part.h5.restart");
     assert_int_equal(sf_seal_add(program_path(p, "part.h5.restart"), &err), SF_OK);
     assert_refused(p, SF_ERR_IO, "is a softfall-model file, expected a softfall-checkpoint file", "");

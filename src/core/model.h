@@ -162,8 +162,10 @@ void sf_model_free(sf_model *model);
 /* Releases the background mesh: the solver no longer needs it once it is in the results. */
 void sf_model_drop_mesh(sf_model *model);
 
-/* A hash of every field, with the mesh: are two models the same? */
-uint64_t sf_model_hash(const sf_model *model);
+/* The hash of every field, with the mesh, in hex digits: are two models the same, is a file as it was
+ * written? */
+enum { SF_MODEL_HASH_SIZE = 17 };
+void sf_model_hash(const sf_model *model, char text[SF_MODEL_HASH_SIZE]);
 
 /* Releases domain_node and support: the solver's groups have local numbers for the nodes of their domains. */
 void sf_model_drop_domain_nodes(sf_model *model);

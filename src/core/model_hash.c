@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/hash.h"
 #include "core/model.h"
+#include <stdio.h>
 
 static size_t item_size(sf_model_type type) {
     return type == SF_MODEL_U8 ? 1 : type == SF_MODEL_I32 ? 4 : 8;
 }
 
-uint64_t sf_model_hash(const sf_model *model) {
+static uint64_t hash_of(const sf_model *model) {
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);
     const char *base = (const char *)model;
@@ -25,4 +26,8 @@ uint64_t sf_model_hash(const sf_model *model) {
     for (int64_t k = 0; k < model->material_count; k++)
         hash = sf_material_hash(hash, &model->material[k]);
     return hash;
+}
+
+void sf_model_hash(const sf_model *model, char text[SF_MODEL_HASH_SIZE]) {
+    snprintf(text, SF_MODEL_HASH_SIZE, "%016llx", (unsigned long long)hash_of(model));
 }

@@ -161,6 +161,26 @@ static sf_status read_materials(const sf_h5 *h5, sf_model *model, sf_error *err)
     return err->status;
 }
 
+/* ---- the hash of the content ---- */
+
+static void write_content_hash(sf_h5 *h5, const sf_model *model, sf_error *err) {
+    char hash[SF_MODEL_HASH_SIZE];
+    sf_model_hash(model, hash);
+    sf_h5_set_attribute(h5, "/", "content_hash", hash, err);
+}
+
+/* A flipped bit may give another valid model: only the hash tells. */
+static sf_status check_content_hash(const sf_h5 *h5, const sf_model *model, sf_error *err) {
+    char stored[64], hash[SF_MODEL_HASH_SIZE];
+    if (sf_h5_get_attribute(h5, "/", "content_hash", stored, sizeof stored, err) != SF_OK)
+        return err->status;
+    sf_model_hash(model, hash);
+    if (strcmp(stored, hash) != 0)
+        return SF_FAIL(err, SF_ERR_MODEL, "is damaged or was changed: the hash of its content is %s, not %s",
+                       hash, stored);
+    return SF_OK;
+}
+
 sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance,
                          sf_error *err) {
     char partial[SF_PATH_SIZE];
@@ -171,6 +191,8 @@ sf_status sf_model_write(const char *path, const sf_model *model, const sf_prove
         write_fields(h5, model, err);
     for (int64_t k = 0; k < model->material_count && err->status == SF_OK; k++)
         write_material(h5, &model->material[k], k, err);
+    if (err->status == SF_OK)
+        write_content_hash(h5, model, err);
     sf_h5_close(&h5, err);
     if (err->status == SF_OK)
         return sf_replace_commit(partial, path, err);
@@ -215,6 +237,8 @@ sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_erro
         status = read_materials(h5, model, &inner);
     if (status == SF_OK)
         status = sf_model_check(model, &inner);
+    if (status == SF_OK)
+        status = check_content_hash(h5, model, &inner);
     if (status != SF_OK) {
         SF_FAIL(err, inner.status, inner.status == SF_ERR_MODEL ? "%.200s: %.800s" : "%.0s%.800s", path,
                 inner.text);

@@ -28,14 +28,14 @@ static sf_status check_output(const sf_solve_options *o, const sf_output *output
 
 /* The model of a new run, or that of the run so far, and its hash. */
 static sf_status read_model(const sf_solve_options *o, const sf_checkpoint *from, sf_model *model,
-                            sf_h5 **file, char hash[17], sf_error *err) {
+                            sf_h5 **file, char hash[SF_MODEL_HASH_SIZE], sf_error *err) {
     const char *path = o->model ? o->model : from->model_path;
     sf_error inner = SF_ERROR_INIT;
     if (sf_model_read(path, model, file, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "%.800s%s", inner.text,
                        o->restart && !o->model ? " (--restart RESULTS MODEL says where the model is now)"
                                                : "");
-    snprintf(hash, 17, "%016llx", (unsigned long long)sf_model_hash(model));
+    sf_model_hash(model, hash);
     if (o->restart && strcmp(hash, from->model_hash) != 0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s is not the model of %s: its hash is %s, that of the run %s",
                        path, from->path, hash, from->model_hash);
@@ -77,7 +77,7 @@ static void handle_failure(const sf_solve_options *o, const sf_output *output, c
         remove_all(output);
         return;
     }
-    fprintf(stderr, "softfall-solve: %s %s", output->results,
+    fprintf(stderr, "softfall-solve: note: %s %s", output->results,
             shown ? "has the frame of the failure" : "ends with the last frame that is finite");
     if (!o->no_checkpoint && access(output->checkpoint, F_OK) == 0)
         fprintf(stderr, "; %s is step %lld, t = %.6g s, the last valid step", output->checkpoint,
@@ -107,7 +107,7 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     sf_output output;
     sf_checkpoint from = {0};
     sf_h5 *model_file = NULL;
-    char libraries[64], hash[17], path[PATH_MAX];
+    char libraries[64], hash[SF_MODEL_HASH_SIZE], path[PATH_MAX];
     sf_provenance provenance = {.program = "softfall-solve",
                                 .command_line = command,
                                 .libraries = libraries,
