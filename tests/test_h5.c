@@ -8,6 +8,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
@@ -163,6 +164,175 @@ static void data_of_other_files_are_not_read(void **state) {
     assert_refused(p, "virtual.h5", 1, "in another file");
 }
 
+/* A new part.h5 of the folder of r.h5; r.h5 links to /frames/a of it. */
+static hid_t create_part(const program_place *p) {
+    program_shell(p, "rm -rf r.h5.run && mkdir r.h5.run");
+    hid_t file = create(p, "r.h5.run/part.h5");
+    hid_t group = H5Gcreate2(file, "frames", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    assert_true(group >= 0);
+    H5Gclose(group);
+    return file;
+}
+
+static void link_to_part(const program_place *p, const char *target) {
+    hid_t file = create(p, "r.h5"), links = H5Pcreate(H5P_LINK_CREATE);
+    H5Pset_create_intermediate_group(links, 1);
+    assert_true(H5Lcreate_external(target, "/frames/a", file, "frames/a", links, H5P_DEFAULT) >= 0);
+    H5Pclose(links);
+    H5Fclose(file);
+}
+
+/* The reading functions at `path` of r.h5; the sentence of a refusal, or NULL. */
+static const char *read_linked(const program_place *p, const char *path) {
+    static sf_error err;
+    sf_error none = SF_ERROR_INIT;
+    char text[64];
+    int64_t dims = -1;
+    void *data = NULL;
+    sf_h5 *file = NULL, *copy = NULL;
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_h5_open(program_path(p, "r.h5"), &file, &none), SF_OK);
+    sf_h5_read(file, path, SF_H5_F64, 1, &dims, &data, &err);
+    if (err.status == SF_OK)
+        assert_memory_equal(data, numbers, sizeof numbers);
+    else
+        assert_null(data);
+    bool found = sf_h5_exists(file, path);
+    assert_true(found || err.status != SF_OK);
+    if (!found) {
+        sf_error other = SF_ERROR_INIT, last = SF_ERROR_INIT;
+        assert_int_equal(sf_h5_group_size(file, path), -1);
+        assert_int_equal(sf_h5_get_attribute(file, path, "units", text, sizeof text, &other), SF_ERR_IO);
+        assert_int_equal(sf_h5_group_member(file, path, 0, text, sizeof text, &last), SF_ERR_IO);
+    }
+    if (err.status != SF_OK) {
+        sf_error other = SF_ERROR_INIT;
+        assert_int_equal(sf_h5_create(program_path(p, "copy.h5"), &copy, &none), SF_OK);
+        assert_int_equal(sf_h5_copy(file, path, copy, &other), SF_ERR_IO);
+        sf_h5_close(&copy, &none);
+    }
+    free(data);
+    sf_h5_close(&file, &none);
+    assert_int_equal(H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL), 0);
+    return err.status == SF_OK ? NULL : err.text;
+}
+
+static void assert_not_followed(const program_place *p, const char *path) {
+    const char *said = read_linked(p, path);
+    if (!said || !(strstr(said, "link, which is not followed") || strstr(said, "in another file")))
+        fail_msg("%s: %s", path, said ? said : "read");
+}
+
+static void links_lead_one_deep_into_the_own_folder(void **state) {
+    const program_place *p = *state;
+    hid_t secret = create(p, "secret.h5");
+    hid_t group = H5Gcreate2(secret, "frames", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    add_numbers(group, "a", H5P_DEFAULT);
+    H5Gclose(group);
+    H5Fclose(secret);
+
+    hid_t part = create_part(p);
+    add_numbers(part, "frames/a", H5P_DEFAULT);
+    H5Fclose(part);
+    link_to_part(p, "r.h5.run/part.h5");
+    assert_null(read_linked(p, "/frames/a"));
+
+    part = create_part(p); /* the object is a link itself */
+    H5Lcreate_external("../secret.h5", "/frames/a", part, "frames/a", H5P_DEFAULT, H5P_DEFAULT);
+    H5Fclose(part);
+    assert_not_followed(p, "/frames/a");
+
+    part = create_part(p); /* into the folder once more: two deep */
+    H5Lcreate_external("r.h5.run/part.h5", "/frames/a", part, "frames/a", H5P_DEFAULT, H5P_DEFAULT);
+    H5Fclose(part);
+    program_shell(p, "mkdir r.h5.run/r.h5.run; cp secret.h5 r.h5.run/r.h5.run/part.h5");
+    assert_not_followed(p, "/frames/a");
+
+    part = create_part(p);
+    add_numbers(part, "real", H5P_DEFAULT);
+    H5Lcreate_soft("/real", part, "frames/a", H5P_DEFAULT, H5P_DEFAULT);
+    H5Fclose(part);
+    assert_not_followed(p, "/frames/a");
+
+    part = create_part(p); /* a member of the group */
+    group = H5Gcreate2(part, "frames/a", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Lcreate_external("../secret.h5", "/frames/a", group, "values", H5P_DEFAULT, H5P_DEFAULT);
+    H5Gclose(group);
+    H5Fclose(part);
+    assert_not_followed(p, "/frames/a/values");
+}
+
+static void names_of_links_lead_nowhere_else(void **state) {
+    static const char *const targets[] = {"r.h5.run/../secret.h5", "r.h5.run/sub/secret.h5",
+                                          "r.h5.run/..",           "r.h5.run/",
+                                          "../secret.h5",          "secret.h5",
+                                          "/r.h5.run/part.h5",     "x.h5.run/secret.h5"};
+    const program_place *p = *state;
+    H5Fclose(create_part(p));
+    program_shell(p, "mkdir -p r.h5.run/sub x.h5.run; cp secret.h5 r.h5.run/sub; cp secret.h5 x.h5.run");
+    for (size_t k = 0; k < sizeof targets / sizeof targets[0]; k++) {
+        link_to_part(p, targets[k]);
+        assert_not_followed(p, "/frames/a");
+    }
+    link_to_part(p, "r.h5.run/part.h5");
+    program_shell(p, "ln -sf ../secret.h5 r.h5.run/part.h5");
+    assert_not_followed(p, "/frames/a");
+    program_shell(p, "rm -r r.h5.run; mkdir else; cp secret.h5 else/part.h5; ln -s else r.h5.run");
+    assert_not_followed(p, "/frames/a");
+    /* HDF5 would look for it in the working folder and under a prefix too */
+    program_shell(p, "rm r.h5.run; mkdir -p away/r.h5.run; cp secret.h5 away/r.h5.run/part.h5");
+    char folder[600];
+    snprintf(folder, sizeof folder, "%s/away", p->folder);
+    setenv("HDF5_EXT_PREFIX", folder, 1);
+    assert_non_null(strstr(read_linked(p, "/frames/a"), "has no dataset"));
+    unsetenv("HDF5_EXT_PREFIX");
+}
+
+/* Raw data elsewhere and virtual data, in a file that a link has led to. */
+static void data_of_a_linked_file_are_its_own(void **state) {
+    const program_place *p = *state;
+    const hsize_t extent = COUNT, unlimited = H5S_UNLIMITED;
+    program_write_file(program_path(p, "secret"), numbers, sizeof numbers);
+    for (int kind = 0; kind < 2; kind++) {
+        hid_t creation = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(1, &extent, NULL);
+        if (kind == 0) {
+            H5Pset_external(creation, program_path(p, "secret"), 0, sizeof numbers);
+        } else { /* its extent is that of the other file */
+            hid_t growing = H5Screate_simple(1, &extent, &unlimited);
+            const hsize_t zero = 0, one = 1;
+            H5Sselect_hyperslab(growing, H5S_SELECT_SET, &zero, NULL, &unlimited, &one);
+            H5Sselect_hyperslab(growing, H5S_SELECT_SET, &zero, &one, &one, &unlimited);
+            assert_true(
+                H5Pset_virtual(creation, growing, program_path(p, "secret.h5"), "/frames/a", growing) >= 0);
+            H5Sclose(space);
+            space = growing;
+        }
+        hid_t part = create_part(p);
+        hid_t set =
+            H5Dcreate2(part, "frames/a", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+        assert_true(set >= 0);
+        H5Dclose(set);
+        H5Fclose(part);
+        H5Sclose(space);
+        H5Pclose(creation);
+        link_to_part(p, "r.h5.run/part.h5");
+        assert_not_followed(p, "/frames/a");
+    }
+}
+
+static void a_file_without_a_folder_has_no_links(void **state) {
+    const program_place *p = *state;
+    sf_h5 *file = NULL;
+    sf_error err = SF_ERROR_INIT;
+    hid_t part = create_part(p);
+    add_numbers(part, "frames/a", H5P_DEFAULT);
+    H5Fclose(part);
+    link_to_part(p, "r.h5.run/part.h5");
+    assert_int_equal(sf_h5_open_alone(program_path(p, "r.h5"), &file, &err), SF_OK);
+    assert_false(sf_h5_exists(file, "/frames/a"));
+    sf_h5_close(&file, &err);
+}
+
 /* A dataset whose header claims `extent`, of which nothing or one chunk is stored. */
 static void write_claim(const program_place *p, const char *name, int rank, const hsize_t *extent,
                         bool filter) {
@@ -238,6 +408,10 @@ int main(void) {
         cmocka_unit_test(plain_data_are_read),
         cmocka_unit_test(rows_in_slabs_make_the_whole),
         cmocka_unit_test(links_are_not_followed),
+        cmocka_unit_test(links_lead_one_deep_into_the_own_folder),
+        cmocka_unit_test(names_of_links_lead_nowhere_else),
+        cmocka_unit_test(data_of_a_linked_file_are_its_own),
+        cmocka_unit_test(a_file_without_a_folder_has_no_links),
         cmocka_unit_test(data_of_other_files_are_not_read),
         cmocka_unit_test(claims_are_checked_before_anything_is_allocated),
         cmocka_unit_test(texts_must_be_one_string),

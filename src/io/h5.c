@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <hdf5.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,7 @@ enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536, SF_H5_COPY_SIZE = 1 << 
 struct sf_h5 {
     hid_t id;
     char *path;
-    uint64_t size; /* bytes of a file opened for reading: no dataset can hold more */
+    bool alone; /* no link is followed, not even into its own folder */
 };
 
 static hid_t native_type(sf_h5_type type) {
@@ -35,7 +36,7 @@ static size_t type_size(sf_h5_type type) {
     return type == SF_H5_U8 ? 1 : type == SF_H5_I32 ? 4 : 8;
 }
 
-static sf_status wrap(hid_t id, const char *path, uint64_t size, sf_h5 **file, sf_error *err) {
+static sf_status wrap(hid_t id, const char *path, bool alone, sf_h5 **file, sf_error *err) {
     sf_h5 *made = malloc(sizeof *made);
     char *copy = strdup(path);
     if (!made || !copy) {
@@ -46,7 +47,7 @@ static sf_status wrap(hid_t id, const char *path, uint64_t size, sf_h5 **file, s
     }
     made->id = id;
     made->path = copy;
-    made->size = size;
+    made->alone = alone;
     *file = made;
     return SF_OK;
 }
@@ -66,10 +67,10 @@ sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "cannot create %s: %s", path,
                        errno ? strerror(errno) : "HDF5 refuses it");
-    return wrap(id, path, 0, file, err);
+    return wrap(id, path, true, file, err);
 }
 
-sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
+static sf_status open_file(const char *path, bool alone, sf_h5 **file, sf_error *err) {
     *file = NULL;
     begin_library();
     struct stat info;
@@ -83,7 +84,15 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: it is damaged or another program is writing it",
                        path);
-    return wrap(id, path, (uint64_t)info.st_size, file, err);
+    return wrap(id, path, alone, file, err);
+}
+
+sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
+    return open_file(path, false, file, err);
+}
+
+sf_status sf_h5_open_alone(const char *path, sf_h5 **file, sf_error *err) {
+    return open_file(path, true, file, err);
 }
 
 sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
@@ -100,67 +109,128 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
 }
 
 enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE };
+enum { OBJECT_SIZE = 512 };
 
-/* Does the link stand for the object of the same path in a file of the folder that belongs to this file while
- * its run is in progress (FILE.run, docs/formats.md)? */
-static bool is_own_link(const sf_h5 *file, const char *path, size_t size) {
-    char value[1024], folder[512];
-    const char *slash = strrchr(file->path, '/'), *target = NULL, *object = NULL;
-    unsigned flags;
-    int length = snprintf(folder, sizeof folder, "%s.run/", slash ? slash + 1 : file->path);
-    if (size > sizeof value || (size_t)length >= sizeof folder ||
-        H5Lget_val(file->id, path, value, sizeof value, H5P_DEFAULT) < 0 ||
-        H5Lunpack_elink_val(value, size, &flags, &target, &object) < 0)
-        return false;
-    return strncmp(target, folder, (size_t)length) == 0 && !strchr(target + length, '/') &&
-           strcmp(object, path) == 0;
-}
-
-/* The object at a path. Soft links and those into other files are found but not followed, but for a file's
- * own: a file speaks of itself only. */
-static int find_link(const sf_h5 *file, const char *path) {
-    char part[512];
+/* Follows a path of hard links. LINK_ELSEWHERE: `part` is the path up to a link that is not hard, `info` says
+ * of what kind. */
+static int walk(hid_t file, const char *path, char part[OBJECT_SIZE], H5L_info_t *info) {
     size_t length = strlen(path);
-    if (length >= sizeof part || path[0] != '/')
+    if (length >= OBJECT_SIZE || path[0] != '/')
         return LINK_NONE;
     /* H5Lexists fails on a path whose parent is missing: test each prefix. */
-    for (size_t k = 1; k <= length; k++) {
-        H5L_info_t info;
+    for (size_t k = 2; k <= length; k++) {
         if (path[k] != '/' && path[k] != '\0')
             continue;
         memcpy(part, path, k);
         part[k] = '\0';
-        if (k == 1)
-            continue;
-        if (H5Lexists(file->id, part, H5P_DEFAULT) <= 0 ||
-            H5Lget_info(file->id, part, &info, H5P_DEFAULT) < 0)
+        if (H5Lexists(file, part, H5P_DEFAULT) <= 0 || H5Lget_info(file, part, info, H5P_DEFAULT) < 0)
             return LINK_NONE;
-        if (info.type != H5L_TYPE_HARD &&
-            !(info.type == H5L_TYPE_EXTERNAL && is_own_link(file, part, info.u.val_size)))
+        if (info->type != H5L_TYPE_HARD)
             return LINK_ELSEWHERE;
-        if (info.type == H5L_TYPE_EXTERNAL && H5Oexists_by_name(file->id, part, H5P_DEFAULT) <= 0)
-            return LINK_NONE;
     }
     return LINK_HARD;
 }
 
+/* Does the external link at `path` stand for the object of the same path in a file of the folder that belongs
+ * to this file while its run is in progress (FILE.run, docs/formats.md)? Then the folder and the name there.
+ */
+static bool is_own_link(const sf_h5 *file, const char *path, size_t size, char folder[PATH_MAX],
+                        char name[NAME_MAX + 1]) {
+    char value[1024];
+    const char *slash = strrchr(file->path, '/'), *target = NULL, *object = NULL;
+    unsigned flags;
+    if (file->alone || (size_t)snprintf(folder, PATH_MAX, "%s.run/", file->path) >= PATH_MAX)
+        return false;
+    const char *own = slash ? folder + (slash + 1 - file->path) : folder;
+    if (size > sizeof value || H5Lget_val(file->id, path, value, sizeof value, H5P_DEFAULT) < 0 ||
+        H5Lunpack_elink_val(value, size, &flags, &target, &object) < 0 ||
+        strncmp(target, own, strlen(own)) != 0 || strcmp(object, path) != 0)
+        return false;
+    target += strlen(own);
+    return *target && *target != '.' && !strchr(target, '/') &&
+           (size_t)snprintf(name, NAME_MAX + 1, "%s", target) <= NAME_MAX;
+}
+
+/* Opens a file of the folder: LINK_ELSEWHERE if one of them is a symbolic link or anything else that may lead
+ * out. By our own hand, because HDF5 looks for it in other places too. */
+static int open_part(const char *folder, const char *name, hid_t *part) {
+    char path[PATH_MAX + NAME_MAX + 1], plain[PATH_MAX];
+    struct stat info;
+    snprintf(plain, sizeof plain, "%.*s", (int)strlen(folder) - 1, folder); /* a slash would follow a link */
+    snprintf(path, sizeof path, "%s%s", folder, name);
+    if (lstat(plain, &info) != 0)
+        return LINK_NONE;
+    if (!S_ISDIR(info.st_mode))
+        return LINK_ELSEWHERE;
+    if (lstat(path, &info) != 0)
+        return LINK_NONE;
+    if (!S_ISREG(info.st_mode))
+        return LINK_ELSEWHERE;
+    *part = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    return *part < 0 ? LINK_NONE : LINK_HARD;
+}
+
+/* The object at a path, and the file that it is `in`, which `leave` gives back. Links into other files are
+ * found but not followed, but for a file's own, and those one deep: a file speaks of itself only. */
+static int find_object(const sf_h5 *file, const char *path, hid_t *in) {
+    char part[OBJECT_SIZE], folder[PATH_MAX], name[NAME_MAX + 1];
+    H5L_info_t info;
+    hid_t other = -1;
+    int found = walk(file->id, path, part, &info);
+    *in = file->id;
+    if (found != LINK_ELSEWHERE || info.type != H5L_TYPE_EXTERNAL ||
+        !is_own_link(file, part, info.u.val_size, folder, name))
+        return found;
+    found = open_part(folder, name, &other);
+    if (found != LINK_HARD)
+        return found;
+    found = walk(other, path, part, &info);
+    if (found == LINK_HARD)
+        *in = other;
+    else
+        H5Fclose(other);
+    return found;
+}
+
+static void leave(const sf_h5 *file, hid_t in) {
+    if (in != file->id)
+        H5Fclose(in);
+}
+
 bool sf_h5_exists(const sf_h5 *file, const char *path) {
-    return find_link(file, path) == LINK_HARD;
+    hid_t in;
+    bool found = find_object(file, path, &in) == LINK_HARD;
+    leave(file, in);
+    return found;
+}
+
+/* Bytes of the file that holds an open object. */
+static uint64_t size_of_file(hid_t object) {
+    hid_t owner = H5Iget_file_id(object);
+    hsize_t size = 0;
+    H5Fget_filesize(owner, &size);
+    H5Fclose(owner);
+    return size;
 }
 
 int64_t sf_h5_group_size(const sf_h5 *file, const char *path) {
     H5G_info_t info;
-    if (!sf_h5_exists(file, path) || H5Gget_info_by_name(file->id, path, &info, H5P_DEFAULT) < 0)
-        return -1;
-    if (info.nlinks > file->size) /* a count that no such file can hold */
-        return -1;
-    return (int64_t)info.nlinks;
+    hid_t in;
+    bool known = find_object(file, path, &in) == LINK_HARD &&
+                 H5Gget_info_by_name(in, path, &info, H5P_DEFAULT) >= 0 &&
+                 info.nlinks <= size_of_file(in); /* a count that such a file can hold */
+    leave(file, in);
+    return known ? (int64_t)info.nlinks : -1;
 }
 
 sf_status sf_h5_group_member(const sf_h5 *file, const char *path, int64_t index, char *name, size_t size,
                              sf_error *err) {
-    ssize_t length = H5Lget_name_by_idx(file->id, path, H5_INDEX_NAME, H5_ITER_INC, (hsize_t)index, name,
-                                        size, H5P_DEFAULT);
+    hid_t in;
+    ssize_t length = -1;
+    if (find_object(file, path, &in) == LINK_HARD)
+        length =
+            H5Lget_name_by_idx(in, path, H5_INDEX_NAME, H5_ITER_INC, (hsize_t)index, name, size, H5P_DEFAULT);
+    leave(file, in);
     if (length < 0 || (size_t)length >= size)
         return SF_FAIL(err, SF_ERR_IO, "%s: group %s has no readable member %lld", file->path, path,
                        (long long)index);
@@ -291,20 +361,6 @@ sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text
     return status;
 }
 
-static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, sf_error *err) {
-    int found = find_link(file, path);
-    if (found == LINK_NONE)
-        return SF_FAIL(err, SF_ERR_IO, "%s has no dataset %s: it is incomplete or not of this kind",
-                       file->path, path);
-    if (found == LINK_ELSEWHERE)
-        return SF_FAIL(err, SF_ERR_IO, "%s: %s is reached by a soft or external link, which is not followed",
-                       file->path, path);
-    *set = H5Dopen2(file->id, path, H5P_DEFAULT);
-    if (*set < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s: %s is not a dataset", file->path, path);
-    return SF_OK;
-}
-
 /* Data of other files (external, virtual) would let a file refer to data outside it, and a filter
  * (compression) lets a small file claim a large memory: softfall writes neither and refuses both. */
 static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, sf_error *err) {
@@ -323,13 +379,26 @@ static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, s
     return SF_OK;
 }
 
-/* Bytes of the file that holds an open object. */
-static uint64_t size_of_file(hid_t object) {
-    hid_t owner = H5Iget_file_id(object);
-    hsize_t size = 0;
-    H5Fget_filesize(owner, &size);
-    H5Fclose(owner);
-    return size;
+/* Nothing may be asked of a dataset, not even its extent, before its storage is known: the extent of a
+ * virtual one is looked up in the other files. */
+static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, sf_error *err) {
+    hid_t in;
+    int found = find_object(file, path, &in);
+    *set = found == LINK_HARD ? H5Dopen2(in, path, H5P_DEFAULT) : -1;
+    leave(file, in); /* the dataset holds it open */
+    if (found == LINK_NONE)
+        return SF_FAIL(err, SF_ERR_IO, "%s has no dataset %s: it is incomplete or not of this kind",
+                       file->path, path);
+    if (found == LINK_ELSEWHERE)
+        return SF_FAIL(err, SF_ERR_IO, "%s: %s is reached by a soft or external link, which is not followed",
+                       file->path, path);
+    if (*set < 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s: %s is not a dataset", file->path, path);
+    if (check_storage(file, path, *set, err) != SF_OK) {
+        H5Dclose(*set);
+        *set = -1;
+    }
+    return err->status;
 }
 
 /* Rank and extents of an open dataset against what the caller expects; fills dims and the number of items.
@@ -376,8 +445,7 @@ static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h
     if (found != expected)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
                        expected == H5T_FLOAT ? "floating-point" : "integer");
-    if (check_storage(file, path, set, err) != SF_OK ||
-        check_shape(file, path, set, size, rank, dims, &count, err) != SF_OK)
+    if (check_shape(file, path, set, size, rank, dims, &count, err) != SF_OK)
         return err->status;
     *data = sf_alloc(err, count, type_size(type), path);
     if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0) {
@@ -423,8 +491,7 @@ sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_e
     if (open_dataset(file, path, &set, err) != SF_OK)
         return err->status;
     hid_t type = H5Dget_type(set), space = H5Dget_space(set);
-    char *buffer =
-        check_storage(file, path, set, err) == SF_OK ? text_buffer(type, space, size_of_file(set)) : NULL;
+    char *buffer = text_buffer(type, space, size_of_file(set));
     if (!buffer || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0) {
         free(buffer);
         SF_FAIL(err, SF_ERR_IO, "%s: %s is not a readable text", file->path, path);
@@ -449,7 +516,11 @@ sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name,
 
 static sf_status open_attribute(const sf_h5 *file, const char *object, const char *name, hid_t *id,
                                 sf_error *err) {
-    *id = H5Aopen_by_name(file->id, object, name, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t in;
+    *id = find_object(file, object, &in) == LINK_HARD
+              ? H5Aopen_by_name(in, object, name, H5P_DEFAULT, H5P_DEFAULT)
+              : -1;
+    leave(file, in); /* the attribute holds it open */
     if (*id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s has no attribute %s", file->path, object, name);
     return SF_OK;
@@ -532,8 +603,7 @@ static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf
     hid_t type = H5Dget_type(set), space = H5Dget_space(set), made = -1;
     hssize_t items = H5Sget_simple_extent_npoints(space);
     size_t size = H5Tget_size(type);
-    if (check_storage(from, path, set, err) == SF_OK &&
-        sf_h5_get_attribute(from, path, "units", units, sizeof units, err) == SF_OK &&
+    if (sf_h5_get_attribute(from, path, "units", units, sizeof units, err) == SF_OK &&
         sf_h5_get_attribute(from, path, "description", description, sizeof description, err) == SF_OK &&
         (items < 0 || size == 0 || (uint64_t)items > size_of_file(set) / size))
         SF_FAIL(err, SF_ERR_IO, "%s: %s claims more than its file can hold", from->path, path);

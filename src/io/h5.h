@@ -25,11 +25,15 @@ typedef struct sf_h5_info {
  * a file that is missing, unreadable or not HDF5 is SF_ERR_IO with a sentence that says which. */
 sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err);
 sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
+/* The same of a file that has no folder of its own (a checkpoint, a file of such a folder): no link of it is
+ * followed. */
+sf_status sf_h5_open_alone(const char *path, sf_h5 **file, sf_error *err);
 /* Closes; `*file` may be NULL and is NULL afterwards. Reports a failed final write. */
 sf_status sf_h5_close(sf_h5 **file, sf_error *err);
 
-/* True if a group or dataset of this path exists in the file itself, or by a link of sf_h5_link into the
- * folder of its run (FILE.run); other soft and external links do not count and are never followed. */
+/* True if a group or dataset of this path exists in the file itself, or by a link of sf_h5_link in a plain
+ * file of the folder of its run (FILE.run), and there without any further link; other soft and external links
+ * do not count and are never followed. The same holds for all that is read below. */
 bool sf_h5_exists(const sf_h5 *file, const char *path);
 /* Number of members of a group (-1 if there is no such group, or more than its file can hold), and the name
  * of member `index` in name order.
