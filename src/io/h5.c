@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/h5.h"
 
+#include "io/seal.h"
 #include <errno.h>
 #include <hdf5.h>
 #include <limits.h>
@@ -15,7 +16,8 @@ enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536, SF_H5_COPY_SIZE = 1 << 
 struct sf_h5 {
     hid_t id;
     char *path;
-    bool alone; /* no link is followed, not even into its own folder */
+    bool alone;    /* no link is followed, not even into its own folder */
+    char *checked; /* [NAME_MAX + 1] the file of that folder whose seal was checked last */
 };
 
 static hid_t native_type(sf_h5_type type) {
@@ -38,16 +40,18 @@ static size_t type_size(sf_h5_type type) {
 
 static sf_status wrap(hid_t id, const char *path, bool alone, sf_h5 **file, sf_error *err) {
     sf_h5 *made = malloc(sizeof *made);
-    char *copy = strdup(path);
-    if (!made || !copy) {
+    char *copy = strdup(path), *checked = calloc(NAME_MAX + 1, 1);
+    if (!made || !copy || !checked) {
         free(made);
         free(copy);
+        free(checked);
         H5Fclose(id);
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory opening %s", path);
     }
     made->id = id;
     made->path = copy;
     made->alone = alone;
+    made->checked = checked;
     *file = made;
     return SF_OK;
 }
@@ -103,12 +107,13 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
         status = SF_FAIL(err, SF_ERR_IO, "closing %s failed: its last data may be missing (disk full?)",
                          (*file)->path);
     free((*file)->path);
+    free((*file)->checked);
     free(*file);
     *file = NULL;
     return status;
 }
 
-enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE };
+enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE, LINK_DAMAGED };
 enum { OBJECT_SIZE = 512 };
 
 /* Follows a path of hard links. LINK_ELSEWHERE: `part` is the path up to a link that is not hard, `info` says
@@ -153,7 +158,8 @@ static bool is_own_link(const sf_h5 *file, const char *path, size_t size, char f
 
 /* Opens a file of the folder: LINK_ELSEWHERE if one of them is a symbolic link or anything else that may lead
  * out. By our own hand, because HDF5 looks for it in other places too. */
-static int open_part(const char *folder, const char *name, hid_t *part) {
+static int open_part(const sf_h5 *file, const char *folder, const char *name, hid_t *part) {
+    sf_error problem = SF_ERROR_INIT;
     char path[PATH_MAX + NAME_MAX + 1], plain[PATH_MAX];
     struct stat info;
     snprintf(plain, sizeof plain, "%.*s", (int)strlen(folder) - 1, folder); /* a slash would follow a link */
@@ -166,8 +172,11 @@ static int open_part(const char *folder, const char *name, hid_t *part) {
         return LINK_NONE;
     if (!S_ISREG(info.st_mode))
         return LINK_ELSEWHERE;
+    if (strcmp(file->checked, name) != 0 && sf_seal_check(path, &problem) != SF_OK)
+        return LINK_DAMAGED;
+    snprintf(file->checked, NAME_MAX + 1, "%s", name);
     *part = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    return *part < 0 ? LINK_NONE : LINK_HARD;
+    return *part < 0 ? LINK_DAMAGED : LINK_HARD;
 }
 
 /* The object at a path, and the file that it is `in`, which `leave` gives back. Links into other files are
@@ -181,7 +190,7 @@ static int find_object(const sf_h5 *file, const char *path, hid_t *in) {
     if (found != LINK_ELSEWHERE || info.type != H5L_TYPE_EXTERNAL ||
         !is_own_link(file, part, info.u.val_size, folder, name))
         return found;
-    found = open_part(folder, name, &other);
+    found = open_part(file, folder, name, &other);
     if (found != LINK_HARD)
         return found;
     found = walk(other, path, part, &info);
@@ -392,6 +401,8 @@ static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, s
     if (found == LINK_ELSEWHERE)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s is reached by a soft or external link, which is not followed",
                        file->path, path);
+    if (found == LINK_DAMAGED)
+        return SF_FAIL(err, SF_ERR_IO, "%s: the file of its run that holds %s is damaged", file->path, path);
     if (*set < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s is not a dataset", file->path, path);
     if (check_storage(file, path, *set, err) != SF_OK) {

@@ -136,8 +136,10 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     }
     if (!o->restart)
         unlink(output.checkpoint); /* of an earlier run, with --force */
+    const sf_sink sink = sf_program_sink("softfall-solve");
     sf_run run = {.stop = stop,
                   .log = stdout,
+                  .sink = &sink,
                   .terminal = isatty(STDOUT_FILENO),
                   .threads = o->threads,
                   .to_end_time = o->end_time > 0,

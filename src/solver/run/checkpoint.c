@@ -36,7 +36,7 @@ sf_status sf_checkpoint_open(const char *path, sf_checkpoint *c, sf_error *err) 
         return SF_FAIL(err, SF_ERR_IO,
                        "there is no checkpoint %s to resume from (%s): start a new run with --force", path,
                        strerror(errno));
-    if (sf_seal_check(path, err) != SF_OK || sf_h5_open(path, &c->file, err) != SF_OK)
+    if (sf_seal_check(path, err) != SF_OK || sf_h5_open_alone(path, &c->file, err) != SF_OK)
         return err->status;
     c->path = strdup(path);
     if (!c->path)

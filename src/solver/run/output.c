@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/output.h"
 
+#include "core/history.h"
 #include "io/folder.h"
+#include "io/seal.h"
 #include "solver/run/frame.h"
 #include "solver/run/results_file.h"
 #include <dirent.h>
@@ -10,6 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { NAME_SIZE = SF_PATH_SIZE + 32 };
@@ -86,13 +89,18 @@ void sf_output_clear(const sf_output *o) {
     rmdir(o->folder);
 }
 
-/* Closes a file and gives it its name; removes it if it failed. */
-static sf_status commit(sf_h5 **file, const char *partial, const char *path, sf_error *err) {
+/* Closes a file and gives it its name, those of the folder with a seal; removes it if it failed. */
+static sf_status commit(sf_h5 **file, bool sealed, const char *partial, const char *path, sf_error *err) {
     sf_h5_close(file, err);
-    if (err->status == SF_OK)
+    if (err->status == SF_OK && (!sealed || sf_seal_add(partial, err) == SF_OK))
         return sf_replace_commit(partial, path, err);
     unlink(partial);
     return err->status;
+}
+
+static int64_t size_of(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0 ? (int64_t)info.st_size : 0;
 }
 
 sf_status sf_output_base(const sf_output *o, const sf_model *m, const sf_h5 *model_file,
@@ -102,8 +110,7 @@ sf_status sf_output_base(const sf_output *o, const sf_model *m, const sf_h5 *mod
     if (place(o, BASE, path, partial, err) != SF_OK)
         return err->status;
     sf_results_create(partial, m, model_file, provenance, &file, err);
-    sf_h5_close(&file, err);
-    return err->status;
+    return sf_h5_close(&file, err) == SF_OK && err->status == SF_OK ? sf_seal_add(partial, err) : err->status;
 }
 
 sf_status sf_output_start(const sf_output *o, bool keep, sf_error *err) {
@@ -125,28 +132,31 @@ void sf_output_abandon(const sf_output *o) {
     rmdir(o->folder); /* fails if an earlier run has files in it */
 }
 
-/* The present state as the group of a file of the folder. */
+/* The present state as the group of a file of the folder, whose size is added to `*size` (NULL: to none). */
 static sf_status write_state(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
-                             int64_t fields, const char *name, const char *group, sf_error *err) {
+                             int64_t fields, const char *name, const char *group, int64_t *size,
+                             sf_error *err) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
     sf_h5 *file = NULL;
     if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
     sf_frame_write(m, op, s, fields, group, file, err);
-    return commit(&file, partial, path, err);
+    if (commit(&file, true, partial, path, err) == SF_OK && size)
+        *size += size_of(path);
+    return err->status;
 }
 
-sf_status sf_output_frame(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
+sf_status sf_output_frame(sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
                           int64_t index, sf_error *err) {
     char name[32], group[32];
     frame_name(name, index);
     frame_group(group, index);
-    return write_state(o, m, op, s, m->run.output_fields, name, group, err);
+    return write_state(o, m, op, s, m->run.output_fields, name, group, &o->fresh, err);
 }
 
 sf_status sf_output_peak(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
                          sf_error *err) {
-    return write_state(o, m, op, s, SF_FIELD_ALL, PEAK, PEAK_GROUP, err);
+    return write_state(o, m, op, s, SF_FIELD_ALL, PEAK, PEAK_GROUP, NULL, err);
 }
 
 /* The group of another file as a file of the folder. */
@@ -156,7 +166,7 @@ static sf_status recover(const sf_h5 *from, const char *group, const char *path,
     if (sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
     sf_h5_copy(from, group, file, err);
-    return commit(&file, partial, path, err);
+    return commit(&file, true, partial, path, err);
 }
 
 sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf_error *err) {
@@ -166,24 +176,32 @@ sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf
     return recover(checkpoint, PEAK_GROUP, path, partial, err);
 }
 
+/* Frame `k` from results.h5, which is opened when it is needed, and where it must not be a link. */
+static sf_status recover_frame(const sf_output *o, int64_t k, sf_h5 **results, const char *path,
+                               const char *partial, const char *why, sf_error *err) {
+    char group[32];
+    sf_error none = SF_ERROR_INIT;
+    frame_group(group, k);
+    if ((*results || sf_h5_open_alone(o->results, results, &none) == SF_OK) && sf_h5_exists(*results, group))
+        return recover(*results, group, path, partial, err);
+    return SF_FAIL(err, SF_ERR_IO, "%s, and %s does not hold %s", why, o->results, group);
+}
+
 sf_status sf_output_recover(const sf_output *o, int64_t count, sf_error *err) {
     sf_h5 *results = NULL;
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
-        char name[32], group[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
+        char name[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
+        sf_error problem = SF_ERROR_INIT;
         frame_name(name, k);
-        if (place(o, name, path, partial, err) != SF_OK || access(path, R_OK) == 0)
-            continue;
-        if (!results && sf_h5_open(o->results, &results, err) != SF_OK)
-            break;
-        frame_group(group, k);
-        if (sf_h5_exists(results, group))
-            recover(results, group, path, partial, err);
-        else
-            SF_FAIL(err, SF_ERR_IO, "%s of the run so far is lost: it is neither in %s nor in %s", group,
-                    o->results, o->folder);
+        if (place(o, name, path, partial, err) == SF_OK && sf_seal_check(path, &problem) != SF_OK)
+            recover_frame(o, k, &results, path, partial, problem.text, err);
     }
     sf_h5_close(&results, err);
     return err->status;
+}
+
+bool sf_output_is_due(const sf_output *o, int64_t rows) {
+    return o->fresh + rows * SF_HISTORY_COUNT * (int64_t)sizeof(double) >= 4 * o->size;
 }
 
 /* One object of a file in the folder, linked or copied. */
@@ -193,7 +211,7 @@ static sf_status take(const sf_output *o, bool copied, const char *name, const c
     const char *slash = strrchr(o->folder, '/');
     sf_h5 *part = NULL;
     snprintf(path, sizeof path, "%s/%s", copied ? o->folder : slash ? slash + 1 : o->folder, name);
-    if (copied && sf_h5_open(path, &part, err) != SF_OK)
+    if (copied && (sf_seal_check(path, err) != SF_OK || sf_h5_open_alone(path, &part, err) != SF_OK))
         return err->status;
     for (; *objects && err->status == SF_OK; objects++) {
         if (copied)
@@ -226,5 +244,9 @@ sf_status sf_output_begin(sf_output *o, bool copied, int64_t count, sf_h5 **file
 }
 
 sf_status sf_output_commit(sf_output *o, sf_h5 **file, sf_error *err) {
-    return commit(file, o->partial, o->results, err);
+    if (commit(file, false, o->partial, o->results, err) == SF_OK) {
+        o->fresh = 0;
+        o->size = size_of(o->results);
+    }
+    return err->status;
 }

@@ -3,7 +3,7 @@
  * another name and renamed, so that results.h5 is complete at any instant. During the run, results.h5 holds
  * the history and links to the model and the frames, which are files of their own in the folder
  * results.h5.run, like the fields at the peak; in the end everything is copied into results.h5 and the folder
- * removed. */
+ * removed. The files of the folder are sealed (io/seal.h) and checked before anything is taken from them. */
 #ifndef SF_SOLVER_RUN_OUTPUT_H
 #define SF_SOLVER_RUN_OUTPUT_H
 
@@ -19,6 +19,8 @@ typedef struct sf_output {
     char folder[SF_PATH_SIZE];     /* results.h5.run */
     char partial[SF_PATH_SIZE];    /* of results.h5, between sf_output_begin and sf_output_commit */
     int lock;                      /* the open folder; -1: closed */
+    int64_t fresh;                 /* bytes of the frames written since results.h5 was replaced last */
+    int64_t size;                  /* bytes of that results.h5; 0: none yet */
 } sf_output;
 
 /* The names only. */
@@ -37,7 +39,7 @@ sf_status sf_output_start(const sf_output *output, bool keep, sf_error *err);
 void sf_output_abandon(const sf_output *output);
 
 /* The present state as frame `index`. */
-sf_status sf_output_frame(const sf_output *output, const sf_model *model, const sf_operators *operators,
+sf_status sf_output_frame(sf_output *output, const sf_model *model, const sf_operators *operators,
                           const sf_state *state, int64_t index, sf_error *err);
 
 /* The present state as that at the peak, with all fields, in place of an earlier one. */
@@ -48,8 +50,13 @@ sf_status sf_output_peak(const sf_output *output, const sf_model *model, const s
 sf_status sf_output_copy_peak(const sf_output *output, sf_h5 *file, sf_error *err);
 sf_status sf_output_recover_peak(const sf_output *output, const sf_h5 *checkpoint, sf_error *err);
 
-/* Frames 0 to count - 1 of an ended run go from results.h5 back into the folder, unless they are there. */
+/* Frames 0 to count - 1 of the run so far: those that are not in the folder, or damaged there, come back from
+ * results.h5, which has those of an ended run. SF_ERR_IO with a sentence about the first that is lost. */
 sf_status sf_output_recover(const sf_output *output, int64_t count, sf_error *err);
+
+/* May results.h5 be replaced with `rows` new rows of history? A new file takes somewhat more bytes than the
+ * last one, and four times as many must be new: then all of them together take a part of the data only. */
+bool sf_output_is_due(const sf_output *output, int64_t rows);
 
 /* A new results.h5 with model and frames 0 to count - 1, as links or copied. The caller adds the rest and
  * commits; on failure it closes the file. */

@@ -10,7 +10,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double PROGRESS_INTERVAL = 5; /* s of wall time between plain lines */
+static const double PROGRESS_INTERVAL = 5;  /* s of wall time between plain lines */
+static const double FIRST_CHECKPOINT = 0.1; /* s of wall time after which a part of a run writes its first */
+static const double LONGEST_SILENCE = 60;   /* s of wall time between two replacements of results.h5 */
 
 typedef struct drop {
     const sf_model *m;
@@ -19,12 +21,14 @@ typedef struct drop {
     sf_run *run;
     sf_output *out;
     sf_recorder r;
-    bool replay;                              /* repeats steps that are in the files already */
-    int64_t last_step;                        /* of a replay */
-    double first_time;                        /* s, where this part of the run begins */
-    double next_checkpoint;                   /* s, simulated */
-    double start, last_line, last_checkpoint; /* s, wall clock */
-    double left;                              /* s, as it was told last */
+    bool replay;            /* repeats steps that are in the files already */
+    bool foreign;           /* the checkpoint on the disk is not from before these steps */
+    int64_t published;      /* rows of history in results.h5 */
+    int64_t last_step;      /* of a replay */
+    double first_time;      /* s, where this part of the run begins */
+    double next_checkpoint; /* s, simulated */
+    double start, last_line, last_checkpoint, last_published; /* s, wall clock */
+    double left;                                              /* s, as it was told last */
 } drop;
 
 static void print_progress(drop *d, bool last) {
@@ -59,7 +63,15 @@ static sf_status publish(drop *d, sf_error *err) {
     sf_h5 *file = NULL;
     if (sf_output_begin(d->out, false, d->r.frames, &file, err) == SF_OK)
         sf_history_write(&d->r.history, file, err);
+    d->published = d->r.history.rows;
+    d->last_published = sf_clock();
     return sf_output_commit(d->out, &file, err);
+}
+
+static sf_status publish_if_due(drop *d, sf_error *err) {
+    bool due = sf_output_is_due(d->out, d->r.history.rows - d->published) ||
+               sf_clock() - d->last_published >= LONGEST_SILENCE;
+    return due ? publish(d, err) : SF_OK;
 }
 
 static sf_status save(drop *d, sf_error *err) {
@@ -67,14 +79,19 @@ static sf_status save(drop *d, sf_error *err) {
     d->r.wall_time += sf_clock() - d->start;
     sf_checkpoint_write(d->out, d->run->provenance, d->m, d->s, &d->r, err);
     d->r.wall_time = before;
+    d->foreign = false;
     d->last_checkpoint = sf_clock();
     d->next_checkpoint = d->s->time + d->run->checkpoint_time;
     return err->status;
 }
 
+/* The first one early, and the next ones when twice as much has been computed again: a run that is killed
+ * over and over keeps at least a third of what it computes each time, and short runs write few. */
 static bool checkpoint_is_due(const drop *d) {
+    double interval =
+        fmin(d->run->checkpoint_wall, fmax(FIRST_CHECKPOINT, 2 * (d->last_checkpoint - d->start)));
     return d->run->checkpoints && !d->replay &&
-           (d->s->time >= d->next_checkpoint || sf_clock() - d->last_checkpoint >= d->run->checkpoint_wall);
+           (d->s->time >= d->next_checkpoint || sf_clock() - d->last_checkpoint >= interval);
 }
 
 /* A new step: forces, a row of history, the fields at the peak and a frame if they are due. */
@@ -87,7 +104,7 @@ static sf_status take_step(drop *d, sf_error *err) {
         return SF_OK;
     if (sf_output_frame(d->out, d->m, d->op, d->s, d->r.frames - 1, err) != SF_OK)
         return err->status;
-    return publish(d, err);
+    return publish_if_due(d, err);
 }
 
 /* How the run ends with the present step, or NULL. */
@@ -113,7 +130,7 @@ static sf_status run_steps(drop *d, bool taken, sf_error *err) {
             return SF_OK;
         }
         if (checkpoint_is_due(d) && save(d, err) == SF_OK)
-            publish(d, err);
+            publish_if_due(d, err);
         if (err->status != SF_OK)
             return err->status;
         sf_step_advance(d->m, d->s);
@@ -199,6 +216,36 @@ static void resume_rebounded(drop *d) {
                 1e3 * d->s->time);
 }
 
+/* Everything anew at t = 0, in place of a checkpoint that cannot be used: of its recorder only what is told
+ * of the run as a whole remains. */
+static sf_status start_anew(drop *d, const char *why, sf_error *err) {
+    const sf_recorder old = d->r;
+    sf_sink_tell(d->run->sink, SF_WARNING, "%s: the run starts from the beginning", why);
+    sf_recorder_free(&d->r);
+    sf_state_free(d->s);
+    d->foreign = true;
+    if (sf_state_create(d->m, d->s, err) != SF_OK || load(d, NULL, err) != SF_OK)
+        return err->status;
+    d->r.restarts = old.restarts;
+    d->r.wall_time = old.wall_time;
+    d->r.past_rebound = old.past_rebound;
+    return SF_OK;
+}
+
+/* Where the run begins; `*taken`: with a step that has been taken. */
+static sf_status begin(drop *d, const sf_checkpoint *from, bool *taken, sf_error *err) {
+    sf_error lost = SF_ERROR_INIT;
+    *taken = from != NULL;
+    if (load(d, from, err) != SF_OK)
+        return err->status;
+    if (from)
+        resume_rebounded(d);
+    if (sf_output_recover(d->out, d->r.frames, &lost) == SF_OK)
+        return SF_OK;
+    *taken = false;
+    return start_anew(d, lost.text, err);
+}
+
 /* After a failure: repeats the steps up to the last valid one, for a checkpoint there. */
 static sf_status replay(drop *d, sf_error *err) {
     sf_checkpoint last = {0};
@@ -206,7 +253,7 @@ static sf_status replay(drop *d, sf_error *err) {
     d->replay = true;
     if (d->last_step < 0)
         return SF_OK;
-    bool there = access(d->out->checkpoint, F_OK) == 0;
+    bool there = !d->foreign && access(d->out->checkpoint, F_OK) == 0;
     if (there && sf_checkpoint_open(d->out->checkpoint, &last, err) != SF_OK)
         return err->status;
     sf_recorder_free(&d->r);
@@ -242,13 +289,12 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     drop d = {.m = m, .op = op, .s = s, .run = run, .out = out, .start = sf_clock(), .left = INFINITY};
     sf_error late = SF_ERROR_INIT;
     d.last_checkpoint = d.start;
+    bool taken = false;
     run->ending = "failed";
-    if (load(&d, from, err) == SF_OK && sf_output_recover(out, d.r.frames, err) == SF_OK) {
-        if (from)
-            resume_rebounded(&d);
+    if (begin(&d, from, &taken, err) == SF_OK) {
         d.next_checkpoint = s->time + run->checkpoint_time;
         d.r.restarts += from != NULL;
-        run_steps(&d, from != NULL, err);
+        run_steps(&d, taken, err);
     }
     run->wall_time = d.r.wall_time + sf_clock() - d.start;
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC)

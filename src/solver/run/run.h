@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/model.h"
+#include "core/sink.h"
 #include "solver/run/checkpoint.h"
 #include "solver/operators.h"
 #include "solver/run/output.h"
@@ -18,10 +19,11 @@
 typedef struct sf_run {
     const volatile sig_atomic_t *stop; /* non-zero asks the run to end after the present step; borrowed */
     FILE *log;                         /* progress; borrowed */
+    const sf_sink *sink;               /* warnings; borrowed; NULL: none */
     bool terminal;                     /* progress as one line rewritten in place */
     int threads;
     bool checkpoints;                /* write them? */
-    double checkpoint_wall;          /* s of wall time between two */
+    double checkpoint_wall;          /* s of wall time between two, at most */
     double checkpoint_time;          /* s of simulated time between two */
     const sf_provenance *provenance; /* of the checkpoints; borrowed */
     bool to_end_time;                /* resumed after its rebound, a run goes on to the end time */
@@ -34,7 +36,8 @@ typedef struct sf_run {
 } sf_run;
 
 /* Runs `state` to the end, from the beginning or from `checkpoint` (NULL: none) with a `state` freshly
- * created. `output` is open and has its base. On a numerical failure or an interruption everything up to the
+ * created. `output` is open and has its base. If a frame of the run so far is lost, the run starts from the
+ * beginning with a warning. On a numerical failure or an interruption everything up to the
  * last step is written, with a last frame, and the status says so. After a failure `state` and the checkpoint
  * are those of the last valid step. When a file cannot be written the folder of `output` stays, and the last
  * checkpoint with it. */
