@@ -2,6 +2,7 @@
 /* What an HDF5 file of a stranger may hold beside damage: claims of any size, links and data that lead to
  * other files, compressed bombs, texts that are arrays. None is followed, none is allocated. */
 #include "io/h5.h"
+#include "io/seal.h"
 #include "program_fixture.h"
 
 #include <hdf5.h>
@@ -174,6 +175,12 @@ static hid_t create_part(const program_place *p) {
     return file;
 }
 
+static void close_part(const program_place *p, hid_t part) {
+    sf_error err = SF_ERROR_INIT;
+    H5Fclose(part);
+    assert_int_equal(sf_seal_add(program_path(p, "r.h5.run/part.h5"), &err), SF_OK);
+}
+
 static void link_to_part(const program_place *p, const char *target) {
     hid_t file = create(p, "r.h5"), links = H5Pcreate(H5P_LINK_CREATE);
     H5Pset_create_intermediate_group(links, 1);
@@ -233,32 +240,34 @@ static void links_lead_one_deep_into_the_own_folder(void **state) {
 
     hid_t part = create_part(p);
     add_numbers(part, "frames/a", H5P_DEFAULT);
-    H5Fclose(part);
+    close_part(p, part);
     link_to_part(p, "r.h5.run/part.h5");
     assert_null(read_linked(p, "/frames/a"));
+    program_shell(p, "truncate -s -1 r.h5.run/part.h5");
+    assert_non_null(strstr(read_linked(p, "/frames/a"), "that holds /frames/a is damaged"));
 
     part = create_part(p); /* the object is a link itself */
     H5Lcreate_external("../secret.h5", "/frames/a", part, "frames/a", H5P_DEFAULT, H5P_DEFAULT);
-    H5Fclose(part);
+    close_part(p, part);
     assert_not_followed(p, "/frames/a");
 
     part = create_part(p); /* into the folder once more: two deep */
     H5Lcreate_external("r.h5.run/part.h5", "/frames/a", part, "frames/a", H5P_DEFAULT, H5P_DEFAULT);
-    H5Fclose(part);
+    close_part(p, part);
     program_shell(p, "mkdir r.h5.run/r.h5.run; cp secret.h5 r.h5.run/r.h5.run/part.h5");
     assert_not_followed(p, "/frames/a");
 
     part = create_part(p);
     add_numbers(part, "real", H5P_DEFAULT);
     H5Lcreate_soft("/real", part, "frames/a", H5P_DEFAULT, H5P_DEFAULT);
-    H5Fclose(part);
+    close_part(p, part);
     assert_not_followed(p, "/frames/a");
 
     part = create_part(p); /* a member of the group */
     group = H5Gcreate2(part, "frames/a", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     H5Lcreate_external("../secret.h5", "/frames/a", group, "values", H5P_DEFAULT, H5P_DEFAULT);
     H5Gclose(group);
-    H5Fclose(part);
+    close_part(p, part);
     assert_not_followed(p, "/frames/a/values");
 }
 
@@ -268,7 +277,7 @@ static void names_of_links_lead_nowhere_else(void **state) {
                                           "../secret.h5",          "secret.h5",
                                           "/r.h5.run/part.h5",     "x.h5.run/secret.h5"};
     const program_place *p = *state;
-    H5Fclose(create_part(p));
+    close_part(p, create_part(p));
     program_shell(p, "mkdir -p r.h5.run/sub x.h5.run; cp secret.h5 r.h5.run/sub; cp secret.h5 x.h5.run");
     for (size_t k = 0; k < sizeof targets / sizeof targets[0]; k++) {
         link_to_part(p, targets[k]);
@@ -312,7 +321,7 @@ static void data_of_a_linked_file_are_its_own(void **state) {
             H5Dcreate2(part, "frames/a", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
         assert_true(set >= 0);
         H5Dclose(set);
-        H5Fclose(part);
+        close_part(p, part);
         H5Sclose(space);
         H5Pclose(creation);
         link_to_part(p, "r.h5.run/part.h5");
@@ -326,7 +335,7 @@ static void a_file_without_a_folder_has_no_links(void **state) {
     sf_error err = SF_ERROR_INIT;
     hid_t part = create_part(p);
     add_numbers(part, "frames/a", H5P_DEFAULT);
-    H5Fclose(part);
+    close_part(p, part);
     link_to_part(p, "r.h5.run/part.h5");
     assert_int_equal(sf_h5_open_alone(program_path(p, "r.h5"), &file, &err), SF_OK);
     assert_false(sf_h5_exists(file, "/frames/a"));
