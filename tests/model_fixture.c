@@ -173,6 +173,53 @@ void fixture_block_mesh(const fixture_block *b, sf_mesh *mesh) {
     add_set(mesh, 4, "plane_y", 2, false, true, b);
 }
 
+static void join_set(sf_node_set *set, int32_t node) {
+    for (int64_t k = 0; k < set->count; k++)
+        if (set->node[k] == node)
+            return;
+    set->node[set->count++] = node;
+}
+
+/* Appends a copy of `node`, `width` further, to the mesh and to the sets that hold the node. */
+static int32_t double_node(sf_mesh *mesh, int32_t node, double width) {
+    int32_t copy = (int32_t)mesh->node_count++;
+    memcpy(&mesh->position[3 * (int64_t)copy], &mesh->position[3 * (int64_t)node], 3 * sizeof(double));
+    mesh->position[3 * (int64_t)copy] += width;
+    for (int g = 0; g < mesh->set_count; g++)
+        for (int64_t k = mesh->set[g].count - 1; k >= 0; k--)
+            if (mesh->set[g].node[k] == node)
+                join_set(&mesh->set[g], copy);
+    return copy;
+}
+
+void fixture_open_slit(const fixture_block *b, int column, int tip, double width, sf_mesh *mesh) {
+    int64_t first = mesh->node_count, most = 2 * first;
+    int32_t *twin = allocate((size_t)first, sizeof *twin);
+    double *position = allocate(3 * (size_t)most, sizeof *position);
+    memcpy(position, mesh->position, 3 * (size_t)first * sizeof *position);
+    free(mesh->position);
+    mesh->position = position;
+    for (int g = 0; g < mesh->set_count; g++) {
+        int32_t *node = allocate((size_t)most, sizeof *node);
+        memcpy(node, mesh->set[g].node, (size_t)mesh->set[g].count * sizeof *node);
+        free(mesh->set[g].node);
+        mesh->set[g].node = node;
+    }
+    sf_node_set *sides = &mesh->set[2];
+    for (int k = tip < 0 ? 0 : tip; k <= b->cells[2]; k++)
+        for (int j = 0; j <= b->cells[1]; j++) {
+            int32_t node = lattice(b, column, j, k);
+            join_set(sides, node);
+            twin[node] = k > tip ? double_node(mesh, node, width) : 0;
+        }
+    for (int64_t cell = 0; cell < mesh->cell_count; cell++)
+        for (int v = 0; cell % b->cells[0] >= column && v < 8; v++) {
+            int32_t *node = &mesh->cell_node[8 * cell + v];
+            *node = twin[*node] ? twin[*node] : *node;
+        }
+    free(twin);
+}
+
 void fixture_plate(double side, double x, double y, sf_surface *s) {
     static const int32_t triangle[6] = {0, 2, 1, 0, 3, 2};
     *s = (sf_surface){.node_count = 4, .triangle_count = 2};
@@ -234,15 +281,19 @@ void fixture_pad(const char *const *overrides, fixture *out) {
     fixture_build(&c, &mesh, &surface, out);
 }
 
-void fixture_held_block(const fixture_block *block, fixture *out) {
+void fixture_hold_mesh(sf_mesh *mesh, fixture *out) {
     sf_case c;
-    sf_mesh mesh;
     sf_surface surface;
     fixture_case(&c, NULL);
     fixture_hold(&c, (const char *const[]){"base", "top", "sides", NULL});
-    fixture_block_mesh(block, &mesh);
     fixture_plate(1, 0, 0, &surface);
-    fixture_build(&c, &mesh, &surface, out);
+    fixture_build(&c, mesh, &surface, out);
+}
+
+void fixture_held_block(const fixture_block *block, fixture *out) {
+    sf_mesh mesh;
+    fixture_block_mesh(block, &mesh);
+    fixture_hold_mesh(&mesh, out);
 }
 
 void fixture_start(fixture *f) {

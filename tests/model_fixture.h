@@ -50,6 +50,9 @@ void fixture_hold(sf_case *c, const char *const *names);
 /* Pad and missile surface of the case's geometry. */
 void fixture_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface);
 void fixture_block_mesh(const fixture_block *block, sf_mesh *mesh);
+/* Parts a block at its lattice plane x = `column` above the layer `tip` of nodes (-1: altogether): the nodes
+ * there are doubled, those of the right side shifted by `width` (m), and all of them join the set "sides". */
+void fixture_open_slit(const fixture_block *block, int column, int tip, double width, sf_mesh *mesh);
 /* A square plate facing down, side `side` (m), its centre over (x, y). */
 void fixture_plate(double side, double x, double y, sf_surface *surface);
 /* The lower half of a sphere, its pole over (x, y), in `rings` rings of triangles with their vertices on the
@@ -63,6 +66,8 @@ void fixture_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, fixture *out)
 void fixture_pad(const char *const *overrides, fixture *out);
 /* A block under a plate, all its surface held. */
 void fixture_held_block(const fixture_block *block, fixture *out);
+/* The same of a mesh made from a block; it is released. */
+void fixture_hold_mesh(sf_mesh *mesh, fixture *out);
 /* Operators and a fresh state; may be called again after a change of the model. */
 void fixture_start(fixture *f);
 void fixture_free(fixture *f);

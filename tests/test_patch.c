@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Patch tests of the smoothed Galerkin method on a jittered block and on the real pad with its hexahedra,
- * pyramids and tetrahedra: exact affine fields, exact equilibrium with held u_h, invariance under rigid
- * motion, momentum. */
+/* Patch tests of the smoothed Galerkin method on a jittered block, on one with a slit and on the real pad
+ * with its hexahedra, pyramids and tetrahedra: exact affine fields, exact equilibrium with held u_h,
+ * invariance under rigid motion, momentum. */
 #include "extreme.h"
 #include "model_fixture.h"
 
@@ -21,13 +21,19 @@ static const double GRADIENT[9] = {0.06, -0.11, 0.04, 0.09, -0.05, 0.13, -0.07, 
 static const double SHIFT[3] = {0.013, -0.004, 0.021};
 static const double STILL[3] = {0, 0, 0};
 
-enum { BLOCK, PAD, MODELS };
+enum { BLOCK, PAD, SLIT, MODELS };
 
-/* Both models, every node of the surface held. */
+/* All models, every node of the surface held. */
 static int set_up(void **state) {
     fixture *f = calloc(MODELS, sizeof *f);
     const fixture_block block = {.cells = {6, 5, 5}, .spacing = 0.01, .jitter = 0.25, .surface_jitter = 0.2};
     fixture_held_block(&block, &f[BLOCK]);
+    const fixture_block parted = {
+        .cells = {8, 5, 7}, .spacing = 0.01, .jitter = 0.15, .surface_jitter = 0.15};
+    sf_mesh slit;
+    fixture_block_mesh(&parted, &slit);
+    fixture_open_slit(&parted, 4, 2, 0.004, &slit);
+    fixture_hold_mesh(&slit, &f[SLIT]);
 
     sf_case c;
     sf_mesh mesh;

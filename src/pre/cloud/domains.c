@@ -3,6 +3,7 @@
 
 #include "pre/cloud/mls.h"
 #include "pre/cloud/neighbours.h"
+#include "pre/cloud/visibility.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -24,6 +25,9 @@ typedef struct builder {
     const sf_dual *dual;
     sf_mls_cloud cloud;
     sf_grid grid;
+    double *edge_reach; /* [edges] m, farthest point of integration on the facets from the edge's midpoint */
+    double *reach;      /* [nodes] m, the same from a node, of all its edges */
+    sf_hidden *hidden;  /* [nodes] with the present supports */
     double condition_limit;
     edge_integral *edge; /* [edges] */
     uint8_t *poor;       /* [nodes] 1: support must grow */
@@ -61,22 +65,47 @@ static void mark_around(const builder *b, int32_t node) {
     }
 }
 
-static int64_t edge_candidates(const builder *b, workspace *w, int64_t e) {
-    double middle[3], reach = 0;
+static double distance(const double a[3], const double b[3]) {
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+static void edge_middle(const builder *b, int64_t e, double middle[3]) {
     for (int k = 0; k < 3; k++)
         middle[k] = 0.5 * (b->mesh->position[3 * b->dual->edge[2 * e] + k] +
                            b->mesh->position[3 * b->dual->edge[2 * e + 1] + k]);
-    for (int64_t u = b->dual->use_ptr[e]; u < b->dual->use_ptr[e + 1]; u++) {
-        sf_facet_triangle t[2];
-        sf_dual_facet(b->mesh, &b->dual->use[u], t);
-        for (int s = 0; s < 2; s++) {
-            double *c = t[s].centroid;
-            reach = fmax(reach, sqrt((c[0] - middle[0]) * (c[0] - middle[0]) +
-                                     (c[1] - middle[1]) * (c[1] - middle[1]) +
-                                     (c[2] - middle[2]) * (c[2] - middle[2])));
+}
+
+static void measure_reach(builder *b) {
+#pragma omp parallel for schedule(static)
+    for (int64_t e = 0; e < b->dual->edge_count; e++) {
+        double middle[3];
+        edge_middle(b, e, middle);
+        for (int64_t u = b->dual->use_ptr[e]; u < b->dual->use_ptr[e + 1]; u++) {
+            sf_facet_triangle t[2];
+            sf_dual_facet(b->mesh, &b->dual->use[u], t);
+            for (int s = 0; s < 2; s++)
+                b->edge_reach[e] = fmax(b->edge_reach[e], distance(t[s].centroid, middle));
         }
+        b->edge_reach[e] *= 1 + 1e-12;
     }
-    return sf_grid_query(&b->grid, middle, reach * (1 + 1e-12), SF_MLS_MAX_NODES, w->candidate);
+    for (int64_t e = 0; e < b->dual->edge_count; e++) {
+        const int32_t *end = &b->dual->edge[2 * e];
+        double half =
+            0.5 * distance(&b->mesh->position[3 * (int64_t)end[0]], &b->mesh->position[3 * (int64_t)end[1]]);
+        for (int k = 0; k < 2; k++)
+            b->reach[end[k]] = fmax(b->reach[end[k]], (b->edge_reach[e] + half) * (1 + 1e-12));
+    }
+}
+
+/* The nodes that reach the facets of an edge and that both its ends see. */
+static int64_t edge_candidates(const builder *b, workspace *w, int64_t e) {
+    double middle[3];
+    edge_middle(b, e, middle);
+    int64_t count = sf_grid_query(&b->grid, middle, b->edge_reach[e], SF_MLS_MAX_NODES, w->candidate);
+    for (int k = 0; k < 2 && count <= SF_MLS_MAX_NODES; k++)
+        count = sf_visibility_filter(&b->hidden[b->dual->edge[2 * e + k]], count, w->candidate);
+    return count;
 }
 
 static void store_edge(workspace *w, int64_t count, edge_integral *edge) {
@@ -137,7 +166,8 @@ static void integrate_edge(const builder *b, workspace *w, int64_t e) {
 static bool evaluate_node(const builder *b, workspace *w, int64_t i) {
     const double *x = &b->mesh->position[3 * i];
     int64_t count = sf_grid_query(&b->grid, x, 0, SF_MLS_MAX_NODES, w->candidate);
-    return count <= SF_MLS_MAX_NODES && evaluate(b, w, x, count);
+    return count <= SF_MLS_MAX_NODES &&
+           evaluate(b, w, x, sf_visibility_filter(&b->hidden[i], count, w->candidate));
 }
 
 static void clear_edges(const builder *b) {
@@ -185,6 +215,16 @@ static bool integrate_all(builder *b, sf_error *err) {
     return false;
 }
 
+/* Grid and visibility for the present supports. */
+static sf_status look_around(builder *b, const double *support, sf_error *err) {
+    sf_visibility_free(b->hidden, b->mesh->node_count);
+    b->hidden = NULL;
+    sf_grid_free(&b->grid);
+    if (sf_grid_build(&b->grid, b->mesh->node_count, b->mesh->position, support, err) == SF_OK)
+        b->hidden = sf_visibility_build(b->mesh, b->dual, &b->grid, b->reach, err);
+    return err->status;
+}
+
 static sf_status integrate_with_growth(builder *b, double *support, sf_error *err) {
     const double *first = NULL;
     int64_t n = b->mesh->node_count;
@@ -195,10 +235,9 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
     first = start;
     for (int round = 0;; round++) {
         memset(b->poor, 0, (size_t)n);
-        if (sf_grid_build(&b->grid, n, b->mesh->position, support, err) != SF_OK)
+        if (look_around(b, support, err) != SF_OK)
             break;
         bool again = integrate_all(b, err);
-        sf_grid_free(&b->grid);
         if (err->status != SF_OK || !again)
             break;
         clear_edges(b);
@@ -227,8 +266,8 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
     return err->status;
 }
 
-/* phi at every node. */
-static sf_status shape_at_nodes(builder *b, const double *support, sf_error *err) {
+/* phi at every node, with the last supports. */
+static sf_status shape_at_nodes(builder *b, sf_error *err) {
     int64_t n = b->mesh->node_count, capacity = 64 * n, used = 0;
     sf_domains *out = b->out;
     workspace *w = calloc(1, sizeof *w);
@@ -237,8 +276,6 @@ static sf_status shape_at_nodes(builder *b, const double *support, sf_error *err
     out->phi_value = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_value, "shape functions");
     if (!w)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the shape functions at the nodes");
-    if (err->status == SF_OK)
-        sf_grid_build(&b->grid, n, b->mesh->position, support, err);
     for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
         if (!evaluate_node(b, w, i)) /* integrate_all found it good with the same supports */
             SF_FAIL(err, SF_ERR_MODEL, "the shape functions at node %lld cannot be evaluated", (long long)i);
@@ -255,7 +292,6 @@ static sf_status shape_at_nodes(builder *b, const double *support, sf_error *err
     }
     if (w)
         merge_worst(out, w);
-    sf_grid_free(&b->grid);
     free(w);
     return err->status;
 }
@@ -406,13 +442,21 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
                  .out = out};
     b.edge = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge, "edge integrals");
     b.poor = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.poor, "node marks");
+    b.edge_reach = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge_reach, "reaches");
+    b.reach = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.reach, "reaches");
+    if (err->status == SF_OK)
+        measure_reach(&b);
     if (err->status == SF_OK && integrate_with_growth(&b, support, err) == SF_OK &&
-        shape_at_nodes(&b, support, err) == SF_OK)
+        shape_at_nodes(&b, err) == SF_OK)
         assemble_rows(&b, err);
     if (b.edge)
         clear_edges(&b);
+    sf_visibility_free(b.hidden, mesh->node_count);
+    sf_grid_free(&b.grid);
     free(b.edge);
     free(b.poor);
+    free(b.edge_reach);
+    free(b.reach);
     if (err->status != SF_OK)
         sf_domains_free(out);
     return err->status;

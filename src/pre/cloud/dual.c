@@ -88,11 +88,46 @@ static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
     return err->status;
 }
 
+/* Do both cells see the face with its vertices in the same sense? They then lie on the same side of it. */
+static bool is_same_side(const sf_mesh *mesh, const raw_face *a, const raw_face *b) {
+    const sf_cell_topology *first = sf_cell_topology_of(mesh->cell_type[a->cell]),
+                           *second = sf_cell_topology_of(mesh->cell_type[b->cell]);
+    const int32_t *v = &mesh->cell_node[mesh->cell_ptr[a->cell]],
+                  *w = &mesh->cell_node[mesh->cell_ptr[b->cell]];
+    const int *p = first->face[a->local], *q = second->face[b->local];
+    int size = first->face_size[a->local], k = 0;
+    while (k < size - 1 && w[q[k]] != v[p[0]])
+        k++;
+    return w[q[(k + 1) % size]] == v[p[1]];
+}
+
+static void add_boundary(const sf_mesh *mesh, const raw_face *raw, sf_dual *dual) {
+    sf_boundary_face *face = &dual->face[dual->face_count++];
+    const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[raw->cell]);
+    *face =
+        (sf_boundary_face){raw->cell, raw->local, (int8_t)topology->face_size[raw->local], {-1, -1, -1, -1}};
+    for (int p = 0; p < face->size; p++)
+        face->node[p] = mesh->cell_node[mesh->cell_ptr[face->cell] + topology->face[face->local][p]];
+}
+
+static sf_status add_inner(const sf_mesh *mesh, const raw_face *raw, sf_dual *dual, sf_error *err) {
+    sf_inner_face *face = &dual->inner[dual->inner_count++];
+    *face = (sf_inner_face){{raw[0].cell, raw[1].cell}, {raw->key[0], raw->key[1], raw->key[2], raw->key[3]}};
+    if (!is_same_side(mesh, &raw[0], &raw[1]))
+        return SF_OK;
+    const double *x = &mesh->position[3 * (int64_t)raw->key[3]];
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "the pad's cells overlap: two that share a face at (%.4g, %.4g, %.4g) mm lie on the same side of it",
+        1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+}
+
 /* Faces sorted by their vertices: alone = boundary, pairs = interior. */
 static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t count = count_parts(mesh, false), k = 0;
     raw_face *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell faces");
     dual->face = sf_alloc(err, (unsigned long)count, sizeof *dual->face, "boundary faces");
+    dual->inner = sf_alloc(err, (unsigned long)count / 2, sizeof *dual->inner, "inner faces");
     if (err->status != SF_OK) {
         free(raw);
         return err->status;
@@ -108,23 +143,21 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
         }
     }
     qsort(raw, (size_t)count, sizeof *raw, by_face);
-    for (k = 0; k < count;) {
+    for (k = 0; k < count && err->status == SF_OK;) {
         int64_t end = k + 1;
         while (end < count && memcmp(raw[end].key, raw[k].key, sizeof raw[k].key) == 0)
             end++;
         if (end - k > 2) {
-            SF_FAIL(err, SF_ERR_MODEL,
-                    "the mesh has a face that %lld cells share (cells %d, %d, %d): parts overlap",
-                    (long long)(end - k), raw[k].cell, raw[k + 1].cell, raw[k + 2].cell);
-            break;
-        }
-        if (end - k == 1) {
-            sf_boundary_face *face = &dual->face[dual->face_count++];
-            const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[raw[k].cell]);
-            *face = (sf_boundary_face){
-                raw[k].cell, raw[k].local, (int8_t)topology->face_size[raw[k].local], {-1, -1, -1, -1}};
-            for (int p = 0; p < face->size; p++)
-                face->node[p] = mesh->cell_node[mesh->cell_ptr[face->cell] + topology->face[face->local][p]];
+            const double *x = &mesh->position[3 * (int64_t)raw[k].key[3]];
+            SF_FAIL(
+                err, SF_ERR_INPUT,
+                "the pad's cells overlap: %lld of them share one face at (%.4g, %.4g, %.4g) mm; no more than two "
+                "can",
+                (long long)(end - k), 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+        } else if (end - k == 2) {
+            add_inner(mesh, &raw[k], dual, err);
+        } else {
+            add_boundary(mesh, &raw[k], dual);
         }
         k = end;
     }
@@ -169,6 +202,7 @@ void sf_dual_free(sf_dual *dual) {
     free(dual->use_ptr);
     free(dual->use);
     free(dual->face);
+    free(dual->inner);
     free(dual->edge_ptr);
     free(dual->edge_node);
     free(dual->edge_id);

@@ -25,6 +25,12 @@ typedef struct sf_boundary_face {
     int32_t node[4]; /* counter-clockwise seen from outside */
 } sf_boundary_face;
 
+/* A face that two cells share. */
+typedef struct sf_inner_face {
+    int32_t cell[2];
+    int32_t node[4]; /* ascending; the first is -1 for a triangle */
+} sf_inner_face;
+
 typedef struct sf_dual {
     int64_t edge_count;
     int32_t *edge;    /* [edge_count][2] low node, high node; ascending */
@@ -32,9 +38,11 @@ typedef struct sf_dual {
     sf_edge_use *use; /* [..] ascending by cell within an edge */
     int64_t face_count;
     sf_boundary_face *face; /* [face_count] faces that belong to one cell only */
-    int64_t *edge_ptr;      /* [nodes + 1] symmetric adjacency of the edges */
-    int32_t *edge_node;     /* [2 edge_count] node at the other end, ascending within a row */
-    int64_t *edge_id;       /* [2 edge_count] which edge it is */
+    int64_t inner_count;
+    sf_inner_face *inner; /* [inner_count] */
+    int64_t *edge_ptr;    /* [nodes + 1] symmetric adjacency of the edges */
+    int32_t *edge_node;   /* [2 edge_count] node at the other end, ascending within a row */
+    int64_t *edge_id;     /* [2 edge_count] which edge it is */
 } sf_dual;
 
 /* Builds the dual of a mesh; refuses a face shared by more than two cells or seen from the same side by both.

@@ -62,8 +62,8 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
-                      int32_t *out) {
+int64_t sf_grid_gather(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
+                       int32_t *out) {
     int64_t found = 0, low[3], high[3];
     for (int c = 0; c < 3; c++) {
         low[c] = bin_of(grid, c, centre[c] - radius - grid->width);
@@ -84,6 +84,12 @@ int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius
                 found++;
             }
         }
+    return found;
+}
+
+int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
+                      int32_t *out) {
+    int64_t found = sf_grid_gather(grid, centre, radius, limit, out);
     qsort(out, (size_t)(found < limit ? found : limit), sizeof *out, by_value);
     return found;
 }

@@ -25,5 +25,8 @@ void sf_grid_free(sf_grid *grid);
  * are (more than `limit` means that `out` holds only the first ones found). */
 int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
                       int32_t *out);
+/* The same in the order of the bins. */
+int64_t sf_grid_gather(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
+                       int32_t *out);
 
 #endif

@@ -203,9 +203,11 @@ static sf_status check_coinciding(const sf_mesh *mesh, const double low[3], cons
             const double *x = mesh->position + 3 * order[a].node, *y = mesh->position + 3 * order[b].node;
             if (hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]) > tolerance)
                 continue;
-            SF_FAIL(err, SF_ERR_MODEL,
-                    "nodes %lld and %lld coincide at (%g, %g, %g) m: the parts of the mesh are not joined",
-                    (long long)order[a].node, (long long)order[b].node, x[0], x[1], x[2]);
+            SF_FAIL(
+                err, SF_ERR_MODEL,
+                "nodes %lld and %lld coincide at (%g, %g, %g) m: the parts of the mesh are not joined: fuse "
+                "the volumes (in gmsh BooleanFragments or Coherence)",
+                (long long)order[a].node, (long long)order[b].node, x[0], x[1], x[2]);
             break;
         }
     }

@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/cloud/connectivity.h"
+
+#include "core/mat3.h"
+#include "pre/cloud/neighbours.h"
+#include "pre/mesh/cell_topology.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#define ADVICE                                                                                                 \
+    "fuse the volumes, so that their meshes share nodes and faces (in gmsh BooleanUnion, BooleanFragments or " \
+    "Coherence)"
+
+static double distance(const double a[3], const double b[3]) {
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+static void mean_of(const sf_mesh *mesh, const int32_t *node, int64_t count, double out[3]) {
+    out[0] = out[1] = out[2] = 0;
+    for (int64_t k = 0; k < count; k++)
+        for (int c = 0; c < 3; c++)
+            out[c] += mesh->position[3 * (int64_t)node[k] + c] / (double)count;
+}
+
+static void cell_centre(const sf_mesh *mesh, int64_t cell, double out[3]) {
+    mean_of(mesh, &mesh->cell_node[mesh->cell_ptr[cell]], mesh->cell_ptr[cell + 1] - mesh->cell_ptr[cell],
+            out);
+}
+
+/* ---- cells in each other ---- */
+
+/* A point is inside from this share of the way from a cell's face to its centre on. */
+static const double DEPTH = 1e-2;
+
+/* Points on the surface: the nodes, then the middles of the faces. */
+typedef struct probes {
+    int64_t nodes, count;
+    int32_t *node;    /* [nodes] which node it is */
+    double *position; /* [count][3] m */
+    double *zero;     /* [count] radii for the grid */
+    int32_t *near;    /* [count] those near a cell */
+} probes;
+
+static void free_probes(probes *p) {
+    free(p->node);
+    free(p->position);
+    free(p->zero);
+    free(p->near);
+}
+
+static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p, sf_error *err) {
+    unsigned long most = (unsigned long)(mesh->node_count + dual->face_count);
+    uint8_t *surface = sf_alloc(err, (unsigned long)mesh->node_count, 1, "surface nodes");
+    p->node = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *p->node, "surface nodes");
+    p->position = sf_alloc(err, 3 * most, sizeof *p->position, "surface points");
+    p->zero = sf_alloc(err, most, sizeof *p->zero, "surface points");
+    p->near = sf_alloc(err, most, sizeof *p->near, "surface points");
+    if (err->status != SF_OK)
+        goto done;
+    for (int64_t f = 0; f < dual->face_count; f++)
+        for (int k = 0; k < dual->face[f].size; k++)
+            surface[dual->face[f].node[k]] = 1;
+    for (int32_t i = 0; i < mesh->node_count; i++)
+        if (surface[i])
+            p->node[p->nodes++] = i;
+    for (; p->count < p->nodes; p->count++)
+        mean_of(mesh, &p->node[p->count], 1, &p->position[3 * p->count]);
+    for (int64_t f = 0; f < dual->face_count; f++, p->count++)
+        mean_of(mesh, dual->face[f].node, dual->face[f].size, &p->position[3 * p->count]);
+done:
+    free(surface);
+    return err->status;
+}
+
+/* Is the point r inside the tetrahedron of the origin and a, b, c, and not too near the face a b c? */
+static bool is_within(const double r[3], const double a[3], const double b[3], const double c[3]) {
+    static const double EDGE = -1e-9;
+    double volume = sf_triple3(a, b, c), u = sf_triple3(r, b, c) / volume, v = sf_triple3(a, r, c) / volume,
+           w = sf_triple3(a, b, r) / volume;
+    return u >= EDGE && v >= EDGE && w >= EDGE && 1 - u - v - w >= DEPTH;
+}
+
+/* The cell as tetrahedra from its centre to its faces; quadrangles are split at their middles. */
+static bool holds_point(const sf_mesh *mesh, int64_t cell, const double centre[3], const double x[3]) {
+    const sf_cell_topology *shape = sf_cell_topology_of(mesh->cell_type[cell]);
+    const int32_t *node = &mesh->cell_node[mesh->cell_ptr[cell]];
+    double r[3], v[8][3], middle[3];
+    for (int c = 0; c < 3; c++) {
+        r[c] = x[c] - centre[c];
+        for (int k = 0; k < shape->vertices; k++)
+            v[k][c] = mesh->position[3 * (int64_t)node[k] + c] - centre[c];
+    }
+    for (int f = 0; f < shape->faces; f++) {
+        const int *p = shape->face[f];
+        if (shape->face_size[f] == 3 && is_within(r, v[p[0]], v[p[1]], v[p[2]]))
+            return true;
+        if (shape->face_size[f] == 3)
+            continue;
+        for (int c = 0; c < 3; c++)
+            middle[c] = 0.25 * (v[p[0]][c] + v[p[1]][c] + v[p[2]][c] + v[p[3]][c]);
+        for (int k = 0; k < 4; k++)
+            if (is_within(r, middle, v[p[k]], v[p[(k + 1) % 4]]))
+                return true;
+    }
+    return false;
+}
+
+static bool has_node(const sf_mesh *mesh, int64_t cell, int32_t node) {
+    for (int64_t k = mesh->cell_ptr[cell]; k < mesh->cell_ptr[cell + 1]; k++)
+        if (mesh->cell_node[k] == node)
+            return true;
+    return false;
+}
+
+static sf_status check_cell(const sf_mesh *mesh, const sf_grid *grid, const probes *p, int64_t cell,
+                            sf_error *err) {
+    double centre[3], radius = 0;
+    cell_centre(mesh, cell, centre);
+    for (int64_t k = mesh->cell_ptr[cell]; k < mesh->cell_ptr[cell + 1]; k++)
+        radius = fmax(radius, distance(&mesh->position[3 * (int64_t)mesh->cell_node[k]], centre));
+    int64_t count = sf_grid_gather(grid, centre, (1 - DEPTH) * radius, p->count, p->near);
+    for (int64_t k = 0; k < count; k++) {
+        int32_t probe = p->near[k];
+        const double *x = &p->position[3 * (int64_t)probe];
+        if ((probe < p->nodes && has_node(mesh, cell, p->node[probe])) || !holds_point(mesh, cell, centre, x))
+            continue;
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the pad overlaps itself: its surface at (%.4g, %.4g, %.4g) mm lies inside the cell at (%.4g, "
+            "%.4g, %.4g) mm: " ADVICE,
+            1e3 * x[0], 1e3 * x[1], 1e3 * x[2], 1e3 * centre[0], 1e3 * centre[1], 1e3 * centre[2]);
+    }
+    return SF_OK;
+}
+
+/* Wherever bodies overlap, the surface of one lies in the other. */
+static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
+    probes p = {0};
+    sf_grid grid = {0};
+    if (take_probes(mesh, dual, &p, err) == SF_OK &&
+        sf_grid_build(&grid, p.count, p.position, p.zero, err) == SF_OK)
+        for (int64_t c = 0; c < mesh->cell_count && err->status == SF_OK; c++)
+            check_cell(mesh, &grid, &p, c, err);
+    sf_grid_free(&grid);
+    free_probes(&p);
+    return err->status;
+}
+
+/* ---- parts ---- */
+
+/* Root of an item; the paths are halved on the way. */
+static int64_t find(int64_t *parent, int64_t item) {
+    while (parent[item] != item)
+        item = parent[item] = parent[parent[item]];
+    return item;
+}
+
+static void join(int64_t *parent, int64_t a, int64_t b) {
+    a = find(parent, a);
+    b = find(parent, b);
+    parent[a < b ? b : a] = a < b ? a : b;
+}
+
+/* [count] each its own root; owned by the caller. */
+static int64_t *start_sets(int64_t count, sf_error *err) {
+    int64_t *parent = sf_alloc(err, (unsigned long)count, sizeof *parent, "connected cells");
+    for (int64_t k = 0; parent && k < count; k++)
+        parent[k] = k;
+    return parent;
+}
+
+/* A node by its place along x. */
+typedef struct placed {
+    double x;
+    int32_t node;
+} placed;
+
+static int by_place(const void *a, const void *b) {
+    const placed *p = a, *q = b;
+    return (p->x > q->x) - (p->x < q->x);
+}
+
+/* Smallest distance (m) between marked nodes and the others. */
+static double nearest(const sf_mesh *mesh, const uint8_t *mark, sf_error *err) {
+    double least = INFINITY;
+    placed *list = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *list, "sorted nodes");
+    for (int32_t i = 0; list && i < mesh->node_count; i++)
+        list[i] = (placed){mesh->position[3 * (int64_t)i], i};
+    if (list)
+        qsort(list, (size_t)mesh->node_count, sizeof *list, by_place);
+    for (int64_t a = 0; list && a < mesh->node_count; a++)
+        for (int64_t b = a + 1; b < mesh->node_count && list[b].x - list[a].x < least; b++)
+            if (mark[list[a].node] != mark[list[b].node])
+                least = fmin(least, distance(&mesh->position[3 * (int64_t)list[a].node],
+                                             &mesh->position[3 * (int64_t)list[b].node]));
+    free(list);
+    return least;
+}
+
+/* The smallest of several parts, with its place. */
+static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *err) {
+    int64_t parts = 0, least = 0;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    int64_t *cells = sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
+    uint8_t *mark = sf_alloc(err, (unsigned long)mesh->node_count, 1, "node marks");
+    if (err->status != SF_OK)
+        goto done;
+    for (int64_t c = 0; c < mesh->cell_count; c++)
+        cells[find(parent, c)]++;
+    for (int64_t c = 0; c < mesh->cell_count; c++) {
+        parts += cells[c] > 0;
+        least = cells[c] > 0 && (cells[least] == 0 || cells[c] <= cells[least]) ? c : least;
+    }
+    for (int64_t c = 0; c < mesh->cell_count; c++)
+        for (int64_t k = mesh->cell_ptr[c]; find(parent, c) == least && k < mesh->cell_ptr[c + 1]; k++) {
+            const double *x = &mesh->position[3 * (int64_t)mesh->cell_node[k]];
+            mark[mesh->cell_node[k]] = 1;
+            for (int i = 0; i < 3; i++) {
+                low[i] = fmin(low[i], 1e3 * x[i]);
+                high[i] = fmax(high[i], 1e3 * x[i]);
+            }
+        }
+    double gap = nearest(mesh, mark, err);
+    if (err->status == SF_OK)
+        SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the pad is in %lld parts that share no faces of cells: the smallest, of %lld cells between (%.4g, "
+            "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm, is %.3g mm from the nearest node of the others: " ADVICE,
+            (long long)parts, (long long)cells[least], low[0], low[1], low[2], high[0], high[1], high[2],
+            1e3 * gap);
+done:
+    free(cells);
+    free(mark);
+    return err->status;
+}
+
+static sf_status check_parts(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
+    int64_t *parent = start_sets(mesh->cell_count, err);
+    if (!parent)
+        return err->status;
+    for (int64_t f = 0; f < dual->inner_count; f++)
+        join(parent, dual->inner[f].cell[0], dual->inner[f].cell[1]);
+    for (int64_t c = 0; c < mesh->cell_count && err->status == SF_OK; c++)
+        if (find(parent, c) != 0)
+            refuse_parts(mesh, parent, err);
+    free(parent);
+    return err->status;
+}
+
+/* Place of a node in the cell's list. */
+static int64_t corner(const sf_mesh *mesh, int64_t cell, int32_t node) {
+    int64_t k = mesh->cell_ptr[cell];
+    while (mesh->cell_node[k] != node)
+        k++;
+    return k;
+}
+
+/* Around every node the corners of cells are joined through the faces: bodies that only touch at a point or
+ * along an edge would be a hinge. */
+static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
+    int64_t corners = mesh->cell_ptr[mesh->cell_count], *parent = start_sets(corners, err);
+    int64_t *root = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *root, "connected cells");
+    if (err->status != SF_OK)
+        goto done;
+    for (int64_t f = 0; f < dual->inner_count; f++)
+        for (int k = 0; k < 4; k++) {
+            const sf_inner_face *face = &dual->inner[f];
+            if (face->node[k] >= 0)
+                join(parent, corner(mesh, face->cell[0], face->node[k]),
+                     corner(mesh, face->cell[1], face->node[k]));
+        }
+    for (int64_t k = 0; k < corners; k++) { /* roots from 1 on */
+        int32_t node = mesh->cell_node[k];
+        const double *x = &mesh->position[3 * (int64_t)node];
+        if (root[node] == 0)
+            root[node] = find(parent, k) + 1;
+        else if (root[node] != find(parent, k) + 1) {
+            SF_FAIL(
+                err, SF_ERR_INPUT,
+                "two regions of the pad hang together at an edge or a point only, at (%.4g, %.4g, %.4g) mm: let "
+                "them share faces of cells, or part them",
+                1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+            break;
+        }
+    }
+done:
+    free(parent);
+    free(root);
+    return err->status;
+}
+
+sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
+    if (check_overlap(mesh, dual, err) != SF_OK || check_parts(mesh, dual, err) != SF_OK)
+        return err->status;
+    return check_hinges(mesh, dual, err);
+}
