@@ -90,6 +90,14 @@ static void overlapping_volumes_are_refused(void **state) {
                    (const char *const[]){"the pad overlaps itself", "lies inside the cell at", NULL});
 }
 
+static void pads_that_are_not_held_are_refused(void **state) {
+    assert_refused(*state, "--set pad.fixed='[]' --set pad.sliding='[\"front\"]'",
+                   (const char *const[]){"pad.sliding", "nothing holds the pad along z", NULL});
+    program_result wall =
+        program_succeed(*state, "pre", "blocks.cfg -o wall.h5 --set pad.fixed='[\"front\"]'");
+    assert_non_null(strstr(wall.err, "% of the nodes of the pad's underside (z = 0 mm) are held along z"));
+}
+
 static void pads_in_one_piece_are_built(void **state) {
     static const int kinds[] = {0, 1, 2, 5, 6};
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
@@ -122,6 +130,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pads_in_parts_are_refused),
         cmocka_unit_test(overlapping_volumes_are_refused),
+        cmocka_unit_test(pads_that_are_not_held_are_refused),
         cmocka_unit_test(pads_in_one_piece_are_built),
         cmocka_unit_test(a_slit_makes_the_pad_softer),
     };

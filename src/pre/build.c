@@ -426,11 +426,14 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     double *contact_area = NULL;
     if (build_cloud(c, mesh, m, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, contact_area, m, report, err) == SF_OK &&
-        build_missile(c, surface, m, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
+        sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, surface, m, err) == SF_OK &&
+        take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
-            measure_step(m, report, err) == SF_OK && check_first_step(m, report->first_step, err) == SF_OK)
+            measure_step(m, report, err) == SF_OK && check_first_step(m, report->first_step, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
+            sf_hold_warn(&report->hold, m, sink);
+        }
     }
     free(contact_area);
     if (err->status != SF_OK)

@@ -9,6 +9,7 @@
 #include "case/case.h"
 #include "pre/cloud/invariants.h"
 #include "pre/mesh/mesh.h"
+#include "pre/hold.h"
 #include "pre/mesh_error.h"
 
 /* Results of the build, for the table that softfall-pre prints. */
@@ -24,6 +25,7 @@ typedef struct sf_build_report {
     double first_step;        /* s, before any safety factor */
     double slowdown;          /* -, first step over the mean one of a compression (estimate_slowdown) */
     bool contact_held;        /* every contact point is held along z: nothing to drop on */
+    sf_hold hold;
     sf_contact_zone zone;
     sf_invariants invariants;
 } sf_build_report;

@@ -26,11 +26,13 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
     sf_surface surface = {0};
     memset(model, 0, sizeof *model);
     if (read_geometry(c, &mesh, &surface, libraries, err) == SF_OK &&
-        sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK && report->contact_held) {
-        SF_FAIL(err, SF_ERR_INPUT,
-                "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or pad.sliding",
-                c->contact_group);
-        sf_model_free(model);
+        sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
+        if (sf_hold_check(&report->hold, err) == SF_OK && report->contact_held)
+            SF_FAIL(err, SF_ERR_INPUT,
+                    "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or pad.sliding",
+                    c->contact_group);
+        if (err->status != SF_OK)
+            sf_model_free(model);
     }
     sf_surface_free(&surface);
     sf_mesh_free(&mesh);

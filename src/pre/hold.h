@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What holds the pad? Its rigid motions that base, anvil and symmetry planes leave free. */
+#ifndef SF_PRE_HOLD_H
+#define SF_PRE_HOLD_H
+
+#include "core/error.h"
+#include "core/model.h"
+#include "core/sink.h"
+
+typedef struct sf_hold {
+    int64_t rows[3];      /* nodes held along x, y and z */
+    bool lifts;           /* some rigid motion with a vertical part is free */
+    bool slides[2];       /* along x, y */
+    bool turns;           /* about a vertical axis */
+    double underside;     /* share of the nodes of the pad's underside that are held along z */
+    double underside_low; /* m, its z */
+} sf_hold;
+
+/* Needs positions and constraints of the model. */
+sf_status sf_hold_find(const sf_model *model, sf_hold *hold, sf_error *err);
+
+/* SF_ERR_INPUT if the pad can be moved vertically or tilted without being deformed. */
+sf_status sf_hold_check(const sf_hold *hold, sf_error *err);
+/* Tells `sink` of an underside that is mostly free, and of a missile that pushes the pad along a free motion.
+ */
+void sf_hold_warn(const sf_hold *hold, const sf_model *model, const sf_sink *sink);
+
+#endif
