@@ -246,6 +246,9 @@ static void frame_before_the_beginning(sf_model *m) {
     assert_int_equal(err.status, SF_OK);
     m->frame_time[0] = -0.001;
 }
+static void frames_without_end(sf_model *m) {
+    m->run.frame_interval = 1e-9;
+}
 static void long_direction(sf_model *m) {
     m->missile.direction[2] = -2;
 }
@@ -332,6 +335,7 @@ static void damaged_models_are_refused_with_what_is_wrong(void **state) {
         {three_planes, "symmetry factor is 3"},
         {held_in_no_direction, "has mask 0"},
         {frame_before_the_beginning, "frame time -0.001 s"},
+        {frames_without_end, "number of frames"},
         {long_direction, "direction"},
         {held_node_out_of_range, "constrained nodes"},
         {contact_nodes_out_of_order, "contact nodes"},

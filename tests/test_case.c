@@ -590,6 +590,12 @@ static void work_does_not_grow_with_what_a_case_asks_for(void **state) {
     write_file("level9.cfg", "\n");
     assert_refused(GOOD "@include \"level0.cfg\"\n", NULL, "more than 200 files are included", NULL);
 
+    assert_refused(
+        "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; parameters = { side = 1e300; }; };\n" MATERIAL
+            MISSILE SOLVER,
+        NULL, "case.cfg:1: geometry.parameters: side = 1e+300 is out of bounds", "between -1e+12 and 1e+12",
+        NULL);
+
     char *many = repeat("u%06d = 1;\n", 70000), *few = repeat("u%d = 1;\n", 700),
          *deep = repeat("x%d: (", 40), *wide = repeat("x = [1,1,1,1,1,1,1,1,1,1 /* %d */ ];\n", 2000);
     assert_refused(many, NULL, "case.cfg:", "more than 20000 names and values", NULL);

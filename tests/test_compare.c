@@ -217,6 +217,33 @@ static void region_outside_the_measurement_is_refused(void **state) {
     sf_series_free(&curve);
 }
 
+/* A last time of 2e12 ms once meant 8e12 samples. */
+static void samples_are_bounded_whatever_the_times(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_fit fit;
+    sf_series measured = half_sine(60, 0.01, 0.015), model = half_sine(60, 0.01, 0.015);
+    measured.time[measured.count - 1] = 2e9;
+    assert_int_equal(sf_compare_fit(&measured, &model, true, 0, (sf_region){0, 1e9}, 0.25e-3, &fit, &err),
+                     SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "the region 0 to 1e+12 ms would be sampled 4e+12 times"));
+    sf_series_free(&measured);
+    sf_series_free(&model);
+}
+
+static void regions_are_bounded(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_region *regions = NULL;
+    int64_t count = 0;
+    char text[101 * 8] = "";
+    for (int k = 0; k < 101; k++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s%d-%d", k ? "," : "", k, k + 1);
+    assert_int_equal(sf_regions_parse(text, &regions, &count, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "101 regions; at most 100"));
+    assert_null(regions);
+}
+
 static void regions_are_parsed_in_ms(void **state) {
     (void)state;
     sf_error err = SF_ERROR_INIT;
@@ -229,7 +256,7 @@ static void regions_are_parsed_in_ms(void **state) {
     free(regions);
     assert_int_equal(sf_region_parse("10.5,25", &window, &err), SF_OK);
     assert_close(window.begin, 0.0105, 1e-15);
-    const char *bad[] = {"", "5", "5-", "10-5", "0-10,", "0-10;10-16", "a-b", "0-nan", "0-10,10"};
+    const char *bad[] = {"", "5", "5-", "10-5", "0-10,", "0-10;10-16", "a-b", "0-nan", "0-10,10", "0x0-0xA"};
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         err = (sf_error)SF_ERROR_INIT;
         assert_int_equal(sf_regions_parse(bad[k], &regions, &count, &err), SF_ERR_INPUT);
@@ -410,6 +437,8 @@ int main(void) {
         cmocka_unit_test(region_beyond_the_model_is_refused_or_counted),
         cmocka_unit_test(still_measurement_has_rmse_but_no_r2),
         cmocka_unit_test(region_outside_the_measurement_is_refused),
+        cmocka_unit_test(samples_are_bounded_whatever_the_times),
+        cmocka_unit_test(regions_are_bounded),
         cmocka_unit_test(regions_are_parsed_in_ms),
         cmocka_unit_test(reference_units_are_taken_from_the_heading),
         cmocka_unit_test(laboratory_forms_are_one_curve),

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAST_STEPS = 3, MOST_FRAMES = 100000, NAMED_UNKNOWN = 10 };
+enum { LEAST_STEPS = 3, NAMED_UNKNOWN = 10 };
 
 /* Names that are not in the table: the first one in full, the next ones in short. */
 typedef struct unknown {
@@ -224,12 +224,12 @@ static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
                        "%s: solver.step_limit: %g s is below %g of solver.end_time (%g s), where a run stops",
                        sf_case_where_is(reader, "solver.step_limit", where), run->step_limit,
                        SF_SMALLEST_STEP, run->end_time);
-    if (run->end_time / run->frame_interval > MOST_FRAMES)
+    if (run->end_time / run->frame_interval > SF_MOST_FRAMES)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: output.frame_interval: %g s up to solver.end_time (%g s) means %.3g frames; at "
                        "most %d are written",
                        sf_case_where_is(reader, "output.frame_interval", where), run->frame_interval,
-                       run->end_time, run->end_time / run->frame_interval, MOST_FRAMES);
+                       run->end_time, run->end_time / run->frame_interval, SF_MOST_FRAMES);
     for (int k = 0; k < c->frame_time_count; k++)
         if (c->frame_time[k] > run->end_time)
             sf_sink_tell(reader->sink, SF_WARNING,

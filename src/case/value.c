@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 enum { KEY_PATH_SIZE = 160 };
+static const double LARGEST_PARAMETER = 1e12; /* of a geometry, in its own unit */
 
 static const char *key_path(const sf_key *key, char *out) {
     snprintf(out, KEY_PATH_SIZE, "%s.%s", key->group, key->name);
@@ -351,6 +352,9 @@ static sf_status read_parameters(sf_case_reader *reader, const sf_key *key, cons
         else
             return FAIL_AT(reader, key, item, err,
                            "\"%s\" is not a finite plain number (in the geometry's own unit)", name);
+        if (fabs(parameter->value) > LARGEST_PARAMETER)
+            return FAIL_AT(reader, key, item, err, "%s = %g is out of bounds; it must be between -%g and %g",
+                           name, parameter->value, LARGEST_PARAMETER, LARGEST_PARAMETER);
     }
     source->parameter_count = count;
     snprintf(detail, size, "-");

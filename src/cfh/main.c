@@ -144,9 +144,8 @@ int main(int argc, char **argv) {
     setting s = {0};
     sf_error err = SF_ERROR_INIT;
     char *command = sf_command_line(argc, argv);
-    sf_error_ignore_closed_pipe();
     sf_process_handle_signals();
-    if (sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)
+    if (sf_program_begin(argv, &err) == SF_OK && sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)
         run(&options, command ? command : "softfall-cfh", &s, &output, &err);
     sf_staging_end(&output);
     free(s.text);

@@ -2,6 +2,7 @@
 #include "cfh/options.h"
 
 #include "build_info.h"
+#include "core/program.h"
 #include "core/units.h"
 #include "post/verdict.h"
 #include <argp.h>
@@ -20,23 +21,6 @@ typedef struct parser_state {
     const char *height, *max_height, *heights; /* texts, read when the units are loaded */
     sf_error *err;
 } parser_state;
-
-static sf_status parse_limit(const char *option, const char *text, double *limit, sf_error *err) {
-    char *end;
-    *limit = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(*limit) || *limit <= 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a positive number", option, text);
-    return SF_OK;
-}
-
-static sf_status parse_threads(const char *text, int *threads, sf_error *err) {
-    char *end;
-    long number = strtol(text, &end, 10);
-    if (end == text || *end != '\0' || number < 1 || number > 1024)
-        return SF_FAIL(err, SF_ERR_INPUT, "--threads takes a number from 1 to 1024, not \"%s\"", text);
-    *threads = (int)number;
-    return SF_OK;
-}
 
 static sf_status add_override(sf_cfh_options *o, const char *text, sf_error *err) {
     static const char speed[] = "missile.velocity";
@@ -61,7 +45,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         o->force = true;
         break;
     case 't':
-        parse_threads(text, &o->threads, p->err);
+        sf_program_read_threads(text, &o->threads, p->err);
         break;
     case KEY_SET:
         add_override(o, text, p->err);
@@ -70,10 +54,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         o->material = text;
         break;
     case KEY_LIMIT_G:
-        parse_limit("--limit-g", text, &o->limit[SF_CFH_A_MAX], p->err);
+        sf_program_read_limit("--limit-g", text, &o->limit[SF_CFH_A_MAX], p->err);
         break;
     case KEY_LIMIT_HIC:
-        parse_limit("--limit-hic", text, &o->limit[SF_CFH_HIC], p->err);
+        sf_program_read_limit("--limit-hic", text, &o->limit[SF_CFH_HIC], p->err);
         break;
     case KEY_HEIGHT:
         p->height = text;

@@ -31,6 +31,8 @@ enum {
 }; /* contact with an exact sphere cap, or with the triangles */
 
 enum { SF_MATERIAL_MAX = 256 };
+/* Frames at equal intervals in one run. */
+enum { SF_MOST_FRAMES = 100000 };
 #define SF_SMALLEST_STEP 1e-9 /* of the end time: a run whose stable step falls below it stops */
 
 typedef struct sf_missile_card {

@@ -122,6 +122,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"stabilisation coefficient", m->run.stabilisation, 0, 10},
         {"energy limit", m->run.energy_limit, 1e-9, 1e9},
         {"frame interval (s)", m->run.frame_interval, 1e-9, 1e3},
+        {"number of frames", m->run.end_time / m->run.frame_interval, 0, SF_MOST_FRAMES},
     };
     for (size_t k = 0; k < sizeof bound / sizeof bound[0]; k++)
         if (check_bound(bound[k].name, bound[k].value, bound[k].low, bound[k].high, err) != SF_OK)

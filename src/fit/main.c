@@ -32,7 +32,9 @@ static void print_usage(FILE *file) {
 
 int main(int argc, char **argv) {
     const char *word = argc > 1 ? argv[1] : "";
-    sf_error_ignore_closed_pipe();
+    sf_error err = SF_ERROR_INIT;
+    if (sf_program_begin(argv, &err) != SF_OK)
+        return sf_error_report(&err, "softfall-fit");
     argp_program_version = "softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")";
     for (int k = 0; k < COMMANDS; k++)
         if (strcmp(word, commands[k].word) == 0)

@@ -1,15 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/compare.h"
 
+#include "core/decimal.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_REGIONS = 100, MOST_SAMPLES = 1000000 /* of one region */ };
+
 /* One number in ms at *text, moved behind it. */
 static int parse_ms(const char **text, double *seconds) {
-    char *end;
-    double value = strtod(*text, &end);
-    if (end == *text || !isfinite(value))
+    double value = 0;
+    const char *end = sf_decimal_read(*text, &value);
+    if (!end || !isfinite(value))
         return 0;
     *seconds = value * 1e-3;
     *text = end;
@@ -36,6 +40,8 @@ sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count
     *count = 0;
     for (const char *c = text; *c; c++)
         most += *c == ',';
+    if (most > MOST_REGIONS)
+        return SF_FAIL(err, SF_ERR_INPUT, "%lu regions; at most %d are compared", most, MOST_REGIONS);
     *regions = sf_alloc(err, most, sizeof **regions, "the regions");
     if (!*regions)
         return err->status;
@@ -139,7 +145,13 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
     if (check_region(measured, model, left, shift, region, err) != SF_OK)
         return err->status;
     double sum = 0, squares = 0, residual = 0, origin = 0, slack = 1e-9;
-    int64_t samples = (int64_t)floor((region.end - region.begin) / interval + slack) + 1;
+    double intervals = floor((region.end - region.begin) / interval + slack);
+    if (!(intervals < MOST_SAMPLES))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the region %g to %g ms would be sampled %.3g times, every %g ms; at most %d are possible",
+            region.begin * 1e3, region.end * 1e3, intervals, interval * 1e3, MOST_SAMPLES);
+    int64_t samples = (int64_t)intervals + 1;
     for (int64_t k = 0; k < samples; k++) {
         double time = region.begin + (double)k * interval;
         double a = sf_series_at(measured, time);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-post RESULTS -o DIR: injury figures, curves, pictures and ParaView files from a results.h5. */
 #include "build_info.h"
+#include "core/decimal.h"
 #include "core/program.h"
 #include "io/provenance.h"
 #include "post/compare.h"
@@ -63,28 +64,19 @@ typedef struct job {
 
 static sf_status parse_filter(const char *option, const char *text, double *cfc, sf_error *err) {
     static const double classes[] = {60, 180, 600, 1000};
-    char *end;
-    *cfc = strtod(text, &end);
+    bool number = sf_decimal_is(text, cfc);
     for (size_t k = 0; k < sizeof classes / sizeof classes[0]; k++)
-        if (end != text && *end == '\0' && *cfc == classes[k])
+        if (number && *cfc == classes[k])
             return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the channel frequency classes are 60, 180, 600 and 1000%s",
                    option, text, strcmp(option, "--filter") == 0 ? "" : " (none: not filtered)");
 }
 
 static sf_status parse_shift(const char *text, double *shift, sf_error *err) {
-    char *end;
-    *shift = strtod(text, &end) * 1e-3;
-    if (end == text || *end != '\0' || !isfinite(*shift))
+    bool number = sf_decimal_is(text, shift);
+    *shift *= 1e-3;
+    if (!number)
         return SF_FAIL(err, SF_ERR_INPUT, "--shift %s: not a time in ms", text);
-    return SF_OK;
-}
-
-static sf_status parse_limit(const char *option, const char *text, double *limit, sf_error *err) {
-    char *end;
-    *limit = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(*limit) || !(*limit > 0))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a positive number", option, text);
     return SF_OK;
 }
 
@@ -101,10 +93,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         o->strict = true;
         break;
     case KEY_LIMIT_G:
-        parse_limit("--limit-g", text, &o->limits.a_max_g, &o->err);
+        sf_program_read_limit("--limit-g", text, &o->limits.a_max_g, &o->err);
         break;
     case KEY_LIMIT_HIC:
-        parse_limit("--limit-hic", text, &o->limits.hic, &o->err);
+        sf_program_read_limit("--limit-hic", text, &o->limits.hic, &o->err);
         break;
     case KEY_FILTER:
         parse_filter("--filter", text, &o->cfc, &o->err);
@@ -323,7 +315,8 @@ int main(int argc, char **argv) {
     options o;
     job j = {0};
     sf_error err = SF_ERROR_INIT;
-    sf_error_ignore_closed_pipe();
+    if (sf_program_begin(argv, &err) != SF_OK)
+        return sf_error_report(&err, "softfall-post");
     if (parse_command(argc, argv, &o) != SF_OK) {
         err = o.err;
     } else {

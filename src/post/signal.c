@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double MOST_SAMPLES = 1e7; /* of a curve: 100 s at 100 kHz */
+
 sf_status sf_series_create(int64_t count, sf_series *series, sf_error *err) {
     *series = (sf_series){0};
     series->time = sf_alloc(err, (unsigned long)count, sizeof(double), "times of a curve");
@@ -100,10 +102,10 @@ sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *un
     double start = series->time[0];
     double span = series->time[series->count - 1] - start;
     double intervals = floor(span * rate * (1 + 1e-12) + 1e-9);
-    if (!(intervals >= 1) || intervals > 1e8)
+    if (!(intervals >= 1) || intervals > MOST_SAMPLES)
         return SF_FAIL(err, SF_ERR_INPUT,
-                       "a curve of %.3g s cannot be sampled at %.3g Hz: 2 to 1e8 samples are possible", span,
-                       rate);
+                       "a curve of %.3g s cannot be sampled at %.3g Hz: 2 to %g samples are possible", span,
+                       rate, MOST_SAMPLES);
     if (sf_series_create((int64_t)intervals + 1, uniform, err) != SF_OK)
         return err->status;
     int64_t segment = 0, last = uniform->count - 1;

@@ -8,6 +8,7 @@
 #include "pre/report.h"
 
 #include <argp.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -97,14 +98,16 @@ int main(int argc, char **argv) {
                                      .doc = "Builds the model of a drop from a case file and its geometry."};
     options o = {0};
     sf_error err = SF_ERROR_INIT;
-    sf_error_ignore_closed_pipe();
+    if (sf_program_begin(argv, &err) != SF_OK)
+        return sf_error_report(&err, "softfall-pre");
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     if (o.keys) {
         sf_case_print_keys(stdout);
         return sf_error_report(&err, "softfall-pre");
     }
     char *command = sf_command_line(argc, argv);
-    build(&o, command ? command : "softfall-pre", &err);
+    if (sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK)
+        build(&o, command ? command : "softfall-pre", &err);
     free(command);
     return sf_error_report(&err, "softfall-pre");
 }

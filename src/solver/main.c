@@ -28,11 +28,14 @@ static void limit_spinning(char **argv) {
 }
 
 int main(int argc, char **argv) {
-    limit_spinning(argv);
     sf_solve_options o;
     sf_error err = SF_ERROR_INIT;
-    sf_error_ignore_closed_pipe();
+    if (sf_program_begin(argv, &err) != SF_OK)
+        return sf_error_report(&err, "softfall-solve");
+    limit_spinning(argv);
     sf_solve_options_parse(argc, argv, &o);
+    if (sf_program_try_threads(o.threads, &err) != SF_OK)
+        return sf_error_report(&err, "softfall-solve");
     omp_set_num_threads(o.threads);
     struct sigaction action = {.sa_handler = request_stop};
     sigaction(SIGINT, &action, NULL);

@@ -21,7 +21,7 @@ typedef struct options {
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
     options *o = state->input;
-    char *end;
+    sf_error err = SF_ERROR_INIT;
     switch (key) {
     case 'o':
         o->directory = arg;
@@ -30,9 +30,8 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
         o->force = true;
         return 0;
     case 't':
-        o->threads = (int)strtol(arg, &end, 10);
-        if (*end || o->threads < 1 || o->threads > 1024)
-            argp_error(state, "--threads %s: a number from 1 to 1024 is expected", arg);
+        if (sf_program_read_threads(arg, &o->threads, &err) != SF_OK)
+            argp_error(state, "%s", err.text);
         return 0;
     case ARGP_KEY_ARG:
         if (o->input)

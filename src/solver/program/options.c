@@ -2,6 +2,7 @@
 #include "solver/program/options.h"
 
 #include "build_info.h"
+#include "core/program.h"
 #include "core/units.h"
 #include <argp.h>
 #include <math.h>
@@ -26,11 +27,11 @@ static double parse_time(const char *option, const char *text, struct argp_state
 }
 
 static int parse_threads(const char *text, struct argp_state *state) {
-    char *end;
-    long threads = strtol(text, &end, 10);
-    if (*end || threads < 1 || threads > 1024)
-        argp_error(state, "--threads takes a number from 1 to 1024, not \"%s\"", text);
-    return (int)threads;
+    sf_error err = SF_ERROR_INIT;
+    int threads = 1;
+    if (sf_program_read_threads(text, &threads, &err) != SF_OK)
+        argp_error(state, "%s", err.text);
+    return threads;
 }
 
 static void check_options(sf_solve_options *o, struct argp_state *state) {
