@@ -137,7 +137,7 @@ test)
 slow)
     install_packages build run test slow
     build
-    run_tests --label-regex slow # one by one, each with every core
+    run_tests --label-regex slow --parallel "$(nproc)" # those that use every core run alone
     ;;
 build)
     install_packages build run
