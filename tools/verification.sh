@@ -3,12 +3,15 @@
 # Runs the verification studies and assembles docs/verification.md from their output.
 #   tools/verification.sh            all studies (more than an hour; the sections state the time of the longest)
 #   tools/verification.sh NAME...    only these; the sections of the others stay as they are
+#   tools/verification.sh --ran [NAME...]   runs nothing: takes the sections that the last tests of the build folder left
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 order="exactness wave mms material time_step contact calculix mesh sensitivity reproducibility identification identification_drop"
 build=${BUILD_DIR:-build}
 sections=docs/images/verification
+ran=no
+[ "${1:-}" != --ran ] || { ran=yes; shift; }
 [ $# -gt 0 ] || set -- $order
 mkdir -p "$sections"
 export SF_BIN_DIR="$PWD/$build/bin" SF_SOURCE_DIR="$PWD"
@@ -19,6 +22,11 @@ for name in "$@"; do
     program="$build/verify/study_$name"
     [ -x "$program" ] || { echo "no study $name in $build: build first" >&2; exit 1; }
     echo "== $name"
+    if [ $ran = yes ]; then
+        cp "$build/verification/$name".md "$sections/"
+        find "$build/verification" -name "$name-*.png" -exec cp {} "$sections/" ';'
+        continue
+    fi
     status=0
     "$program" "$sections" >"$sections/$name.log" || status=$?
     tail -n 1 "$sections/$name.log"
@@ -37,6 +45,7 @@ done
 The studies in `verify/` print every table and plot of this page, and this command assembles it:
 
     tools/verification.sh            # all, or: tools/verification.sh NAME...
+    tools/verification.sh --ran      # from what the last ./setup.sh test and ./setup.sh slow of this tree left
 
 A study measures, compares with the required bounds, and fails if it misses one. `ctest -L verify` runs the short
 studies, `ctest -L slow` the long ones (calculix, mesh, sensitivity). A study without a section below has not been run
