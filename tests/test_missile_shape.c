@@ -97,6 +97,36 @@ static void shape_rule_decides_between_sphere_and_triangles(void **state) {
     }
 }
 
+/* Moving downwards; a ball's upper half, one with the lowest triangles removed, and one inside out. */
+static void spheres_that_do_not_lead_are_triangles(void **state) {
+    (void)state;
+    const double centre[3] = {0, 0, 0.08};
+    for (int kind = 0; kind < 4; kind++) {
+        body b;
+        sf_missile_card card = {.direction = {0, 0, -1}};
+        sf_error err = SF_ERROR_INIT;
+        int64_t kept = 0;
+        body_ball(&b, 6, 0.08, centre);
+        int32_t *node = b.surface.triangle;
+        for (int64_t t = 0; t < b.surface.triangle_count; t++) {
+            double height = 0;
+            for (int v = 0; v < 3; v++)
+                height += body_node(&b, node[3 * t + v])[2] / 3;
+            if ((kind == 1 && height < 0.08) || (kind == 2 && height < 0.01))
+                continue;
+            const int32_t turned[3] = {node[3 * t], node[3 * t + (kind == 3 ? 2 : 1)],
+                                       node[3 * t + (kind == 3 ? 1 : 2)]};
+            memcpy(&node[3 * kept++], turned, sizeof turned);
+        }
+        b.surface.triangle_count = kept;
+        assert_int_equal(sf_missile_set_shape(&b.surface, 0, &card, &err), SF_OK);
+        assert_int_equal(card.shape, kind == 0 ? SF_SHAPE_SPHERE : SF_SHAPE_SURFACE);
+        assert_int_equal(sf_missile_set_shape(&b.surface, 1, &card, &err), kind == 0 ? SF_OK : SF_ERR_MODEL);
+        assert_true(kind == 0 || strstr(err.text, "does not cover the point"));
+        body_free(&b, NULL);
+    }
+}
+
 static void cap_cosine_is_that_of_the_outermost_node(void **state) {
     (void)state;
     const double centre[3] = {0, 0, 0};
@@ -232,6 +262,7 @@ int main(void) {
         cmocka_unit_test(deviation_is_relative_to_the_fitted_sphere),
         cmocka_unit_test(flat_or_tiny_surfaces_have_no_sphere),
         cmocka_unit_test(shape_rule_decides_between_sphere_and_triangles),
+        cmocka_unit_test(spheres_that_do_not_lead_are_triangles),
         cmocka_unit_test(cap_cosine_is_that_of_the_outermost_node),
         cmocka_unit_test(sphere_touches_after_the_distance_along_an_oblique_path),
         cmocka_unit_test(triangles_touch_where_their_gap_vanishes),

@@ -9,6 +9,7 @@
 #include "pre/cloud/domains.h"
 #include "pre/drop_check.h"
 #include "pre/cloud/dual.h"
+#include "pre/cloud/group_check.h"
 #include "pre/cloud/surface_area.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/mesh/surface_orient.h"
@@ -95,7 +96,8 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, doubl
     sf_domains domains = {0};
     int64_t n = mesh->node_count;
     if (sf_mesh_check(mesh, &report->mesh_volume, err) != SF_OK || sf_cloud_reorder(mesh, err) != SF_OK ||
-        sf_dual_build(mesh, &dual, err) != SF_OK || sf_connectivity_check(mesh, &dual, err) != SF_OK)
+        sf_dual_build(mesh, &dual, err) != SF_OK || sf_group_check(c, mesh, &dual, err) != SF_OK ||
+        sf_connectivity_check(mesh, &dual, err) != SF_OK)
         goto done;
     sf_cloud_hash(mesh, report->mesh_hash);
     m->spacing = sf_alloc(err, (unsigned long)n, sizeof *m->spacing, "spacing");

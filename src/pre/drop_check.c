@@ -185,6 +185,75 @@ static sf_status check_whole(const sf_model *m, const edge *list, int axis, sf_e
                    'x' + axis, 1e3 * round_off(below ? low : high, high - low));
 }
 
+/* ---- edges that point at the pad ---- */
+
+static const double STEEP = 0.5; /* sine of the slope from which a sheet with a free edge is a blade */
+
+/* The sine of the slope at which the triangle runs over its edge towards the pad; `middle` of that edge. */
+static double edge_slope(const sf_model *m, int64_t t, int side, double middle[3]) {
+    const double *a = &m->surface_position[3 * (int64_t)m->surface_triangle[3 * t + side]],
+                 *b = &m->surface_position[3 * (int64_t)m->surface_triangle[3 * t + (side + 1) % 3]],
+                 *c = &m->surface_position[3 * (int64_t)m->surface_triangle[3 * t + (side + 2) % 3]];
+    double along[3], out[3];
+    for (int i = 0; i < 3; i++) {
+        middle[i] = 0.5 * (a[i] + b[i]);
+        along[i] = b[i] - a[i];
+        out[i] = middle[i] - c[i];
+    }
+    double share = sf_dot3(out, along) / sf_dot3(along, along);
+    for (int i = 0; i < 3; i++)
+        out[i] -= share * along[i];
+    return sf_dot3(out, m->missile.direction) / sqrt(sf_dot3(out, out));
+}
+
+static bool is_rim(const sf_model *m, const edge *list, int64_t t, int k) {
+    int32_t a = m->surface_triangle[3 * t + k], b = m->surface_triangle[3 * t + (k + 1) % 3];
+    const edge wanted = {{a < b ? a : b, a < b ? b : a}};
+    size_t count = (size_t)(3 * m->surface_triangle_count);
+    const edge *found = bsearch(&wanted, list, count, sizeof *list, compare_edge);
+    return (found == list || compare_edge(found - 1, &wanted) != 0) &&
+           (found + 1 == list + count || compare_edge(found + 1, &wanted) != 0);
+}
+
+/* Can the pad meet the edge before any other part of the missile? */
+static bool leads(const sf_model *m, const double middle[3]) {
+    const sf_surface missile = {.node_count = m->surface_node_count,
+                                .position = m->surface_position,
+                                .triangle_count = m->surface_triangle_count,
+                                .triangle = m->surface_triangle};
+    double ahead = 2 * m->thickness + m->missile.gap, x[3], low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        low[i] = INFINITY;
+        high[i] = -INFINITY;
+        x[i] = middle[i] + ahead * m->missile.direction[i];
+    }
+    for (int64_t k = 0; k < 3 * m->node_count; k++) {
+        low[k % 3] = fmin(low[k % 3], m->position[k]);
+        high[k % 3] = fmax(high[k % 3], m->position[k]);
+    }
+    bool over = x[2] < low[2]; /* it comes as far as the base within twice the thickness */
+    for (int i = 0; i < 2; i++)
+        over = over && middle[i] > low[i] && middle[i] < high[i];
+    return over && sf_missile_travel(&missile, &m->missile, x) > ahead * (1 - 1e-6);
+}
+
+/* Contact acts on faces: beside the free edge of a steep sheet the pad would pass. */
+static sf_status check_blades(const sf_model *m, const edge *list, sf_error *err) {
+    for (int64_t t = 0; t < m->surface_triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            double middle[3], slope = edge_slope(m, t, k, middle);
+            if (slope < STEEP || !is_rim(m, list, t, k) || !leads(m, middle))
+                continue;
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "missile.group: the surface ends in an edge at (%.4g, %.4g, %.4g) mm that points at the pad, "
+                "in a sheet %.3g degrees steep: the pad would pass beside it; close the missile below, or "
+                "leave that part out of the group",
+                1e3 * middle[0], 1e3 * middle[1], 1e3 * middle[2], asin(fmin(slope, 1)) * 180 / M_PI);
+        }
+    return SF_OK;
+}
+
 static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
     edge *list = m->missile.shape == SF_SHAPE_SURFACE ? list_edges(m, err) : NULL;
     for (int axis = 0; axis < 2 && err->status == SF_OK; axis++) {
@@ -195,6 +264,8 @@ static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_
         else if (list)
             check_whole(m, list, axis, err);
     }
+    if (list && err->status == SF_OK)
+        check_blades(m, list, err);
     free(list);
     return err->status;
 }

@@ -62,6 +62,11 @@ sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
     for (int64_t k = 0; k < mesh->cell_ptr[mesh->cell_count]; k++)
         mesh->cell_node[k] = rank[mesh->cell_node[k]];
     for (int s = 0; s < mesh->set_count; s++) {
+        for (int64_t k = 0; k < 4 * mesh->set[s].face_count; k++)
+            if (mesh->set[s].face[k] >= 0)
+                mesh->set[s].face[k] = rank[mesh->set[s].face[k]];
+        for (int64_t k = 0; k < mesh->set[s].face_count; k++)
+            qsort(&mesh->set[s].face[4 * k], 4, sizeof(int32_t), by_value);
         for (int64_t k = 0; k < mesh->set[s].count; k++)
             mesh->set[s].node[k] = rank[mesh->set[s].node[k]];
         qsort(mesh->set[s].node, (size_t)mesh->set[s].count, sizeof(int32_t), by_value);

@@ -182,7 +182,9 @@ static int by_place(const void *a, const void *b) {
     return (p->x > q->x) - (p->x < q->x);
 }
 
-/* Smallest distance (m) between marked nodes and the others. */
+enum { IN_PART = 1, IN_OTHERS = 2 };
+
+/* Smallest distance (m) between nodes of the part and of the others. */
 static double nearest(const sf_mesh *mesh, const uint8_t *mark, sf_error *err) {
     double least = INFINITY;
     placed *list = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *list, "sorted nodes");
@@ -192,11 +194,18 @@ static double nearest(const sf_mesh *mesh, const uint8_t *mark, sf_error *err) {
         qsort(list, (size_t)mesh->node_count, sizeof *list, by_place);
     for (int64_t a = 0; list && a < mesh->node_count; a++)
         for (int64_t b = a + 1; b < mesh->node_count && list[b].x - list[a].x < least; b++)
-            if (mark[list[a].node] != mark[list[b].node])
+            if ((mark[list[a].node] | mark[list[b].node]) == (IN_PART | IN_OTHERS))
                 least = fmin(least, distance(&mesh->position[3 * (int64_t)list[a].node],
                                              &mesh->position[3 * (int64_t)list[b].node]));
     free(list);
     return least;
+}
+
+static bool touches(const sf_mesh *mesh, const uint8_t *mark) {
+    for (int64_t i = 0; i < mesh->node_count; i++)
+        if (mark[i] == (IN_PART | IN_OTHERS))
+            return true;
+    return false;
 }
 
 /* The smallest of several parts, with its place. */
@@ -214,15 +223,16 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
         least = cells[c] > 0 && (cells[least] == 0 || cells[c] <= cells[least]) ? c : least;
     }
     for (int64_t c = 0; c < mesh->cell_count; c++)
-        for (int64_t k = mesh->cell_ptr[c]; find(parent, c) == least && k < mesh->cell_ptr[c + 1]; k++) {
+        for (int64_t k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) {
             const double *x = &mesh->position[3 * (int64_t)mesh->cell_node[k]];
-            mark[mesh->cell_node[k]] = 1;
-            for (int i = 0; i < 3; i++) {
+            bool part = find(parent, c) == least;
+            mark[mesh->cell_node[k]] |= part ? IN_PART : IN_OTHERS;
+            for (int i = 0; part && i < 3; i++) {
                 low[i] = fmin(low[i], 1e3 * x[i]);
                 high[i] = fmax(high[i], 1e3 * x[i]);
             }
         }
-    double gap = nearest(mesh, mark, err);
+    double gap = touches(mesh, mark) ? 0 : nearest(mesh, mark, err);
     if (err->status == SF_OK)
         SF_FAIL(
             err, SF_ERR_INPUT,

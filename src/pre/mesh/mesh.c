@@ -12,6 +12,7 @@ void sf_mesh_free(sf_mesh *mesh) {
     for (int s = 0; s < mesh->set_count; s++) {
         free(mesh->set[s].name);
         free(mesh->set[s].node);
+        free(mesh->set[s].face);
     }
     free(mesh->set);
     memset(mesh, 0, sizeof *mesh);

@@ -12,6 +12,9 @@ typedef struct sf_node_set {
     char *name;
     int64_t count;
     int32_t *node; /* [count] ascending */
+    int64_t face_count;
+    int32_t *face; /* [face_count][4] ascending nodes of the group's faces; the first is -1 for a triangle */
+    int64_t left_out; /* faces with nodes that no cell of the pad uses; not counted above */
 } sf_node_set;
 
 typedef struct sf_mesh {

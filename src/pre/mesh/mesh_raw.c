@@ -155,12 +155,22 @@ static sf_status copy_cells(const sf_raw_mesh *raw, const sf_tag_index *index, c
     return SF_OK;
 }
 
-/* Marks the nodes of the group's faces that lie wholly in the chosen cells; returns how many nodes. */
+static void sort_face(int32_t node[SF_RAW_FACE]) {
+    for (int i = 1; i < SF_RAW_FACE; i++)
+        for (int j = i; j > 0 && node[j] < node[j - 1]; j--) {
+            int32_t swap = node[j];
+            node[j] = node[j - 1];
+            node[j - 1] = swap;
+        }
+}
+
+/* Marks the nodes of the group's faces that lie wholly in the chosen cells, and writes these faces to the
+ * set; returns how many nodes. */
 static int64_t mark_group(const sf_raw_mesh *raw, const sf_tag_index *index, const int32_t *number, int group,
-                          uint8_t *mark) {
+                          uint8_t *mark, sf_node_set *set) {
     int64_t marked = 0;
     for (size_t f = 0; f < raw->face_count; f++) {
-        int32_t node[SF_RAW_FACE];
+        int32_t node[SF_RAW_FACE] = {-1, -1, -1, -1};
         int count = raw->face_group[f] == group ? sf_raw_mesh_face_size(raw, f) : 0;
         bool whole = count > 0;
         for (int a = 0; a < count; a++) {
@@ -168,12 +178,23 @@ static int64_t mark_group(const sf_raw_mesh *raw, const sf_tag_index *index, con
             node[a] = place == SIZE_MAX ? UNUSED : number[place];
             whole = whole && node[a] >= 0;
         }
+        set->left_out += count > 0 && !whole;
         for (int a = 0; whole && a < count; a++) {
             marked += !mark[node[a]];
             mark[node[a]] = 1;
         }
+        sort_face(node);
+        if (whole)
+            memcpy(&set->face[SF_RAW_FACE * set->face_count++], node, sizeof node);
     }
     return marked;
+}
+
+static int64_t count_faces(const sf_raw_mesh *raw, int group) {
+    int64_t count = 0;
+    for (size_t f = 0; f < raw->face_count; f++)
+        count += raw->face_group[f] == group;
+    return count;
 }
 
 static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, const int32_t *number,
@@ -181,11 +202,18 @@ static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, c
     uint8_t *mark = sf_alloc(err, (size_t)mesh->node_count, 1, "node marks");
     mesh->set = sf_alloc(err, (size_t)raw->group_count, sizeof *mesh->set, "node sets");
     for (int g = 0; mark && mesh->set && g < raw->group_count && err->status == SF_OK; g++) {
+        sf_node_set *set = &mesh->set[mesh->set_count];
+        *set = (sf_node_set){0};
         memset(mark, 0, (size_t)mesh->node_count);
-        int64_t count = mark_group(raw, index, number, g, mark);
-        if (count == 0)
+        set->face =
+            sf_alloc(err, SF_RAW_FACE * (size_t)count_faces(raw, g), sizeof *set->face, "surface faces");
+        int64_t count = set->face ? mark_group(raw, index, number, g, mark, set) : 0;
+        if (count == 0) {
+            free(set->face);
+            set->face = NULL;
             continue;
-        sf_node_set *set = &mesh->set[mesh->set_count++];
+        }
+        mesh->set_count++;
         set->name = strdup(raw->group_name[g]);
         set->node = sf_alloc(err, (size_t)count, sizeof *set->node, "node set");
         if (!set->name)

@@ -4,6 +4,7 @@
 #include "core/mat3.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>
+#include <stdbool.h>
 
 static const double SPHERE_TOLERANCE = 1e-6;
 
@@ -65,6 +66,24 @@ done:
     return err->status;
 }
 
+/* Does the surface, from outside, cover the point of the sphere that leads along the direction? A recess, a
+ * bowl that opens downwards and a ring do not. */
+static bool covers_pole(const sf_surface *surface, const double centre[3], double radius,
+                        const double direction[3]) {
+    static const double SLACK = 1e-9;
+    for (int64_t t = 0; t < surface->triangle_count; t++) {
+        double x[3][3];
+        for (int v = 0; v < 3; v++)
+            for (int c = 0; c < 3; c++)
+                x[v][c] =
+                    (surface->position[3 * (int64_t)surface->triangle[3 * t + v] + c] - centre[c]) / radius;
+        if (sf_triple3(x[0], x[1], x[2]) > 0 && sf_triple3(direction, x[1], x[2]) >= -SLACK &&
+            sf_triple3(x[0], direction, x[2]) >= -SLACK && sf_triple3(x[0], x[1], direction) >= -SLACK)
+            return true;
+    }
+    return false;
+}
+
 sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_card *card, sf_error *err) {
     double centre[3], radius = 0, deviation = INFINITY;
     sf_error quiet = SF_ERROR_INIT;
@@ -78,6 +97,14 @@ sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_c
                            "missile.shape is \"sphere\", but the surface deviates from the best sphere by "
                            "%.3g of its radius (bound %.0e)",
                            deviation, SPHERE_TOLERANCE);
+        return SF_OK;
+    }
+    if (!covers_pole(surface, centre, radius, card->direction)) {
+        if (rule == 1)
+            return SF_FAIL(
+                err, SF_ERR_MODEL,
+                "missile.shape is \"sphere\", but the surface does not cover the point of its sphere that "
+                "leads along missile.direction, or is hollow there");
         return SF_OK;
     }
     card->shape = SF_SHAPE_SPHERE;
