@@ -596,6 +596,17 @@ static void work_does_not_grow_with_what_a_case_asks_for(void **state) {
         NULL, "case.cfg:1: geometry.parameters: side = 1e+300 is out of bounds", "between -1e+12 and 1e+12",
         NULL);
 
+    char *curves = NULL;
+    size_t curves_size = 0;
+    FILE *list = open_memstream(&curves, &curves_size);
+    fputs(GEOMETRY MISSILE SOLVER "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = (", list);
+    for (int k = 1; k <= 65; k++)
+        fprintf(list, "%s{ rate = \"%d 1/s\"; file = \"foam.csv\"; }", k > 1 ? ", " : "", k);
+    fputs("); };\n", list);
+    fclose(list);
+    assert_refused(curves, NULL, "material.curves: 65 curves; at most 64 are read", NULL);
+    free(curves);
+
     char *many = repeat("u%06d = 1;\n", 70000), *few = repeat("u%d = 1;\n", 700),
          *deep = repeat("x%d: (", 40), *wide = repeat("x = [1,1,1,1,1,1,1,1,1,1 /* %d */ ];\n", 2000);
     assert_refused(many, NULL, "case.cfg:", "more than 20000 names and values", NULL);

@@ -342,6 +342,9 @@ static void put_case(const program_place *place) {
     program_write_text(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
 }
 
+#define TEN "0123456789"
+#define LONG_NAME TEN TEN TEN TEN TEN TEN TEN
+
 static void bad_input_gets_one_sentence(void **state) {
     (void)state;
     static const struct {
@@ -364,6 +367,11 @@ static void bad_input_gets_one_sentence(void **state) {
          "drops = ( { name = \"a\"; case = \"case.cfg\"; HIC = 3.0; }, { name = \"a\"; case = \"case.cfg\"; "
          "HIC = 3.0; } );\n",
          "two drops are called \"a\""},
+        {MATERIAL DROPS("HIC = 3.0; curve = \"start.csv\"; curve_filter = \"60|180\";"), "must be one of"},
+        {MATERIAL DROPS("HIC = 3.0; x = 1; y = 2; z = 3;"), "unknown key \"x\"; unknown too: y, z; the keys"},
+        {MATERIAL "drops = ( { name = \"" LONG_NAME "\"; case = \"case.cfg\"; HIC = 3.0; } );\n",
+         "is longer than 63 characters"},
+        {GOOD "name = \"" LONG_NAME "\";\n", "longer than 63 and 159 characters"},
         {MATERIAL "drops = ( { case = \"none.cfg\"; HIC = 3.0; } );\n", "none.cfg cannot be read"},
         {GOOD "colour = 3;\n", "unknown key \"colour\""},
         {GOOD "curve_form = \"spline\";\n", "gas or table is expected"},

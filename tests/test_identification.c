@@ -379,6 +379,7 @@ static void wrong_files_are_refused_with_their_line(void **state) {
          2},
         {"density = \"35 kg/m3\";\nspeed = 1;\n" TEST_LIST, "unknown key \"speed\"", 2},
         {"density = \"35 kg/m3\";\nrate_model = \"linear\";\n" TEST_LIST, "one of none, log", 2},
+        {"density = \"35 kg/m3\";\nrate_model = \"none|log\";\n" TEST_LIST, "one of none, log", 2},
         {"density = \"35 kg/m3\";\nrate_model = \"log\";\n" TEST_LIST, "needs tests at two rates", 0},
         {"density = \"35 kg/m3\";\nE_range = 2.0;\n" TEST_LIST, "outside 0.001 to 0.2", 2},
         {"density = \"35 kg/m3\";\nE_range = 0.002;\n" TEST_LIST, "E needs at least 4", 0},

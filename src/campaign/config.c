@@ -49,6 +49,8 @@ void sf_config_close(sf_config *config) {
 static int find_word(const char *name, const char *words) {
     size_t length = strlen(name);
     int index = 0;
+    if (strchr(name, '|'))
+        return -1;
     for (const char *at = words; at; at = strchr(at, '|'), index++) {
         at += *at == '|';
         if (strncmp(at, name, length) == 0 && (at[length] == '|' || at[length] == '\0'))

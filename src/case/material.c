@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_CURVES = 64 };
+
 /* Appends a curve to the card's lists. */
 static sf_status add_curve(sf_law_curves *card, double rate, const sf_case_curve *curve, sf_error *err) {
     size_t curves = (size_t)card->curve_count, points = (size_t)card->curve_points,
@@ -145,6 +147,10 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
                 err, SF_ERR_INPUT,
                 "%s: material.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
                 sf_case_where(reader, setting, where));
+        if (config_setting_length(setting) > MOST_CURVES)
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: material.curves: %d curves; at most %d are read",
+                           sf_case_where(reader, setting, where), config_setting_length(setting),
+                           MOST_CURVES);
         for (int i = 0; i < config_setting_length(setting); i++)
             if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), err) != SF_OK)
                 return err->status;

@@ -75,6 +75,9 @@ static sf_status name_drop(const sf_config *config, const config_setting_t *grou
     const char *name = NULL;
     if (sf_config_text(config, group, "name", false, &name, err) != SF_OK)
         return err->status;
+    if (name && strlen(name) >= sizeof drop->name)
+        return sf_config_refuse(config, group, err, "the name \"%.80s\" is longer than %zu characters", name,
+                                sizeof drop->name - 1);
     if (name)
         snprintf(drop->name, sizeof drop->name, "%s", name);
     else
@@ -161,6 +164,9 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
             config, config_setting_get_member(root, "name"), err,
             "the name \"%s\" names files: no slashes or quotes, and not fit..., which other files are called",
             name);
+    if (strlen(name) >= sizeof in->material_name || strlen(title) >= sizeof in->title)
+        return sf_config_refuse(config, root, err, "name or title is longer than %zu and %zu characters",
+                                sizeof in->material_name - 1, sizeof in->title - 1);
     snprintf(in->material_name, sizeof in->material_name, "%s", name);
     snprintf(in->title, sizeof in->title, "%s", title);
     snprintf(override, sizeof override, "material=@%s", in->material_path);
