@@ -57,7 +57,7 @@ static const sf_key keys[] = {
     {"missile", "group", SF_KEY_NAME, "\"missile_surface\"", AT(surface_group),
      "physical surface of the missile that touches"},
     {"missile", "shape", SF_KEY_CHOICE, "\"auto\"", AT(shape_rule),
-     "contact with an exact sphere, with the surface's triangles, or (auto) a sphere if the surface is one",
+     "contact with an exact sphere, with the surface's triangles, or (auto) a sphere if the surface is one and covers its leading point",
      .words = "auto|sphere|surface"},
     {"missile", "gravity", SF_KEY_QUANTITY, "\"" SF_STANDARD_GRAVITY_TEXT "\"", AT(missile_card.gravity),
      "along -z, on the missile", .quantity = SF_ACCELERATION, .high = 1e4},
