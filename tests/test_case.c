@@ -553,7 +553,7 @@ static void nothing_of_the_text_is_dropped(void **state) {
               NULL, &c);
     assert_string_equal(c.pad_group, "#/*@\"A");
     sf_case_free(&c);
-    read_good("# Windows\r\n" GEOMETRY "\r\n" MATERIAL MISSILE SOLVER, NULL, &c);
+    read_good("\xEF\xBB\xBF# Windows\r\n" GEOMETRY "\r\n" MATERIAL MISSILE SOLVER, NULL, &c);
     sf_case_free(&c);
 }
 

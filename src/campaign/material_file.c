@@ -133,10 +133,11 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
         return err->status;
     put_comment(file, text->title);
     put_comment(file, text->provenance);
-    fprintf(file,
-            "# For a case: the group  material: { @include \"%s.cfg\" }  or  softfall-pre --set "
-            "material=@%s.cfg\n",
-            name, name);
+    fprintf(
+        file,
+        "# For a case: @include \"%s.cfg\" on a line of its own in the group material, or softfall-pre --set "
+        "material=@%s.cfg\n",
+        name, name);
     put_card(file, name, material);
     return close_file(file, path, err);
 }

@@ -132,12 +132,13 @@ static sf_status copy_text(text_copy *copy, const char *path, const char *from, 
         return SF_FAIL(err, SF_ERR_INPUT, "%s@include is nested more than %d deep", where, INCLUDE_DEPTH);
     if (sf_plain_read(path, "case file", LARGEST_TEXT, &text, &size, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "%s%s", where, inner.text);
-    copy->bytes += size; /* includes of includes multiply */
+    size_t mark = strncmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark */
+    copy->bytes += size;                                         /* includes of includes multiply */
     if (copy->bytes > LARGEST_TEXT)
         SF_FAIL(err, SF_ERR_INPUT, "%sthe case file %s and its includes are larger than %d bytes", where,
                 path, LARGEST_TEXT);
     else
-        copy_lines(copy, text, size, path, depth, err);
+        copy_lines(copy, text + mark, size - mark, path, depth, err);
     free(text);
     return err->status;
 }
