@@ -205,9 +205,11 @@ static void pads_that_are_not_held_are_refused(void **state) {
 
 static void pads_in_one_piece_are_built(void **state) {
     static const int kinds[] = {0, 1, 2, 5, 6};
-    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
-        program_succeed(*state, "pre", "blocks.cfg -o good%d.h5 --set geometry.parameters.kind=%d", kinds[k],
-                        kinds[k]);
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+        program_result r = program_succeed(
+            *state, "pre", "blocks.cfg -o good%d.h5 --set geometry.parameters.kind=%d", kinds[k], kinds[k]);
+        assert_int_equal(strstr(r.err, "the pad has a slit") != NULL, kinds[k] == 1);
+    }
 }
 
 static double a_max(const program_place *p, int kind) {

@@ -48,6 +48,9 @@ static void take_domains(sf_domains *d, sf_dual *dual, sf_model *m, sf_build_rep
     report->largest_enlargement = d->largest_enlargement;
     report->worst_condition = d->worst_condition;
     memcpy(report->worst_position, d->worst_position, sizeof d->worst_position);
+    report->hidden_count = d->hidden_count;
+    report->hidden_distance = d->hidden_distance;
+    memcpy(report->hidden_position, d->hidden_position, sizeof d->hidden_position);
     m->volume = d->volume;
     m->domain_nnz = d->ptr[m->node_count];
     m->domain_ptr = d->ptr;
@@ -421,6 +424,17 @@ static sf_status check_first_step(const sf_model *m, double first, sf_error *err
         step, SF_SMALLEST_STEP, m->run.end_time);
 }
 
+/* The pad has no contact with itself. */
+static void tell_slits(const sf_build_report *r, const sf_sink *sink) {
+    if (r->hidden_count > 0)
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "the pad has a slit, hole or gap narrower than the supports: nodes %.3g mm apart at (%.4g, %.4g, "
+            "%.4g) mm do not act on each other; its faces pass through each other where they meet",
+            1e3 * r->hidden_distance, 1e3 * r->hidden_position[0], 1e3 * r->hidden_position[1],
+            1e3 * r->hidden_position[2]);
+}
+
 sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *m, sf_build_report *report,
                          const sf_sink *sink, sf_error *err) {
     memset(m, 0, sizeof *m);
@@ -435,6 +449,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
             measure_step(m, report, err) == SF_OK && check_first_step(m, report->first_step, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
             sf_hold_warn(&report->hold, m, sink);
+            tell_slits(report, sink);
         }
     }
     free(contact_area);

@@ -22,9 +22,11 @@ typedef struct sf_build_report {
     int64_t enlarged_count;
     double worst_condition;
     double worst_position[3]; /* m */
-    double first_step;        /* s, before any safety factor */
-    double slowdown;          /* -, first step over the mean one of a compression (estimate_slowdown) */
-    bool contact_held;        /* every contact point is held along z: nothing to drop on */
+    int64_t hidden_count;     /* as in sf_domains */
+    double hidden_distance, hidden_position[3];
+    double first_step; /* s, before any safety factor */
+    double slowdown;   /* -, first step over the mean one of a compression (estimate_slowdown) */
+    bool contact_held; /* every contact point is held along z: nothing to drop on */
     sf_hold hold;
     sf_contact_zone zone;
     sf_invariants invariants;

@@ -114,6 +114,9 @@ void sf_report_print(FILE *out, const sf_model *m, const sf_build_report *r) {
     if (r->enlarged_count > 0)
         fprintf(out, "%-26sat %lld nodes, by up to %.2f\n", "support enlarged", (long long)r->enlarged_count,
                 r->largest_enlargement);
+    if (r->hidden_count > 0)
+        fprintf(out, "%-26s%lld nodes, the nearest %.3g mm apart\n", "across slits and gaps",
+                (long long)r->hidden_count, 1e3 * r->hidden_distance);
     fprintf(out, "%-26ssum B %.1e, sum X B %.1e, volume %.1e, telescoping %.1e, phi %.1e\n", "invariants",
             r->invariants.unity, r->invariants.linear, r->invariants.volume, r->invariants.telescope,
             r->invariants.shape);

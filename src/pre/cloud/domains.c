@@ -266,6 +266,25 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
     return err->status;
 }
 
+/* Where is the narrowest gap that hides nodes from each other? */
+static void find_gap(builder *b) {
+    sf_domains *out = b->out;
+    out->hidden_distance = INFINITY;
+    for (int64_t i = 0; i < b->mesh->node_count; i++) {
+        const double *x = &b->mesh->position[3 * i];
+        out->hidden_count += b->hidden[i].count > 0;
+        for (int64_t k = 0; k < b->hidden[i].count; k++) {
+            const double *y = &b->mesh->position[3 * (int64_t)b->hidden[i].node[k]];
+            double gap = distance(x, y);
+            if (gap >= out->hidden_distance)
+                continue;
+            out->hidden_distance = gap;
+            for (int c = 0; c < 3; c++)
+                out->hidden_position[c] = 0.5 * (x[c] + y[c]);
+        }
+    }
+}
+
 /* phi at every node, with the last supports. */
 static sf_status shape_at_nodes(builder *b, sf_error *err) {
     int64_t n = b->mesh->node_count, capacity = 64 * n, used = 0;
@@ -447,8 +466,10 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
     if (err->status == SF_OK)
         measure_reach(&b);
     if (err->status == SF_OK && integrate_with_growth(&b, support, err) == SF_OK &&
-        shape_at_nodes(&b, err) == SF_OK)
+        shape_at_nodes(&b, err) == SF_OK) {
+        find_gap(&b);
         assemble_rows(&b, err);
+    }
     if (b.edge)
         clear_edges(&b);
     sf_visibility_free(b.hidden, mesh->node_count);

@@ -25,6 +25,9 @@ typedef struct sf_domains {
     double worst_position[3];   /* m, where */
     int64_t enlarged_count;     /* nodes whose support was enlarged */
     double largest_enlargement; /* factor on R, 1 = none */
+    int64_t hidden_count;       /* nodes from which near ones are hidden by a slit or a gap */
+    double hidden_distance;     /* m, the smallest one between such two nodes */
+    double hidden_position[3];  /* m, between them */
 } sf_domains;
 
 /* Builds everything. `support` [n] holds R on entry; where a moment matrix is singular or worse conditioned
