@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The libraries behind include/softfall/softfall.h, made of the rooms' objects:
 #   libsoftfall        solve and evaluate: HDF5, GSL, UDUNITS, CHOLMOD; neither gmsh nor libconfig
-#   libsoftfall-build  read a case and build its model: with gmsh and libconfig
+#   libsoftfall-build  read a case and build its model: with libconfig; it starts softfall-mesh, which has gmsh
 # They are shared, and show only the functions of softfall.h: internal names cannot meet those of a user's program.
 function(softfall_shared target name export)
     cmake_parse_arguments(arg "" "" "SOURCES;PRIVATE;PUBLIC" ${ARGN})

@@ -6,6 +6,7 @@
 #include "fit/compression/config.h"
 #include "fit/drop/input.h"
 #include "io/model_io.h"
+#include "io/plain_file.h"
 #include "post/compare.h"
 #include "post/figures.h"
 #include "post/reference.h"
@@ -13,8 +14,8 @@
 #include "case/case.h"
 #include "case/curve.h"
 #include "pre/mesh/geo_parameters.h"
-#include "pre/mesh/geometry_check.h"
 #include "pre/mesh/gmsh_session.h"
+#include "pre/mesh/mesh_stream.h"
 #include <ftw.h>
 #include <hdf5.h>
 #include <stdio.h>
@@ -109,12 +110,32 @@ static sf_status read_pressing(const char *path, sf_error *err) {
     return err->status;
 }
 
-/* What is asked of a script before gmsh sees it. */
+/* The names of a script's parameters. */
 static sf_status read_geo(const char *path, sf_error *err) {
     char copy[512];
     sf_geo_source source = {.path = copy, .parameter_count = 1, .parameter = {{"side", 1}}};
+    sf_broker_file file = {.path = copy, .is_text = true};
+    const sf_broker read = {.count = 1, .file = &file};
     snprintf(copy, sizeof copy, "%s", path);
-    return sf_geometry_check(path, err) == SF_OK ? sf_geo_parameters_check(&source, err) : err->status;
+    if (sf_plain_read(path, "geometry", SF_PLAIN_ANY, &file.text, &file.size, err) == SF_OK)
+        sf_geo_parameters_check(&source, &read, true, err);
+    free(file.text);
+    return err->status;
+}
+
+/* What a confined process sends as a mesh. */
+static sf_status read_stream(const char *path, sf_error *err) {
+    char *data = NULL;
+    size_t size = 0;
+    sf_geo_data mesh = {0};
+    if (sf_plain_read(path, "mesh stream", SF_PLAIN_ANY, &data, &size, err) == SF_OK &&
+        sf_geo_data_read(data, size, path, &mesh, err) == SF_OK) {
+        size_t end;
+        sf_geo_data_blocks(&mesh, 3, 1, &end);
+    }
+    sf_geo_data_free(&mesh);
+    free(data);
+    return err->status;
 }
 
 static sf_status read_model(const char *path, sf_error *err) {
@@ -170,6 +191,7 @@ static const fuzz_reader readers[] = {
     {"results", "results.h5", read_results},
     {"msh", "mesh.msh", read_msh},
     {"geo", "script.geo", read_geo},
+    {"stream", "mesh.stream", read_stream},
     {"compression", "fit.cfg", read_compression},
     {"pressing", "pressing.csv", read_pressing},
 };

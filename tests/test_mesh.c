@@ -5,6 +5,7 @@
 #include "program_fixture.h"
 
 #include "core/model.h"
+#include "mesher/gmsh_adapter.h"
 #include "pre/mesh/cell_topology.h"
 #include "pre/mesh/gmsh_session.h"
 #include "pre/mesh/mesh.h"
@@ -68,11 +69,20 @@ static void load_mesh(sf_gmsh *session, sf_geo_source source, sf_mesh *mesh, dou
         fail_msg("%s", err.text);
 }
 
-/* What the session has open, in the format of the name's ending. */
-static void write_open_model(const char *name) {
+/* Meshes folder/`from`, if it is to be a mesh, and writes it as folder/`to`, in the format of that name's
+ * ending: by gmsh in this process, as softfall's own can write nothing. */
+static void convert(const char *from, const char *to, bool mesh) {
     int ierr = 0;
-    gmshWrite(in_folder(name), &ierr);
+    if (sf_gmsh_adapter_initialize() != 0)
+        fail_msg("%s", "gmsh cannot be started");
+    gmshOptionSetNumber("General.Terminal", 0, &ierr);
+    gmshOptionSetNumber("Mesh.Algorithm3D", 1, &ierr);
+    gmshMerge(in_folder(from), &ierr);
+    if (mesh)
+        gmshModelMeshGenerate(3, &ierr);
+    gmshWrite(in_folder(to), &ierr);
     assert_int_equal(ierr, 0);
+    gmshFinalize(&ierr);
 }
 
 static void assert_mesh_refused(sf_gmsh *session, sf_geo_source source, const char *group, const char *part) {
@@ -299,13 +309,14 @@ static void same_mesh_whatever_was_loaded_before(void **state) {
 
 static void msh_is_taken_as_it_is(void **state) {
     char text[2048];
-    snprintf(text, sizeof text, "DefineConstant[ fine_spacing = 20, outer_spacing = 20 ];\nInclude \"%s\";\n",
+    snprintf(text, sizeof text,
+             "DefineConstant[ fine_spacing = 20, outer_spacing = 20, quarter = 1 ];\nInclude \"%s\";\n",
              fixture_source("geo/pad.geo"));
     write_file("save.geo", text);
     sf_mesh meshed, read;
     double volume;
-    load_mesh(*state, source_of(in_folder("save.geo"), "quarter", 1.0, NULL), &meshed, &volume);
-    write_open_model("pad.msh");
+    load_mesh(*state, source_of(in_folder("save.geo"), NULL), &meshed, &volume);
+    convert("save.geo", "pad.msh", true);
     load_mesh(*state, source_of(in_folder("pad.msh"), NULL), &read, &volume);
     assert_box(&read, volume, 0.0, 0.2, 0.05, true);
     assert_int_equal(read.cell_count, meshed.cell_count);
@@ -320,11 +331,7 @@ static void msh_is_taken_as_it_is(void **state) {
 
 static void step_is_meshed_through_a_geo_that_names_groups(void **state) {
     write_file("box.geo", "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 30, 20, 10};\n");
-    sf_error err = SF_ERROR_INIT;
-    sf_geo_source box = source_of(in_folder("box.geo"), NULL);
-    if (sf_gmsh_load(*state, &box, &err) != SF_OK)
-        fail_msg("%s", err.text);
-    write_open_model("box.step");
+    convert("box.geo", "box.step", false);
     assert_mesh_refused(*state, source_of(in_folder("box.step"), NULL), "pad",
                         "gmsh reads no groups from a STEP file: name them in a .geo that merges it");
     write_file("named.geo", "SetFactory(\"OpenCASCADE\");\nMerge \"box.step\";\npad() = Volume{:}; Physical "
@@ -372,12 +379,9 @@ static void parameters_are_found_in_included_files_only_if_defined(void **state)
     assert_close(volume, 3e-9, 1e-12);
     sf_mesh_free(&mesh);
     assert_mesh_refused(*state, source_of(in_folder("outer.geo"), "plain", 2.0, NULL), "pad",
-                        "DefineConstant parameters are: height, a, b, c");
+                        "DefineConstant parameters are: a, b, c, height");
     assert_mesh_refused(*state, source_of(in_folder("outer.geo"), "hidden", 2.0, NULL), "pad",
                         "no parameter");
-    write_file("empty.msh", "$MeshFormat\n");
-    assert_mesh_refused(*state, source_of(in_folder("empty.msh"), "a", 2.0, NULL), "pad",
-                        "takes no parameters");
 }
 
 static void faults_in_the_geometry_are_told(void **state) {
@@ -466,6 +470,8 @@ static void bad_meshes_are_refused(void **state) {
     write_msh("flat.msh", 8, CUBE, 1, "1 4 2 1 1 1 2 3 4\n");
     assert_mesh_refused(*state, source_of(in_folder("flat.msh"), NULL), "pad",
                         "cell 0 (tetrahedron) at (0.0005, 0.0005, 0) m is inverted or flat");
+    assert_mesh_refused(*state, source_of(in_folder("flat.msh"), "a", 2.0, NULL), "pad",
+                        "no parameter \"a\"; its DefineConstant parameters are: none");
     write_msh("crack.msh", 9, CUBE "9 0 0 0\n", 2, "1 4 2 1 1 1 2 4 5\n2 4 2 1 1 9 2 4 5\n");
     assert_mesh_refused(*state, source_of(in_folder("crack.msh"), NULL), "pad", "coincide at (0, 0, 0) m");
     write_msh("tiny.msh", 9, CUBE "9 1e-7 0 0\n", 2, "1 4 2 1 1 1 2 4 5\n2 4 2 1 1 1 9 4 5\n");

@@ -68,11 +68,15 @@ static int set_up(void **state) {
 
 static void assert_refused(const program_result *r, const char *program, const nonsense *row) {
     char begin[64];
-    const char *end = strchr(r->err, '\n');
+    const char *said = r->err, *end;
+    while (strstr(said, ": gmsh has worked for ") &&
+           strchr(said, '\n')) /* on a slow machine, notes of it come first */
+        said = strchr(said, '\n') + 1;
+    end = strchr(said, '\n');
     snprintf(begin, sizeof begin, "softfall-%s: ", program);
     if (r->code <= 0 || r->code >= 128)
         fail_msg("%s %s: exit code %d: %s", program, row->words, r->code, r->err);
-    if (!end || end[1] != '\0' || strncmp(r->err, begin, strlen(begin)) != 0)
+    if (!end || end[1] != '\0' || strncmp(said, begin, strlen(begin)) != 0)
         fail_msg("%s %s: not one sentence of %s: %s", program, row->words, begin, r->err);
     for (int k = 0; k < PARTS && row->part[k]; k++)
         if (!strstr(r->err, row->part[k]))
@@ -183,7 +187,7 @@ static void geometries(void **state) {
         {"--set geometry.parameters.thickness=0.0", {"pad.geo", "thickness", "must be positive"}},
         {"--set geometry.parameters.thickness=-50.0", {"pad.geo", "thickness", "must be positive"}},
         {"--set geometry.parameters.fine_spacing=0.0", {"pad.geo", "fine_spacing", "must be positive"}},
-        {"--set geometry.parameters.fine_spacing=0.1", {"pad.geo", "a spacing of 0.1", "GB are available"}},
+        {"--set geometry.parameters.fine_spacing=0.1", {"pad.geo", "GB", "SOFTFALL_MEMORY_MB"}},
         {"--set geometry.length_unit=nm",
          {"pad is 5e-08 m thick", "1e-06 to 1000 m", "geometry.length_unit"}},
         {"--set missile.mass='1 mg'", {"missile.mass", "1e-06 kg", "the heaviest node"}},
@@ -193,18 +197,20 @@ static void geometries(void **state) {
         {"--set pad.fixed='[\"floor\"]'", {"pad.fixed", "\"floor\"", "\"base\""}},
         {"--set pad.fixed='[\"top\", \"base\"]'", {"pad.contact", "every node", "\"top\""}},
         {"--set pad.sliding='[\"top\"]'", {"pad.contact", "held along z", "pad.sliding"}},
-        {"--set geometry.file=files/pad.txt --set geometry.parameters='{}'", {"pad.txt", "must end in .geo"}},
-        {"--set geometry.file=files/run.geo --set geometry.parameters='{}'", {"run.geo:1", "\"SystemCall\""}},
-        {"--set geometry.file=files/save.geo --set geometry.parameters='{}'", {"save.geo:1", "\"Save\""}},
-        {"--set geometry.file=files/print.geo --set geometry.parameters='{}'", {"print.geo:1", "\"Printf\""}},
+        {"--set geometry.file=files/pad.txt --set geometry.parameters='{}'", {"pad.txt", "start a program"}},
+        {"--set geometry.file=files/run.geo --set geometry.parameters='{}'", {"run.geo", "start a program"}},
+        {"--set geometry.file=files/save.geo --set geometry.parameters='{}'", {"save.geo", "tried to write"}},
+        {"--set geometry.file=files/print.geo --set geometry.parameters='{}'",
+         {"print.geo", "tried to write"}},
         {"--set geometry.file=files/include.geo --set geometry.parameters='{}'",
-         {"include.geo:1", "plain text"}},
-        {"--set geometry.file=files/run.msh --set geometry.parameters='{}'", {"run.msh", "$MeshFormat"}},
+         {"include.geo", "files/ab'"}},
+        {"--set geometry.file=files/run.msh --set geometry.parameters='{}'", {"run.msh", "start a program"}},
+        {"--set geometry.time_limit='0 s'", {"geometry.time_limit", "at least 1 s"}},
         {"--set geometry.file=files/bomb.msh --set geometry.parameters='{}'", {"bomb.msh"}},
     };
     char before[512];
     snprintf(before, sizeof before, "good.cfg -o model.h5 --force %s", program_coarse(20));
-    setenv("SOFTFALL_MEMORY_MB", "2000", 1); /* the same answers on a machine with any memory */
+    setenv("SOFTFALL_MEMORY_MB", "300", 1); /* the same answers on a machine with any memory */
     REFUSE_ALL(*state, "pre", before, rows);
     unsetenv("SOFTFALL_MEMORY_MB");
 }

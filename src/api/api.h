@@ -17,8 +17,8 @@ _Static_assert((int)SOFTFALL_INPUT == SF_ERR_INPUT && (int)SOFTFALL_FILE == SF_E
 
 struct softfall_model {
     sf_model model;
-    char *case_text, *parameters, *mesh_hash; /* of the provenance; NULL: unknown; owned */
-    char libraries[96];                       /* that made it */
+    char *case_text, *parameters, *mesh_hash, *geometry_files; /* of the provenance; NULL: unknown; owned */
+    char libraries[96];                                        /* that made it */
 };
 
 /* The outcome for the user. */

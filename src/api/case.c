@@ -47,7 +47,8 @@ static void keep_texts(softfall_case *c, const sf_build_report *report, softfall
     m->case_text = strdup(c->data.text);
     m->parameters = strdup(c->data.parameters);
     m->mesh_hash = strdup(report->mesh_hash);
-    if (!m->case_text || !m->parameters || !m->mesh_hash)
+    m->geometry_files = strdup(c->data.geometry_files);
+    if (!m->case_text || !m->parameters || !m->mesh_hash || !m->geometry_files)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the texts of the case");
 }
 

@@ -26,7 +26,8 @@ static sf_status read_model(const char *path, softfall_model *m, sf_error *err) 
     if (sf_model_read(path, &m->model, &file, err) == SF_OK &&
         read_text(file, "/provenance/case_text", &m->case_text, err) == SF_OK &&
         read_text(file, "/provenance/parameters", &m->parameters, err) == SF_OK &&
-        read_text(file, "/provenance/mesh_hash", &m->mesh_hash, err) == SF_OK)
+        read_text(file, "/provenance/mesh_hash", &m->mesh_hash, err) == SF_OK &&
+        read_text(file, "/provenance/geometry_files", &m->geometry_files, err) == SF_OK)
         read_text(file, "/provenance/libraries", &libraries, err);
     snprintf(m->libraries, sizeof m->libraries, "%s", libraries ? libraries : "");
     free(libraries);
@@ -50,7 +51,8 @@ softfall_status softfall_model_write(const softfall_model *m, const char *path, 
                                       .libraries = m->libraries,
                                       .case_text = m->case_text,
                                       .parameters = m->parameters,
-                                      .mesh_hash = m->mesh_hash};
+                                      .mesh_hash = m->mesh_hash,
+                                      .geometry_files = m->geometry_files};
     sf_model_write(path, &m->model, &provenance, &err);
     return softfall_return(&err, error);
 }
@@ -62,6 +64,7 @@ void softfall_model_free(softfall_model *m) {
     free(m->case_text);
     free(m->parameters);
     free(m->mesh_hash);
+    free(m->geometry_files);
     free(m);
 }
 

@@ -2,28 +2,29 @@
 #include "campaign/key.h"
 
 #include "core/hash.h"
+#include "io/h5.h"
+#include "io/plain_file.h"
 #include "io/process.h"
-#include <errno.h>
+#include "pre/mesh/mesher_start.h"
+#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
-    char block[4096];
-    size_t size;
-    FILE *file = fopen(path, "r");
-    if (!file)
-        return SF_FAIL(err, SF_ERR_IO, "%s cannot be read: %s", path, strerror(errno));
-    while ((size = fread(block, 1, sizeof block, file)) > 0)
-        *hash = sf_hash_bytes(*hash, block, size);
-    fclose(file);
-    return SF_OK;
+    uint64_t content = 0;
+    if (sf_plain_hash(path, NULL, SF_PLAIN_ANY, &content, err) == SF_OK)
+        *hash = sf_hash_bytes(*hash, &content, sizeof content);
+    return err->status;
 }
 
-/* The case's list of values without the names of files, whose contents count. */
+/* The case's list of values without the names of files, whose contents count, and what cannot change a drop.
+ */
 static uint64_t hash_values(uint64_t hash, const char *values) {
-    static const char *const files[] = {"geometry.file ", "geometry.missile_file ", "material.curve ",
-                                        "material.curves ", "missile.motion "};
+    static const char *const files[] = {"geometry.file ",  "geometry.missile_file ", "geometry.time_limit ",
+                                        "material.curve ", "material.curves ",       "missile.motion "};
     while (*values) {
         size_t length = strcspn(values, "\n"), skipped = 0;
         for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
@@ -49,7 +50,55 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
         char path[PATH_MAX];
         if (sf_process_find(programs[k], path, sizeof path, err) != SF_OK ||
             hash_file(hash, path, err) != SF_OK)
-            break;
+            return err->status;
     }
+    char mesher[PATH_MAX];
+    if (sf_mesher_find(mesher, sizeof mesher, err) == SF_OK)
+        hash_file(hash, mesher, err);
     return err->status;
+}
+
+/* Has the file of a line, "hash path", the content that it had? */
+static bool is_same(const char *line, size_t length) {
+    char path[PATH_MAX + 8];
+    uint64_t then = 0, hash = 0;
+    sf_error none = SF_ERROR_INIT;
+    int begin = 0;
+    if (sscanf(line, "%16" SCNx64 " %n", &then, &begin) != 1 || begin == 0 || (size_t)begin >= length ||
+        length - (size_t)begin > PATH_MAX)
+        return false;
+    snprintf(path, sizeof path, "%.*s", (int)(length - (size_t)begin), line + begin);
+    return sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, &none) == SF_OK && hash == then;
+}
+
+/* gmsh reads the file NAME.opt beside a geometry NAME, if there is one. */
+static bool has_new_options(const char *line, size_t length, const char *files) {
+    const char *path = memchr(line, ' ', length);
+    char name[PATH_MAX + 8];
+    snprintf(name, sizeof name, "%.*s.opt\n", (int)(path ? line + length - path : 0), path ? path : "");
+    const char *listed = strstr(files, name);
+    name[strlen(name) - 1] = '\0';
+    return !listed && path && access(name + 1, F_OK) == 0;
+}
+
+static bool are_same(const char *files) {
+    for (const char *line = files; *line;) {
+        size_t length = strcspn(line, "\n");
+        if (!is_same(line, length) || has_new_options(line, length, files))
+            return false;
+        line += length + (line[length] == '\n');
+    }
+    return true;
+}
+
+bool sf_campaign_geometry_is_same(const char *path, const char *text, bool unlisted) {
+    sf_error none = SF_ERROR_INIT;
+    sf_h5 *file = NULL;
+    char *files = NULL;
+    bool same = unlisted;
+    if (sf_h5_open(path, &file, &none) == SF_OK && sf_h5_exists(file, text))
+        same = sf_h5_read_text(file, text, &files, &none) == SF_OK && are_same(files);
+    free(files);
+    sf_h5_close(&file, &none);
+    return same;
 }

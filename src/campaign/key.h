@@ -4,10 +4,16 @@
 #define SF_CAMPAIGN_KEY_H
 
 #include "case/case.h"
+#include <stdbool.h>
 #include <stdint.h>
 
 /* A hash of the values of every key of the case, the points of its curves and motion, its geometry files and
- * the programs that simulate it; the names of files do not count. */
+ * the programs that simulate it; the names of files do not count. What a geometry includes or merges is known
+ * only after it was read: sf_campaign_geometry_is_same. */
 sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
+
+/* Has every file that the geometry read, by the list at `text` of the HDF5 file `path` (docs/formats.md,
+ * geometry_files), the content that it had? `unlisted`: the answer if there is no such file or list. */
+bool sf_campaign_geometry_is_same(const char *path, const char *text, bool unlisted);
 
 #endif

@@ -38,7 +38,7 @@ bool sf_run_folder_is_finished(const sf_run_folder *at) {
         return false;
     bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;
     sf_results_close(&r);
-    return finished;
+    return finished && sf_campaign_geometry_is_same(at->results, "/provenance/model/geometry_files", false);
 }
 
 /* The last line of a log that says something, for an error's sentence. */
@@ -82,7 +82,8 @@ static sf_status run_program(const char *const *arguments, const char *log, sf_e
 static bool resume(const char *solve, const char *threads, const sf_run_folder *at, sf_error *err) {
     const char *run[] = {solve, "--restart", at->results, at->model, "-t", threads, NULL};
     sf_error trial = SF_ERROR_INIT;
-    if (access(at->model, R_OK) != 0 || access(at->checkpoint, R_OK) != 0)
+    if (access(at->model, R_OK) != 0 || access(at->checkpoint, R_OK) != 0 ||
+        !sf_campaign_geometry_is_same(at->model, "/provenance/geometry_files", true))
         return false;
     run_program(run, at->log, &trial);
     if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC)

@@ -21,7 +21,8 @@ typedef struct sf_run_folder {
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *folder, sf_error *err);
 
-/* True if the folder holds a drop that ran to its end. */
+/* True if the folder holds a drop that ran to its end, and every file that its geometry read is as it was
+ * then. */
 bool sf_run_folder_is_finished(const sf_run_folder *folder);
 
 /* Simulates the drop by softfall-pre and softfall-solve on `threads` threads, with their output in the log. A

@@ -37,6 +37,8 @@ typedef struct sf_case {
     sf_geo_source pad;
     sf_geo_source missile;
     double length_unit;                    /* m per unit of the geometry */
+    double mesh_time_limit;                /* s of processor time for gmsh, per geometry */
+    char *geometry_files; /* what the geometries read (sf_gmsh_files), set when they are meshed; owned */
     char pad_group[SF_CASE_NAME_SIZE];     /* physical volume group of the pad */
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */
     int fixed_count;                       /* physical surface groups held in all components */

@@ -27,6 +27,8 @@ static const sf_key keys[] = {
      "values for the DefineConstant parameters of `file`, in its own units"},
     {"geometry", "missile_parameters", SF_KEY_PARAMETERS, "", AT(missile),
      "the same for `missile_file`"},
+    {"geometry", "time_limit", SF_KEY_QUANTITY, "\"600 s\"", AT(mesh_time_limit),
+     "processor time that gmsh may take for each geometry", .quantity = SF_TIME, .low = 1.0, .high = 1e7},
     /* pad */
     {"pad", "group", SF_KEY_NAME, "\"pad\"", AT(pad_group), "physical volume of the pad"},
     {"pad", "contact", SF_KEY_NAME, "\"top\"", AT(contact_group), "physical surface that the missile may touch"},

@@ -395,6 +395,7 @@ void sf_case_free(sf_case *c) {
     free(c->path);
     free(c->text);
     free(c->parameters);
+    free(c->geometry_files);
     free(c->pad.path);
     free(c->missile.path);
     sf_material_free(&c->material);

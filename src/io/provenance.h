@@ -20,8 +20,9 @@ typedef struct sf_provenance {
     const char *case_text;
     const char *parameters;
     const char *mesh_hash;
-    const char *model_path; /* of the solver */
-    const char *model_hash; /* sf_model_hash, 16 hex digits */
+    const char *geometry_files; /* a line each: hash, path (docs/formats.md) */
+    const char *model_path;     /* of the solver */
+    const char *model_hash;     /* sf_model_hash, 16 hex digits */
 } sf_provenance;
 
 /* Writes /provenance and the root attributes format and format_version. */

@@ -71,7 +71,8 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
                                 .libraries = libraries,
                                 .case_text = c.text,
                                 .parameters = c.parameters,
-                                .mesh_hash = report.mesh_hash};
+                                .mesh_hash = report.mesh_hash,
+                                .geometry_files = c.geometry_files};
     if (sf_model_write(o->output, &model, &provenance, err) == SF_OK)
         printf("%-26s%s\n", "written", o->output);
 done:

@@ -4,16 +4,23 @@
 #include "io/h5.h"
 #include "pre/mesh/gmsh_session.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Pad mesh and missile surface, from one geometry or two. */
-static sf_status read_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface,
-                               char libraries[SF_LIBRARIES_SIZE], sf_error *err) {
+static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
+                               char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
     sf_gmsh *session = NULL;
-    if (sf_gmsh_begin(&session, err) == SF_OK && sf_gmsh_load(session, &c->pad, err) == SF_OK &&
+    if (sf_gmsh_begin(&session, err) == SF_OK)
+        sf_gmsh_limit(session, c->mesh_time_limit, sink);
+    if (session && sf_gmsh_load(session, &c->pad, err) == SF_OK &&
         sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err) == SF_OK &&
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK))
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
+    free(c->geometry_files);
+    c->geometry_files = NULL;
+    if (err->status == SF_OK && !(c->geometry_files = strdup(sf_gmsh_files(session))))
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
     if (session)
         snprintf(libraries, SF_LIBRARIES_SIZE, "gmsh %s, HDF5 %s", sf_gmsh_version(session), sf_h5_version());
     sf_gmsh_end(&session);
@@ -25,7 +32,7 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
     sf_mesh mesh = {0};
     sf_surface surface = {0};
     memset(model, 0, sizeof *model);
-    if (read_geometry(c, &mesh, &surface, libraries, err) == SF_OK &&
+    if (read_geometry(c, &mesh, &surface, libraries, sink, err) == SF_OK &&
         sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
         if (sf_hold_check(&report->hold, err) == SF_OK && report->contact_held)
             SF_FAIL(err, SF_ERR_INPUT,

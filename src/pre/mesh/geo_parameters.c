@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/geo_parameters.h"
 
+#include "io/plain_file.h"
 #include "pre/mesh/geo_text.h"
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_NAMES = 256, MAX_DEPTH = 10 };
+enum { MAX_NAMES = 256 };
 
 typedef struct name_list {
     int count;
@@ -43,35 +44,12 @@ static void read_constants(const char **text, name_list *list) {
     } while (depth > 0);
 }
 
-static void scan(const char *path, int depth, name_list *list);
-
-/* A file named in a .geo stands relative to it. */
-static void scan_included(const char *path, sf_geo_token name, int depth, name_list *list) {
-    const char *slash = strrchr(path, '/');
-    int folder = slash && *name.begin != '/' ? (int)(slash - path) + 1 : 0;
-    char *inner = NULL;
-    if (asprintf(&inner, "%.*s%.*s", folder, path, (int)name.length, name.begin) < 0)
-        return;
-    if (sf_geo_is_script(inner) && depth < MAX_DEPTH)
-        scan(inner, depth + 1, list);
-    free(inner);
-}
-
-/* Files that cannot be read are passed over: gmsh reports them. */
-static void scan(const char *path, int depth, name_list *list) {
-    char *text = sf_geo_load(path);
-    const char *p = text;
-    for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; text && t.kind != SF_GEO_END;) {
-        t = sf_geo_next(&p);
+static void scan(const char *text, name_list *list) {
+    for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; t.kind != SF_GEO_END;) {
+        t = sf_geo_next(&text);
         if (t.kind == SF_GEO_WORD && sf_geo_is(t, "DefineConstant"))
-            read_constants(&p, list);
-        if (t.kind != SF_GEO_WORD || (!sf_geo_is(t, "Include") && !sf_geo_is(t, "Merge")))
-            continue;
-        t = sf_geo_next(&p);
-        if (t.kind == SF_GEO_TEXT)
-            scan_included(path, t, depth, list);
+            read_constants(&text, list);
     }
-    free(text);
 }
 
 static bool has_name(const name_list *list, const char *name) {
@@ -81,16 +59,27 @@ static bool has_name(const name_list *list, const char *name) {
     return false;
 }
 
-sf_status sf_geo_parameters_check(const sf_geo_source *source, sf_error *err) {
+/* The names in all texts; in the named file alone if the list is not complete. */
+static sf_status collect(const sf_geo_source *source, const sf_broker *read, bool complete, name_list *list,
+                         sf_error *err) {
+    char *text = NULL;
+    for (size_t k = 0; complete && k < read->count; k++)
+        if (read->file[k].is_text)
+            scan(read->file[k].text, list);
+    if (!complete && sf_plain_read(source->path, "geometry", SF_PLAIN_ANY, &text, NULL, err) == SF_OK)
+        scan(text, list);
+    free(text);
+    return err->status;
+}
+
+sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
+                                  sf_error *err) {
     if (source->parameter_count == 0)
         return SF_OK;
-    if (!sf_geo_is_script(source->path))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s takes no parameters (\"%s\" is set): only .geo files do",
-                       source->path, source->parameter[0].name);
     name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
     if (!list)
         return err->status;
-    scan(source->path, 0, list);
+    collect(source, read, complete, list, err);
     for (int k = 0; k < source->parameter_count && err->status == SF_OK; k++) {
         if (has_name(list, source->parameter[k].name))
             continue;

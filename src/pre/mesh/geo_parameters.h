@@ -6,9 +6,12 @@
 
 #include "core/error.h"
 #include "case/case.h"
+#include "pre/mesh/broker.h"
 
-/* Refuses a parameter of the source that no DefineConstant of its .geo file (or of the files that it includes
- * or merges) defines; the sentence lists those that exist. Any other kind of file offers none. */
-sf_status sf_geo_parameters_check(const sf_geo_source *source, sf_error *err);
+/* Refuses a parameter of the source that no DefineConstant of the texts that the geometry read defines; the
+ * sentence lists those that exist. `complete`: `read` holds all of them; else the named file is read here,
+ * and the others are not. */
+sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
+                                  sf_error *err);
 
 #endif

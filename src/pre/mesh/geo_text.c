@@ -2,8 +2,6 @@
 #include "pre/mesh/geo_text.h"
 
 #include <ctype.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char *skip_blank(const char *p) {
@@ -45,23 +43,4 @@ sf_geo_token sf_geo_next(const char **text) {
 
 bool sf_geo_is(sf_geo_token t, const char *text) {
     return t.length == strlen(text) && strncmp(t.begin, text, t.length) == 0;
-}
-
-char *sf_geo_load(const char *path) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *in = fopen(path, "r");
-    if (!in)
-        return NULL;
-    if (getdelim(&text, &size, '\0', in) < 0) {
-        free(text);
-        text = NULL;
-    }
-    fclose(in);
-    return text;
-}
-
-bool sf_geo_is_script(const char *path) {
-    size_t length = strlen(path);
-    return length > 4 && strcasecmp(path + length - 4, ".geo") == 0;
 }

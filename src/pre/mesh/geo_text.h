@@ -18,9 +18,4 @@ typedef struct sf_geo_token {
 sf_geo_token sf_geo_next(const char **text);
 bool sf_geo_is(sf_geo_token t, const char *text);
 
-/* The file up to its first zero byte, from malloc; NULL if it cannot be read. */
-char *sf_geo_load(const char *path);
-/* True if the name ends in .geo. */
-bool sf_geo_is_script(const char *path);
-
 #endif

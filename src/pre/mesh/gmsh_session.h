@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The only code that calls gmsh (C API), with gmsh_adapter.h and gmsh_size.h. A session reads geometries that
- * gmsh can open (.geo, .msh, .step with groups), sets their parameters, meshes them if they hold no mesh, and
- * hands out the pad's cells and the missile's surface. gmsh is not re-entrant: one session at a time. */
+/* Geometries through gmsh: a session reads what gmsh can open (.geo, .msh, .step with groups), sets its
+ * parameters, meshes it if it holds no mesh, and hands out the pad's cells and the missile's surface. gmsh
+ * itself runs in a confined process (mesher.h), one for each geometry. */
 #ifndef SF_PRE_MESH_GMSH_SESSION_H
 #define SF_PRE_MESH_GMSH_SESSION_H
 
 #include "core/error.h"
 #include "case/case.h"
+#include "core/sink.h"
 #include "pre/mesh/mesh.h"
 
 typedef struct sf_gmsh sf_gmsh;
@@ -14,8 +15,12 @@ typedef struct sf_gmsh sf_gmsh;
 sf_status sf_gmsh_begin(sf_gmsh **session, sf_error *err);
 void sf_gmsh_end(sf_gmsh **session);
 
-/* Opens a geometry with its parameters and meshes it. Errors: file missing, gmsh's own errors with file and
- * line, a parameter that the file does not define, no mesh. Replaces the model that was open. */
+/* Processor time that gmsh may take for a geometry (0: SF_MESHER_SECONDS), and a sink (borrowed, may be NULL)
+ * that hears of long meshing. */
+void sf_gmsh_limit(sf_gmsh *session, double seconds, const sf_sink *sink);
+
+/* Opens a geometry with its parameters and meshes it. Errors: those of sf_mesher_run. Replaces the mesh that
+ * was open. */
 sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *err);
 
 /* The pad: cells of the volume group `pad_group`, and all surface groups on its boundary, scaled by `unit` (m
@@ -28,7 +33,14 @@ sf_status sf_gmsh_read_mesh(sf_gmsh *session, const char *pad_group, double unit
 sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                                sf_error *err);
 
-/* The version of gmsh that runs, for example "4.8.4"; valid as long as the session. */
+/* The version of gmsh that meshed the last geometry, for example "4.8.4", or "4.8.4 (unconfined)"; valid as
+ * long as the session. */
 const char *sf_gmsh_version(const sf_gmsh *session);
+
+/* Every file that the geometries so far read, a line each: hash of its content (16 hexadecimal digits),
+ * blank, path. The line SF_GMSH_UNKNOWN_FILES stands for files that are not known, because gmsh was not
+ * confined. Valid until the next load; NULL: no geometry. */
+#define SF_GMSH_UNKNOWN_FILES "unknown"
+const char *sf_gmsh_files(const sf_gmsh *session);
 
 #endif

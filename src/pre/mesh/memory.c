@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/resource.h>
 
 double sf_memory_available(void) {
     const char *given = getenv("SOFTFALL_MEMORY_MB");
@@ -20,23 +19,4 @@ double sf_memory_available(void) {
     if (file)
         fclose(file);
     return kilobytes < 0 ? INFINITY : 1024.0 * (double)kilobytes;
-}
-
-/* The sanitizers' shadow takes terabytes of addresses. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define UNLIMITED_ADDRESSES
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define UNLIMITED_ADDRESSES
-#endif
-#endif
-
-void sf_memory_limit_process(void) {
-#ifndef UNLIMITED_ADDRESSES
-    double bytes = sf_memory_available();
-    if (bytes < 1e15) {
-        const struct rlimit limit = {(rlim_t)bytes, (rlim_t)bytes};
-        setrlimit(RLIMIT_AS, &limit);
-    }
-#endif
 }

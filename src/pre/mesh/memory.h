@@ -6,7 +6,5 @@
 
 /* Bytes; INFINITY if unknown. */
 double sf_memory_available(void);
-/* Makes allocations of this process beyond that fail, for a process that reads untrusted files. */
-void sf_memory_limit_process(void);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Differences between the versions of gmsh's C API, from 4.8 on. No other file looks at GMSH_API_VERSION. */
-#ifndef SF_PRE_MESH_GMSH_ADAPTER_H
-#define SF_PRE_MESH_GMSH_ADAPTER_H
+#ifndef SF_MESHER_GMSH_ADAPTER_H
+#define SF_MESHER_GMSH_ADAPTER_H
 
 #include <stddef.h>
 

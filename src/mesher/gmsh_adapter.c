@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/mesh/gmsh_adapter.h"
+#include "mesher/gmsh_adapter.h"
 
 #include <gmshc.h>
 #include <stdio.h>

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The only code that calls gmsh (C API), with gmsh_adapter.h: opens the geometry of a request, meshes it if
+ * it holds no mesh, and writes the mesh stream. */
+#ifndef SF_MESHER_WORK_H
+#define SF_MESHER_WORK_H
+
+/* Starts gmsh. Returns gmsh's code: 0 on success. */
+int sf_work_begin(void);
+
+/* Merges the .geo text `parameters` and the geometry. False: the stream holds gmsh's error. */
+_Bool sf_work_parse(const char *parameters, const char *path);
+/* Meshes what sf_work_parse read and writes the stream. */
+void sf_work_mesh(const char *path);
+
+#endif

@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/mesh/mesher.h"
+
+#include "io/plain_file.h"
+#include "pre/mesh/geo_parameters.h"
+#include "pre/mesh/memory.h"
+#include "pre/mesh/mesher_protocol.h"
+#include "pre/mesh/mesher_start.h"
+
+#include <errno.h>
+#include <locale.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { LINE_SIZE = 400, REPORT_SECONDS = 10, MOST_MESSAGES = 100000 };
+
+/* A child at work, and what it has said. */
+typedef struct conversation {
+    const sf_geo_source *source;
+    const sf_mesher_limits *limits;
+    double seconds, bytes; /* limits of processor time and memory */
+    bool confined;
+    sf_mesher_child child;
+    sf_broker broker;
+    char *stream;
+    size_t size, capacity;
+    char line[LINE_SIZE], last_line[LINE_SIZE], error_line[LINE_SIZE]; /* of what gmsh prints */
+    size_t line_length;
+    bool program, memory, late, stopped; /* it tried to start one; lacked it; took too long; was ended here */
+    int no_filter, messages, status;      /* errno value of the filter; count; of wait */
+} conversation;
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* The .geo text that sets the parameters; from malloc. The decimal point is a point in any locale. */
+static char *parameter_text(const sf_geo_source *source) {
+    char *text = NULL;
+    size_t size = 0;
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0), before = c ? uselocale(c) : (locale_t)0;
+    FILE *out = c ? open_memstream(&text, &size) : NULL;
+    if (out)
+        fputs("Delete Variables;\n", out);
+    for (int k = 0; out && k < source->parameter_count; k++)
+        fprintf(out, "%s = %.17g;\n", source->parameter[k].name, source->parameter[k].value);
+    if (out)
+        fclose(out);
+    if (c) {
+        uselocale(before);
+        freelocale(c);
+    }
+    return text;
+}
+
+/* ---- what the child says ---- */
+
+static void answer(const conversation *c, int error, int file) {
+    sf_mesher_answer text = {error};
+    union {
+        struct cmsghdr header;
+        char space[CMSG_SPACE(sizeof(int))];
+    } control = {0};
+    struct iovec part = {&text, sizeof text};
+    struct msghdr message = {.msg_iov = &part, .msg_iovlen = 1};
+    if (error == 0) {
+        message.msg_control = &control;
+        message.msg_controllen = sizeof control;
+        control.header = (struct cmsghdr){.cmsg_len = CMSG_LEN(sizeof(int)), SOL_SOCKET, SCM_RIGHTS};
+        memcpy(CMSG_DATA(&control.header), &file, sizeof file);
+    }
+    while (sendmsg(c->child.control, &message, MSG_NOSIGNAL) < 0 && errno == EINTR)
+        ;
+}
+
+static void stop(conversation *c) {
+    kill(c->child.process, SIGKILL);
+    c->stopped = true;
+}
+
+/* False: the conversation is over. */
+static bool hear_message(conversation *c, sf_error *err) {
+    static const sf_mesher_ask none;
+    sf_mesher_ask ask = none;
+    ssize_t size = recv(c->child.control, &ask, sizeof ask, MSG_DONTWAIT);
+    if (size < 0)
+        return errno == EINTR || errno == EAGAIN;
+    if (size == 0)
+        return false;
+    ask.text[sizeof ask.text - 1] = '\0';
+    if (++c->messages > MOST_MESSAGES) {
+        SF_FAIL(err, SF_ERR_INPUT, "%s: the geometry opens files without end", c->source->path);
+        stop(c);
+        return true;
+    }
+    switch ((sf_mesher_ask_kind)ask.kind) {
+    case SF_ASK_READY:
+        c->broker.ready = true;
+        break;
+    case SF_ASK_PARSED:
+        if (sf_geo_parameters_check(c->source, &c->broker, c->confined, err) != SF_OK)
+            stop(c);
+        break;
+    case SF_ASK_OPEN: {
+        int file = -1, error = sf_broker_open(&c->broker, ask.text, ask.detail, &file);
+        answer(c, error, file);
+        if (file >= 0)
+            close(file);
+        break;
+    }
+    case SF_ASK_PROGRAM:
+        c->program = true;
+        stop(c);
+        break;
+    case SF_ASK_MEMORY:
+        c->memory = true;
+        break;
+    case SF_ASK_NO_FILTER:
+        c->no_filter = ask.detail > 0 ? ask.detail : EINVAL;
+        break;
+    default:
+        break;
+    }
+    return true;
+}
+
+/* More of the mesh stream. False: it is over. */
+static bool hear_data(conversation *c, sf_error *err) {
+    if (c->capacity - c->size < 65536) {
+        size_t capacity = c->capacity ? 2 * c->capacity : (size_t)1 << 20;
+        char *grown = (double)capacity > c->bytes ? NULL : realloc(c->stream, capacity);
+        if (!grown) {
+            SF_FAIL(err, SF_ERR_INPUT, "%s: its mesh does not fit into %.3g GB of memory", c->source->path,
+                    1e-9 * c->bytes);
+            stop(c);
+            return false;
+        }
+        c->stream = grown;
+        c->capacity = capacity;
+    }
+    ssize_t size = read(c->child.data, c->stream + c->size, c->capacity - c->size);
+    c->size += size > 0 ? (size_t)size : 0;
+    return size > 0 || (size < 0 && errno == EINTR);
+}
+
+static void end_line(conversation *c) {
+    c->line[c->line_length] = '\0';
+    c->line_length = 0;
+    if (c->line[strspn(c->line, " ")] == '\0')
+        return;
+    snprintf(c->last_line, sizeof c->last_line, "%s", c->line);
+    if (*c->error_line == '\0' && strncmp(c->line, "Error", 5) == 0)
+        snprintf(c->error_line, sizeof c->error_line, "%s", c->line + 5 + strspn(c->line + 5, " :"));
+}
+
+/* What gmsh prints: only its last line and its first error are kept. */
+static bool hear_print(conversation *c) {
+    char text[4096];
+    ssize_t size = read(c->child.print, text, sizeof text);
+    for (ssize_t k = 0; k < size; k++)
+        if (text[k] == '\n' || text[k] == '\r')
+            end_line(c);
+        else if (c->line_length < sizeof c->line - 1)
+            c->line[c->line_length++] = text[k];
+    return size > 0 || (size < 0 && errno == EINTR);
+}
+
+static void tell_progress(const conversation *c, double elapsed) {
+    const char *what = strchr(c->last_line, ':');
+    sf_sink_tell(c->limits->sink, SF_NOTE,
+                 "%s: gmsh has worked for %.0f s (it may take %g s of processor time)%s%s", c->source->path,
+                 elapsed, c->seconds, what ? ":" : "", what ? what + 1 : "");
+}
+
+/* Until the child has closed everything, or was stopped. */
+static void converse(conversation *c, sf_error *err) {
+    struct pollfd channel[] = {
+        {c->child.control, POLLIN, 0}, {c->child.data, POLLIN, 0}, {c->child.print, POLLIN, 0}};
+    double start = now(), told = 0;
+    while (!c->stopped && (channel[0].fd >= 0 || channel[1].fd >= 0 || channel[2].fd >= 0)) {
+        int ready = poll(channel, 3, 1000);
+        double elapsed = now() - start;
+        if (elapsed > told + REPORT_SECONDS) {
+            told = elapsed;
+            tell_progress(c, elapsed);
+        }
+        if (elapsed > 4 * c->seconds + 30) {
+            c->late = true;
+            stop(c);
+        }
+        if (ready <= 0)
+            continue;
+        if (channel[0].revents && !hear_message(c, err))
+            channel[0].fd = -1;
+        if (channel[1].revents && !hear_data(c, err))
+            channel[1].fd = -1;
+        if (channel[2].revents && !hear_print(c))
+            channel[2].fd = -1;
+    }
+    end_line(c);
+}
+
+/* ---- what became of it ---- */
+
+/* What the geometry may not do is worth knowing when gmsh fails. */
+static sf_status fail(const conversation *c, const char *what, sf_error *err) {
+    char more[700] = "";
+    if (*c->broker.written)
+        snprintf(more, sizeof more, "; it tried to write %s, which a geometry may not", c->broker.written);
+    else if (*c->broker.refused)
+        snprintf(more, sizeof more, "; %s", c->broker.refused);
+    return SF_FAIL(err, SF_ERR_INPUT, "%s: %s%s", c->source->path, what, more);
+}
+
+static sf_status judge_ending(const conversation *c, sf_error *err) {
+    char what[LINE_SIZE + 200];
+    int signal_number = WIFSIGNALED(c->status) ? WTERMSIG(c->status) : 0;
+    const char *line = *c->error_line                          ? c->error_line
+                       : strncmp(c->last_line, "Info", 4) == 0 ? ""
+                                                               : c->last_line;
+    if (c->no_filter)
+        return SF_FAIL(
+            err, SF_ERR_IO,
+            "%s: this kernel cannot keep gmsh from harm (seccomp: %s); SOFTFALL_UNCONFINED=1 in the environment runs "
+            "it nevertheless, for geometries that you trust",
+            c->source->path, strerror(c->no_filter));
+    if (c->program || signal_number == SIGSYS) /* where signals are blocked, the trap kills */
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: the geometry tried to start a program, which it may not",
+                       c->source->path);
+    if (c->memory || strstr(c->last_line, "bad_alloc")) {
+        snprintf(
+            what, sizeof what,
+            "gmsh asked for more than the %.3g GB of memory that are available: take a coarser mesh, or set "
+            "SOFTFALL_MEMORY_MB",
+            1e-9 * c->bytes);
+        return fail(c, what, err);
+    }
+    if (c->late || signal_number == SIGXCPU) {
+        snprintf(what, sizeof what,
+                 "gmsh took more than %g s of processor time: raise geometry.time_limit, or take a coarser "
+                 "mesh",
+                 c->seconds);
+        return fail(c, what, err);
+    }
+    if (signal_number)
+        snprintf(what, sizeof what, "gmsh crashed (%s)%s%s", strsignal(signal_number), *line ? ": " : "",
+                 line);
+    else
+        snprintf(what, sizeof what, "gmsh ended without a mesh%s%s", *line ? ": " : "", line);
+    return fail(c, what, err);
+}
+
+static sf_status judge(conversation *c, sf_meshed *out, sf_error *err) {
+    bool ended = WIFEXITED(c->status) && WEXITSTATUS(c->status) == 0;
+    if (err->status != SF_OK)
+        return err->status;
+    if (!ended || c->program || c->memory || c->late || c->no_filter || c->size == 0)
+        return judge_ending(c, err);
+    if (sf_geo_data_read(c->stream, c->size, c->source->path, &out->data, err) != SF_OK)
+        return err->status;
+    if (*out->data.error) {
+        char what[sizeof out->data.error + 8];
+        snprintf(what, sizeof what, "gmsh, %s", out->data.error);
+        return fail(c, what, err);
+    }
+    return SF_OK;
+}
+
+static void send_request(const conversation *c, sf_error *err) {
+    sf_mesher_request request = {.version = SF_MESHER_VERSION,
+                                 .confined = c->confined,
+                                 .bytes = c->bytes < 1e15 ? (uint64_t)c->bytes : 0,
+                                 .seconds = (uint64_t)ceil(c->seconds)};
+    if (snprintf(request.path, sizeof request.path, "%s", c->source->path) >= (int)sizeof request.path)
+        SF_FAIL(err, SF_ERR_INPUT, "the name of the geometry is too long: %.100s...", c->source->path);
+    else if (send(c->child.control, &request, sizeof request, MSG_NOSIGNAL) != (ssize_t)sizeof request)
+        SF_FAIL(err, SF_ERR_IO, "softfall-mesh does not listen: %s", strerror(errno));
+}
+
+static void end(conversation *c) {
+    close(c->child.control);
+    close(c->child.data);
+    close(c->child.print);
+    while (waitpid(c->child.process, &c->status, 0) < 0)
+        if (errno != EINTR) {
+            c->status = 0; /* the host takes the ends of children itself: the stream tells */
+            break;
+        }
+}
+
+sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *limits, sf_meshed *out,
+                        sf_error *err) {
+    const char *unconfined = getenv("SOFTFALL_UNCONFINED");
+    conversation c = {.source = source,
+                      .limits = limits,
+                      .seconds = limits->seconds > 0 ? limits->seconds : SF_MESHER_SECONDS,
+                      .bytes = sf_memory_available(),
+                      .confined = !unconfined || strcmp(unconfined, "1") != 0};
+    char *parameters = parameter_text(source);
+    memset(out, 0, sizeof *out);
+    if (!parameters)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the parameters of %s", source->path);
+    c.broker.parameters = parameters;
+    c.broker.most = c.bytes < 0x1p32 ? (uint64_t)c.bytes : (uint64_t)1 << 32;
+    if (err->status == SF_OK && sf_plain_check(source->path, "geometry", err) == SF_OK &&
+        sf_mesher_start(parameters, &c.child, err) == SF_OK) {
+        send_request(&c, err);
+        if (err->status != SF_OK)
+            stop(&c);
+        converse(&c, err);
+        end(&c);
+        judge(&c, out, err);
+    }
+    free(parameters);
+    c.broker.parameters = NULL;
+    out->stream = c.stream;
+    out->broker = c.broker;
+    out->confined = c.confined;
+    if (err->status != SF_OK)
+        sf_meshed_free(out);
+    return err->status;
+}
+
+void sf_meshed_free(sf_meshed *meshed) {
+    sf_geo_data_free(&meshed->data);
+    sf_broker_free(&meshed->broker);
+    free(meshed->stream);
+    memset(meshed, 0, sizeof *meshed);
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Runs gmsh on a geometry in a process of its own, softfall-mesh, that can neither start programs nor open
+ * files (docs/adr/ 0014-confined-gmsh.md). Whatever the geometry does there, this process gets a mesh or an
+ * error. */
+#ifndef SF_PRE_MESH_MESHER_H
+#define SF_PRE_MESH_MESHER_H
+
+#include "case/case.h"
+#include "core/sink.h"
+#include "pre/mesh/broker.h"
+#include "pre/mesh/mesh_stream.h"
+
+typedef struct sf_mesher_limits {
+    double seconds;      /* of processor time; 0: SF_MESHER_SECONDS */
+    const sf_sink *sink; /* told every ten seconds that gmsh works; may be NULL */
+} sf_mesher_limits;
+
+enum { SF_MESHER_SECONDS = 600 };
+
+typedef struct sf_meshed {
+    sf_geo_data data;
+    void *stream;     /* `data` borrows from it */
+    sf_broker broker; /* what was read */
+    bool confined;
+} sf_meshed;
+
+/* SF_ERR_INPUT: the file is missing or not plain, gmsh reports an error (with file and line), crashes, takes
+ * too long or too much memory, the geometry tries to start a program, a parameter is not defined in it.
+ * SF_ERR_IO: softfall-mesh is missing or cannot be started, or the kernel cannot confine it (the environment
+ * SOFTFALL_UNCONFINED=1 allows that). On failure
+ * `*out` is empty. */
+sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *limits, sf_meshed *out,
+                        sf_error *err);
+void sf_meshed_free(sf_meshed *meshed);
+
+#endif

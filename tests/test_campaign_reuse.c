@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A finished drop is used again only as long as everything that its geometry read is as it was. */
+#include "program_fixture.h"
+
+#include "campaign/run_folder.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+/* A cube whose .geo includes one file and merges another; the drop ends at once. */
+static int set_up(void **state) {
+    const program_place *p = program_group_set_up(state);
+    return program_shell(p,
+                         "cp -r '%s/examples' '%s/geo' . && cd geo && mv cube.geo inner.geo && "
+                         "printf 'Include \"inner.geo\";\\nMerge \"size.geo\";\\n' > cube.geo && "
+                         "printf '// nothing\\n' > size.geo",
+                         getenv("SF_SOURCE_DIR"), getenv("SF_SOURCE_DIR"))
+        .code;
+}
+
+static bool is_finished(const program_place *p, bool simulate) {
+    static const char *const overrides[] = {"geometry.parameters.spacing=25", "solver.end_time=0.1 ms"};
+    sf_run_folder at;
+    sf_error err = SF_ERROR_INIT;
+    const char *case_path = program_path(p, "examples/compression/case.cfg");
+    if (sf_run_folder_name(program_path(p, "runs"), "drop", case_path, 2, overrides, &at, &err) != SF_OK ||
+        (simulate && sf_run_folder_simulate(&at, case_path, 2, overrides, 1, &err) != SF_OK))
+        fail_msg("%s", err.text);
+    return sf_run_folder_is_finished(&at);
+}
+
+static void what_was_included_or_merged_counts(void **state) {
+    const program_place *p = *state;
+    program_shell(p, "mkdir runs");
+    assert_false(is_finished(p, false));
+    assert_true(is_finished(p, true));
+    static const char *const changes[][2] = {
+        {"cp geo/inner.geo kept; echo '// changed' >> geo/inner.geo", "cp kept geo/inner.geo"},
+        {"echo '// otherwise' > geo/size.geo", "echo '// nothing' > geo/size.geo"},
+        {"mv geo/size.geo away", "mv away geo/size.geo"},
+        {"mv geo/size.geo away; mkdir geo/size.geo", "rmdir geo/size.geo; mv away geo/size.geo"},
+        {"touch geo/inner.geo.opt", "rm geo/inner.geo.opt"},
+        {"cp geo/platen.geo kept; echo '// changed' >> geo/platen.geo", "cp kept geo/platen.geo"},
+    };
+    for (size_t k = 0; k < sizeof changes / sizeof changes[0]; k++) {
+        program_shell(p, "%s", changes[k][0]);
+        if (is_finished(p, false))
+            fail_msg("after %s the drop is used again", changes[k][0]);
+        program_shell(p, "%s", changes[k][1]);
+        if (!is_finished(p, false))
+            fail_msg("after %s the drop is not used again", changes[k][1]);
+    }
+}
+
+/* The drop is simulated again where it was, and then used with the new content. */
+static void a_changed_geometry_is_simulated_again(void **state) {
+    const program_place *p = *state;
+    program_shell(p, "echo 'Mesh.RandomFactor = 1e-9;' > geo/size.geo");
+    assert_false(is_finished(p, false));
+    assert_true(is_finished(p, true));
+    program_shell(p, "echo '// nothing' > geo/size.geo");
+    assert_false(is_finished(p, false));
+}
+
+/* Nobody knows what gmsh read. */
+static void an_unconfined_drop_is_not_used_again(void **state) {
+    program_shell(*state, "cp geo/inner.geo geo/cube.geo"); /* its parameters are known then */
+    setenv("SOFTFALL_UNCONFINED", "1", 1);
+    bool finished = is_finished(*state, true);
+    unsetenv("SOFTFALL_UNCONFINED");
+    assert_false(finished);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_was_included_or_merged_counts),
+        cmocka_unit_test(a_changed_geometry_is_simulated_again),
+        cmocka_unit_test(an_unconfined_drop_is_not_used_again),
+    };
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+}

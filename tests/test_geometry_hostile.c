@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Geometries that mean harm: none starts a program, none makes or changes a file, none hangs or takes the
+ * memory, and each ends as a mesh or as one sentence. And a softfall-mesh that does anything, in place of the
+ * real one. */
+#include "program_fixture.h"
+
+#include "pre/mesh/gmsh_session.h"
+
+#include <errno.h>
+#include <seccomp.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#define BOX "SetFactory(\"OpenCASCADE\"); Box(1) = {0, 0, 0, 1, 1, 1};\nPhysical Volume(\"pad\") = {1};\n"
+#define HARM "SystemCall \"touch harm\";\n"
+#define NO_PROGRAM "tried to start a program"
+
+enum { SECONDS = 3 }; /* of processor time, of which gmsh's start takes a part */
+
+/* HOME and the present folder are the test's own. */
+static int set_up(void **state) {
+    const program_place *p = program_group_set_up(state);
+    program_shell(p, "mkdir home work && mkfifo work/pipe");
+    setenv("HOME", program_path(p, "home"), 1);
+    return chdir(program_path(p, "work"));
+}
+
+static int tear_down(void **state) {
+    return chdir("/") + program_group_tear_down(state);
+}
+
+/* Status of meshing the file in the present folder; `*nodes` of its pad. */
+static sf_status mesh_file(const char *path, double seconds, int64_t *nodes, sf_error *err) {
+    char copy[512];
+    sf_gmsh *session = NULL;
+    sf_mesh mesh = {0};
+    snprintf(copy, sizeof copy, "%s", path);
+    const sf_geo_source source = {.path = copy};
+    if (sf_gmsh_begin(&session, err) == SF_OK) {
+        sf_gmsh_limit(session, seconds, NULL);
+        if (sf_gmsh_load(session, &source, err) == SF_OK)
+            sf_gmsh_read_mesh(session, "pad", 1e-3, &mesh, err);
+    }
+    *nodes = mesh.node_count;
+    sf_mesh_free(&mesh);
+    sf_gmsh_end(&session);
+    return err->status;
+}
+
+static void write_text(const char *name, const char *text) {
+    FILE *file = fopen(name, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Everything in the test's folder: kinds, sizes and sums. */
+static program_result list_all(const program_place *p) {
+    return program_shell(
+        p, "find . ! -name '.std*' ! -path . -printf '%%p %%y %%s\\n' | sort; find . -type f ! -name "
+           "'.std*' -exec cksum {} + | sort");
+}
+
+typedef struct attack {
+    const char *text; /* of attack.geo */
+    const char *says; /* part of the sentence; NULL: a mesh; "": either */
+} attack;
+
+static void check(const program_place *p, const attack *a) {
+    sf_error err = SF_ERROR_INIT;
+    int64_t nodes = 0;
+    write_text("attack.geo", a->text);
+    program_result before = list_all(p);
+    sf_status status = mesh_file("attack.geo", SECONDS, &nodes, &err);
+    program_result after = list_all(p);
+    assert_string_equal(before.out, after.out);
+    if (a->says && *a->says && (status == SF_OK || !strstr(err.text, a->says)))
+        fail_msg("%s\ngives '%s' and lacks '%s'", a->text, err.text, a->says);
+    if (!a->says && status != SF_OK)
+        fail_msg("%s\nis refused: %s", a->text, err.text);
+    if (status != SF_OK && (strncmp(err.text, "attack.geo: ", 12) != 0 || strchr(err.text, '\n')))
+        fail_msg("no sentence about attack.geo: %s", err.text);
+    assert_true(status != SF_OK || nodes > 0);
+}
+
+static void check_all(const program_place *p, const attack *list, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        check(p, &list[k]);
+}
+
+#define CHECK_ALL(p, list) check_all(p, list, sizeof(list) / sizeof(list)[0])
+
+static void programs_are_not_started(void **state) {
+    static const attack list[] = {
+        {HARM BOX, NO_PROGRAM},
+        {"System \"touch harm\";\n" BOX, NO_PROGRAM},
+        {"NonBlockingSystemCall \"touch harm\";\n" BOX, NO_PROGRAM},
+        {BOX "MergeWithBoundingBox \"evil.txt\";\n", NO_PROGRAM},
+        {BOX "Merge \"evil.Stl\";\n", NO_PROGRAM},
+        {BOX "Merge \"evil.inp\";\n", NO_PROGRAM},
+        {BOX "Include StrCat(\"evil\", \".txt\");\n", NO_PROGRAM},
+        {BOX "Field[1] = ExternalProcess; Field[1].CommandLine = \"touch harm\"; Background Field = 1;\n",
+         NO_PROGRAM},
+        {BOX "OnelabRun(\"x\", \"touch harm\");\n", ""},
+        {BOX
+         "General.TextEditor = \"touch harm\"; Solver.Executable0 = \"touch harm\"; Solver.AlwaysListen = 1;\n",
+         ""},
+    };
+    write_text("evil.txt", HARM);
+    write_text("evil.Stl", HARM);
+    write_text("evil.inp", HARM);
+    CHECK_ALL(*state, list);
+}
+
+static void files_are_not_written(void **state) {
+    static const attack list[] = {
+        {BOX "Save \"harm.msh\";\n", "it tried to write harm.msh"},
+        {BOX "Mesh 3; Save \"evil.stl\";\n", "it tried to write evil.stl"},
+        {BOX "Printf(\"x\") > \"harm\";\n", "it tried to write harm"},
+        {BOX "Printf(\"x\") >> \"evil.txt\";\n", "it tried to write evil.txt"},
+        {BOX "Print \"harm.png\";\n", "attack.geo"},
+        {BOX "CreateDir \"harm\";\n", ""},
+        {BOX "Plugin(NewView).Run; Save View[0] \"harm.pos\";\n", "attack.geo"},
+        {BOX "General.Verbosity = 99; Mesh.Algorithm = 9;\n", ""},
+        {BOX "Mesh.Recombine3DAll = 1;\n", ""},
+        {BOX "General.SaveOptions = 2; General.SaveSession = 1; General.OptionsFileName = \"harm\";\n", ""},
+        {BOX "General.ErrorFileName = \"harm\"; General.LogFileName = \"harm\"; Error(\"x\");\n",
+         "attack.geo"},
+        {BOX "Mesh.SaveAll = 1; Geometry.AutoCoherence = 2; Geometry.ExactExtrusion = 0;\n", NULL},
+    };
+    CHECK_ALL(*state, list);
+}
+
+static void only_plain_files_are_read(void **state) {
+    static const attack list[] = {
+        {BOX "Include \"/dev/zero\";\n", "/dev/zero"},
+        {BOX "Merge \"/dev/stdin\";\n", "/dev/stdin"},
+        {BOX "Merge \"pipe\";\n", "pipe is not a plain file"},
+        {BOX "Include \"/proc/kmsg\";\n", "/proc/kmsg"},
+        {BOX "Merge \"/proc/self/mem\";\n", "/proc/self/mem"},
+        {BOX "Include \"absent.geo\";\n", "absent.geo"},
+        {BOX "Include \"attack.geo\";\n", ""}, /* without end */
+    };
+    CHECK_ALL(*state, list);
+}
+
+static void work_has_an_end(void **state) {
+    static const attack list[] = {
+        {BOX "For i In {1:1e12}\nx = i;\nEndFor\n", "more than 3 s of processor time"},
+        {BOX "a() = {};\nFor i In {1:1e9}\na() += {i:i+1000000};\nEndFor\n", "attack.geo"},
+        {BOX "a() = {1:1e12};\n", "attack.geo"},
+        {BOX "Macro again\nCall again;\nReturn\nCall again;\n", ""},
+        {BOX "Sleep 100000;\n", ""},
+        {BOX "Mesh.MeshSizeMax = 1e-4;\n", "attack.geo"},
+        {BOX "Mesh.MeshSizeMax = 1e-300;\n", ""},
+        {BOX "Transfinite Curve {:} = 2000000000;\n", "attack.geo"},
+        {"SetFactory(\"OpenCASCADE\"); Box(1) = {0, 0, 0, 1e300, 1e300, 1e300}; Physical Volume(\"pad\") = {1};\n",
+         ""},
+        {"Exit;\n", "gmsh ended without a mesh"},
+        {"Abort;\n", "it holds no mesh"},
+    };
+    time_t begin = time(NULL);
+    setenv("SOFTFALL_MEMORY_MB", "1500", 1);
+    CHECK_ALL(*state, list);
+    unsetenv("SOFTFALL_MEMORY_MB");
+    assert_true(time(NULL) - begin < 300);
+}
+
+/* gmsh's own language, all of it: what is confined need not be forbidden. */
+static void everything_else_may_be_used(void **state) {
+    static const attack list[] = {
+        {BOX "Solver.AutoCheck = 0; Printf(\"a note\");\n", NULL},
+        {BOX "Physical Volume(\"other\") = {1}; x = 1; Delete Physicals; Physical Volume(\"pad\") = {1};",
+         NULL},
+        {"SetFactory(\"OpenCASCADE\"); Box(1) = {0, 0, 0, 1, 1, 1};\nx = 1; Physical Volume(\"pad\") = {1};",
+         NULL},
+        {BOX "General.NumThreads = 4; Mesh.MaxNumThreads3D = 4; Mesh.Algorithm3D = 10;\n", NULL},
+    };
+    CHECK_ALL(*state, list);
+}
+
+/* ---- in place of softfall-mesh ---- */
+
+static void check_mesher(const program_place *p, const char *script, const char *says) {
+    sf_error err = SF_ERROR_INIT;
+    int64_t nodes;
+    const char *kept = getenv("SF_BIN_DIR");
+    char bin[600];
+    snprintf(bin, sizeof bin, "%s", kept ? kept : "");
+    program_shell(
+        p,
+        "mkdir -p fake && rm -f fake/softfall-mesh && cat > fake/softfall-mesh <<'E'\n#!/bin/bash\n%s\nE\n"
+        "chmod +x fake/softfall-mesh",
+        script);
+    setenv("SF_BIN_DIR", program_path(p, "fake"), 1);
+    sf_status status = mesh_file("attack.geo", SECONDS, &nodes, &err);
+    if (kept)
+        setenv("SF_BIN_DIR", bin, 1);
+    else
+        unsetenv("SF_BIN_DIR");
+    if (status == SF_OK || !strstr(err.text, says))
+        fail_msg("%s\ngives '%s' and lacks '%s'", script, err.text, says);
+}
+
+static void a_process_that_fails_is_told(void **state) {
+    static const char *const list[][2] = {
+        {"kill -9 $$", "gmsh crashed (Killed)"},
+        {"kill -SEGV $$", "gmsh crashed (Segmentation fault)"},
+        {"kill -XCPU $$", "more than 3 s of processor time"},
+        {"echo 'Error   : it is broken' >&2; kill -ABRT $$", "gmsh crashed (Aborted): it is broken"},
+        {"exit 3", "gmsh ended without a mesh"},
+        {"exit 0", "gmsh ended without a mesh"},
+        {"printf 'sfmesh01' >&4; sleep 0.2; kill -9 $$", "gmsh crashed (Killed)"},
+        {"printf 'sfmesh01' >&4", "cut or damaged"},
+        {"head -c 100000 /dev/urandom >&4", "cut or damaged"},
+        {"head -c 100000 /dev/zero >&4", "cut or damaged"},
+        {"head -c 100000 /dev/urandom >&3; sleep 0.1", "gmsh ended without a mesh"},
+        {"yes 0123456789 | head -c 3000000 >&2; echo; echo last >&2", "gmsh ended without a mesh: last"},
+    };
+    write_text("attack.geo", BOX);
+    for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
+        check_mesher(*state, list[k][0], list[k][1]);
+    setenv("SOFTFALL_MEMORY_MB", "100", 1);
+    check_mesher(*state, "cat /dev/zero >&4", "does not fit into 0.1 GB");
+    unsetenv("SOFTFALL_MEMORY_MB");
+}
+
+/* In a process where the kernel knows no filters. */
+static int mesh_without_filters(void) {
+    scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+    sf_error err = SF_ERROR_INIT;
+    int64_t nodes;
+    if (seccomp_rule_add(filter, SCMP_ACT_ERRNO(EINVAL), SCMP_SYS(seccomp), 0) != 0 ||
+        seccomp_rule_add(filter, SCMP_ACT_ERRNO(EINVAL), SCMP_SYS(prctl), 1,
+                         SCMP_A0(SCMP_CMP_EQ, PR_SET_SECCOMP)) != 0 ||
+        seccomp_load(filter) != 0)
+        return 2;
+    if (mesh_file("attack.geo", SECONDS, &nodes, &err) != SF_ERR_IO ||
+        !strstr(err.text, "SOFTFALL_UNCONFINED=1"))
+        return 3;
+    sf_error second = SF_ERROR_INIT;
+    setenv("SOFTFALL_UNCONFINED", "1", 1);
+    return mesh_file("attack.geo", SECONDS, &nodes, &second) == SF_OK && nodes > 0 ? 0 : 4;
+}
+
+static void without_filters_it_is_refused_unless_asked_for(void **state) {
+    int status = 0;
+    (void)state;
+    write_text("attack.geo", BOX);
+    pid_t child = fork();
+    if (child == 0)
+        _exit(mesh_without_filters());
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+}
+
+/* The model's file says what was read, and by what. */
+static void what_was_read_is_listed(void **state) {
+    const sf_geo_source source = {
+        .path = (char[]){"outer.geo"}, .parameter_count = 1, .parameter = {{"size", 0.5}}};
+    sf_error err = SF_ERROR_INIT;
+    sf_gmsh *session = NULL;
+    (void)state;
+    write_text("outer.geo", BOX "Include \"inner.geo\";\nMesh.MeshSizeMax = size;\n");
+    write_text("inner.geo", "DefineConstant[ size = 1 ];");
+    sf_gmsh_begin(&session, &err);
+    if (sf_gmsh_load(session, &source, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    const char *files = sf_gmsh_files(session), *second = strchr(files, '\n');
+    assert_non_null(second);
+    assert_non_null(strstr(files, "/work/outer.geo\n"));
+    assert_non_null(strstr(second, "/work/inner.geo\n"));
+    assert_null(strstr(files, SF_GMSH_UNKNOWN_FILES));
+    assert_null(strstr(sf_gmsh_version(session), "unconfined"));
+    setenv("SOFTFALL_UNCONFINED", "1", 1);
+    const sf_geo_source plain = {.path = (char[]){"outer.geo"}};
+    if (sf_gmsh_load(session, &plain, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_non_null(strstr(sf_gmsh_files(session), SF_GMSH_UNKNOWN_FILES "\n"));
+    assert_non_null(strstr(sf_gmsh_version(session), "unconfined"));
+    unsetenv("SOFTFALL_UNCONFINED");
+    sf_gmsh_end(&session);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(programs_are_not_started),
+        cmocka_unit_test(files_are_not_written),
+        cmocka_unit_test(only_plain_files_are_read),
+        cmocka_unit_test(work_has_an_end),
+        cmocka_unit_test(everything_else_may_be_used),
+        cmocka_unit_test(a_process_that_fails_is_told),
+        cmocka_unit_test(without_filters_it_is_refused_unless_asked_for),
+        cmocka_unit_test(what_was_read_is_listed),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
