@@ -9,14 +9,16 @@ static const struct {
     const char
         *words; /* possible values, "|" between them; NULL: numbers from 1 to `most`, "," between them */
     long most;
+    bool needed; /* an impossible value is refused, not left out */
 } known[] = {
-    {"OMP_NUM_THREADS", NULL, SF_MOST_THREADS},
-    {"OMP_THREAD_LIMIT", NULL, 1000000000},
-    {"OMP_WAIT_POLICY", "active|passive", 0},
-    {"OMP_PROC_BIND", "true|false|master|primary|close|spread", 0},
-    {"OMP_PLACES", "threads|cores|sockets", 0},
-    {"OMP_DYNAMIC", "true|false", 0},
-    {"GOMP_SPINCOUNT", NULL, 1000000000},
+    {"OMP_NUM_THREADS", NULL, SF_MOST_THREADS, true},
+    {"OMP_THREAD_LIMIT", NULL, 1000000000, true},
+    {"OMP_WAIT_POLICY", "active|passive", 0, false},
+    {"OMP_PROC_BIND", "true|false|master|primary|close|spread", 0, false},
+    {"OMP_PLACES", "threads|cores|sockets", 0, false},
+    {"OMP_DYNAMIC", "true|false", 0, false},
+    {"GOMP_SPINCOUNT", NULL, 1000000000, false},
+    {"GOMP_CPU_AFFINITY", "none", 0, false}, /* OMP_PLACES and taskset do the same */
 };
 enum { KNOWN = sizeof known / sizeof *known };
 
@@ -81,6 +83,8 @@ FIRST static bool is_word(const char *text, const char *words) {
 
 FIRST static void keep_fault(int which, const char *value) {
     size_t k = 0;
+    if (fault.which > 0 && known[fault.which - 1].needed)
+        return;
     fault.which = which + 1;
     for (; value[k] && k + 1 < sizeof fault.value; k++)
         fault.value[k] = value[k];
@@ -116,13 +120,15 @@ FIRST static void clean(int argc, char **argv, char **environment) {
 /* The only place before the constructors of the libraries. */
 __attribute__((section(".preinit_array"), used)) static void (*const at_start)(int, char **, char **) = clean;
 
-sf_status sf_openmp_environment_check(sf_error *err) {
+sf_status sf_openmp_environment_check(const sf_sink *sink, sf_error *err) {
     if (fault.which == 0)
         return SF_OK;
     int k = fault.which - 1;
-    if (known[k].words)
-        return SF_FAIL(err, SF_ERR_INPUT, "the environment has %s=\"%s\"; possible values are %s",
-                       known[k].name, fault.value, known[k].words);
+    if (!known[k].needed) {
+        sf_sink_tell(sink, SF_WARNING, "%s=\"%s\" of the environment has no effect; softfall takes %s",
+                     known[k].name, fault.value, known[k].words ? known[k].words : "a number above 0");
+        return SF_OK;
+    }
     return SF_FAIL(err, SF_ERR_INPUT, "the environment has %s=\"%s\"; a number from 1 to %ld is possible",
                    known[k].name, fault.value, known[k].most);
 }

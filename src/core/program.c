@@ -34,7 +34,8 @@ static sf_status check_stack(char **argv, sf_error *err) {
 sf_status sf_program_begin(char **argv, sf_error *err) {
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
-    SF_TRY(sf_openmp_environment_check(err));
+    sf_sink sink = sf_program_sink(program_invocation_short_name);
+    SF_TRY(sf_openmp_environment_check(&sink, err));
     return check_stack(argv, err);
 }
 

@@ -13,17 +13,19 @@ static const struct {
 } units[] = {
     {"length", "m", "numcdk"},
     {"length",
-     "metre|metres|meter|meters|millimetre|millimetres|millimeter|millimeters|in|inch|inches|ft|foot|feet",
-     ""},
+     "metre|metres|meter|meters|centimetre|centimetres|centimeter|centimeters|millimetre|millimetres", ""},
+    {"length",
+     "millimeter|millimeters|micrometre|micrometres|micrometer|micrometers|in|inch|inches|ft|foot|feet", ""},
     {"mass", "g", "umk"},
-    {"mass", "t|tonne|lb|pound|pounds", ""},
+    {"mass", "gram|grams|milligram|milligrams|kilogram|kilograms|t|tonne|tonnes|lb|pound|pounds", ""},
     {"time", "s", "num"},
-    {"time", "sec|second|seconds|min|minute|minutes|h|hour|hours", ""},
+    {"time", "sec|second|seconds|msec|millisecond|milliseconds|usec|microsecond|microseconds", ""},
+    {"time", "min|minute|minutes|h|hour|hours", ""},
     {"force", "N", "mkM"},
-    {"force", "newton|newtons|kgf|lbf", ""},
+    {"force", "daN|newton|newtons|kilonewton|kilonewtons|kgf|lbf", ""},
     {"pressure", "Pa", "hkMG"},
-    {"pressure", "pascal|pascals|psi", ""},
-    {"pressure", "bar", "m"},
+    {"pressure", "pascal|pascals|kilopascal|kilopascals|megapascal|megapascals|psi|ksi", ""},
+    {"pressure", "bar", "mk"},
 };
 enum { UNITS = sizeof units / sizeof *units, DEEPEST = 4 };
 
@@ -43,7 +45,7 @@ static bool starts(const char *text, const char *with) {
     return strncmp(text, with, strlen(with)) == 0;
 }
 
-/* Length of the name in the list "a|b"; 0 if it does not stand there. */
+/* Does the name stand in the list "a|b"? */
 static bool is_listed(const char *name, const char *list) {
     size_t length = strlen(name);
     for (const char *at = list; at; at = strchr(at, '|')) {

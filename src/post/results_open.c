@@ -3,6 +3,7 @@
 #include "post/results.h"
 
 #include "io/provenance.h"
+#include "io/seal.h"
 #include "post/results_check.h"
 #include <math.h>
 #include <stdio.h>
@@ -241,7 +242,8 @@ sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) 
     if (sf_h5_open(path, &results->file, err) != SF_OK ||
         sf_provenance_check(results->file, path, "softfall-results", err) != SF_OK ||
         read_model(results, err) != SF_OK || read_summary(results, err) != SF_OK ||
-        read_history(results, err) != SF_OK || read_frame_list(results, err) != SF_OK)
+        read_history(results, err) != SF_OK || read_frame_list(results, err) != SF_OK ||
+        sf_seal_check_any(path, err) != SF_OK)
         sf_results_close(results);
     return err->status;
 }

@@ -89,10 +89,10 @@ void sf_output_clear(const sf_output *o) {
     rmdir(o->folder);
 }
 
-/* Closes a file and gives it its name, those of the folder with a seal; removes it if it failed. */
-static sf_status commit(sf_h5 **file, bool sealed, const char *partial, const char *path, sf_error *err) {
+/* Closes a file, seals it and gives it its name; removes it if it failed. */
+static sf_status commit(sf_h5 **file, const char *partial, const char *path, sf_error *err) {
     sf_h5_close(file, err);
-    if (err->status == SF_OK && (!sealed || sf_seal_add(partial, err) == SF_OK))
+    if (err->status == SF_OK && sf_seal_add(partial, err) == SF_OK)
         return sf_replace_commit(partial, path, err);
     unlink(partial);
     return err->status;
@@ -141,7 +141,7 @@ static sf_status write_state(const sf_output *o, const sf_model *m, const sf_ope
     if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
     sf_frame_write(m, op, s, fields, group, file, err);
-    if (commit(&file, true, partial, path, err) == SF_OK && size)
+    if (commit(&file, partial, path, err) == SF_OK && size)
         *size += size_of(path);
     return err->status;
 }
@@ -166,7 +166,7 @@ static sf_status recover(const sf_h5 *from, const char *group, const char *path,
     if (sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
     sf_h5_copy(from, group, file, err);
-    return commit(&file, true, partial, path, err);
+    return commit(&file, partial, path, err);
 }
 
 sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf_error *err) {
@@ -244,7 +244,7 @@ sf_status sf_output_begin(sf_output *o, bool copied, int64_t count, sf_h5 **file
 }
 
 sf_status sf_output_commit(sf_output *o, sf_h5 **file, sf_error *err) {
-    if (commit(file, false, o->partial, o->results, err) == SF_OK) {
+    if (commit(file, o->partial, o->results, err) == SF_OK) {
         o->fresh = 0;
         o->size = size_of(o->results);
     }
