@@ -5,7 +5,7 @@
 #   threads   gcc's thread sanitizer with LLVM's OpenMP and libarcher, 3 threads: a loop with a race, which the sanitizer
 #             must find, the tests of the parallel loops, and a coarse drop; even short loops run on several threads
 #   valgrind  memcheck on a coarse drop through softfall-pre, -solve and -post of the default build, with the kernels for
-#             AVX2 (valgrind's processor has no AVX-512); tests/valgrind.supp lists the suppressions for gmsh with reasons
+#             AVX2 (valgrind's processor has no AVX-512); not on softfall-mesh, which has gmsh
 # Packages: section analysis of packages.txt.
 set -euo pipefail
 place=
@@ -53,8 +53,7 @@ run_threads() {
 run_valgrind() {
     build build --preset default
     coarse_drop build/bin env OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive valgrind --quiet --error-exitcode=99 \
-        --leak-check=full --errors-for-leak-kinds=definite,indirect --show-leak-kinds=definite,indirect \
-        --suppressions="$PWD/tests/valgrind.supp"
+        --leak-check=full --errors-for-leak-kinds=definite,indirect --show-leak-kinds=definite,indirect
     echo "valgrind: nothing found"
 }
 

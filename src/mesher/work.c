@@ -224,6 +224,11 @@ static void write_mesh(void) {
     write_elements(surface, surfaces, volume, volumes);
     sf_stream_word(SF_MESH_STREAM_END);
     sf_stream_flush();
+    for (int k = 0; k < 2; k++)
+        gmshFree(pairs[k]);
+    gmshFree(volume);
+    free(surface);
+    free(named);
 }
 
 void sf_work_mesh(const char *path) {
