@@ -124,7 +124,7 @@ static void every_output_is_there_and_nothing_is_left_over(void **state) {
     program_result list = program_shell(p, "ls -1 . out");
     static const char *const names[] = {
         "model.h5",         "results.h5",  "summary.json",    "history.csv", "section.csv",
-        "acceleration.png", "report.html", "acceleration.gp", "pad.xdmf",    "pad.h5"};
+        "acceleration.png", "report.html", "acceleration.gp", "pad.xdmf",    "pad-"};
     for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
         if (!strstr(list.out, names[k]))
             fail_msg("%s is missing", names[k]);

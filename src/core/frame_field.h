@@ -38,7 +38,7 @@ typedef struct sf_frame_field_info {
     const char *name; /* in a case and below /frames/NNNNNN */
     int components;   /* 1, 3 or 9 */
     const char *units;
-    const char *array; /* in pad.h5 and ParaView: the name with its unit */
+    const char *array; /* in pad-HASH.h5 and ParaView: the name with its unit */
     const char *description, *remark;
 } sf_frame_field_info;
 

@@ -17,6 +17,7 @@
 #include "post/xdmf.h"
 
 #include <argp.h>
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,6 +58,8 @@ typedef struct job {
     sf_verdict verdict;
     sf_comparison comparison;
     sf_staging output;
+    const char *names[15];        /* of every file that may be written */
+    char data[SF_XDMF_NAME_SIZE]; /* of the data of pad.xdmf */
     char *command_line;
     int64_t frames;
     char plot_warning[512];
@@ -188,7 +191,7 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         .args_doc = "RESULTS.h5 -o DIR",
         .doc =
             "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, summary.json, "
-            "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and pad.h5. Of a prescribed "
+            "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
             "motion compression.csv and .png instead of the acceleration. Open pad.xdmf in ParaView. The "
             "figures are indicative, not a certification.",
     };
@@ -213,25 +216,30 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     return o->err.status;
 }
 
-/* Every file that this program may write. pad.h5 is moved before pad.xdmf, which refers to it. */
-static const char *const output_names[] = {"pad.h5",           "pad.xdmf",
-                                           "history.csv",      "section.csv",
-                                           "reference.csv",    "compression.csv",
-                                           "compression.gp",   "compression.png",
-                                           "acceleration.csv", "acceleration.gp",
-                                           "acceleration.png", "report.html",
-                                           "summary.json",     NULL};
+/* Every file that this program may write. The data of pad.xdmf are moved before it, and earlier ones (pad.h5
+ * of earlier versions) removed after it. Without a name of the data yet, pad.xdmf stands for them. */
+static void name_output(job *j) {
+    const char *const names[] = {j->data,           "pad.xdmf",         "history.csv",
+                                 "section.csv",     "reference.csv",    "compression.csv",
+                                 "compression.gp",  "compression.png",  "acceleration.csv",
+                                 "acceleration.gp", "acceleration.png", "report.html",
+                                 "summary.json",    "pad.h5",           NULL};
+    static_assert(sizeof names == sizeof j->names, "as many as the job holds");
+    memcpy(j->names, names, sizeof names);
+    snprintf(j->data, sizeof j->data, "pad.xdmf");
+}
 
 static sf_status write_output(const options *o, job *j, sf_error *err) {
     bool section = false;
     const sf_comparison *comparison = o->comparing ? &j->comparison : NULL;
-    if (sf_staging_begin(o->directory, output_names, o->force, &j->output, err) != SF_OK ||
+    name_output(j);
+    if (sf_staging_begin(o->directory, j->names, o->force, &j->output, err) != SF_OK ||
         sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
         (j->figures.driven && sf_csv_write_compression(&j->output, &j->results, &j->figures, err) != SF_OK) ||
         (!j->figures.driven && sf_csv_write_acceleration(&j->output, &j->figures, err) != SF_OK) ||
         (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
         sf_section_write(&j->output, &j->results, &section, err) != SF_OK ||
-        sf_xdmf_write(&j->output, &j->results, j->command_line, &j->frames, err) != SF_OK ||
+        sf_xdmf_write(&j->output, &j->results, j->command_line, j->data, &j->frames, err) != SF_OK ||
         sf_plot_write(&j->output, &j->results, &j->figures, comparison, &j->verdict, j->plot_warning,
                       sizeof j->plot_warning, err))
         return err->status;
@@ -244,6 +252,7 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
     if (sf_report_write(&j->output, &report, err) != SF_OK ||
         sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
         return err->status;
+    sf_xdmf_remove_old(o->directory, j->data);
     sf_summary_print(stdout, &summary);
     return SF_OK;
 }
@@ -276,7 +285,7 @@ static void print_files(const job *j) {
         {"compression.csv", "strain and nominal stress over time"},
         {"section.csv", "mid-section and profile under the axis at the peak"},
         {"reference.csv", "the measured curve, aligned"},
-        {"pad.xdmf", "pad and missile for ParaView (with pad.h5)"},
+        {"pad.xdmf", "pad and missile for ParaView (with pad-....h5)"},
     };
     printf("Files\n");
     for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/xdmf.h"
 
+#include "io/plain_file.h"
 #include "io/provenance.h"
 #include "post/results_check.h"
+#include <dirent.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* XDMF mixed topology: for each cell its code, then its vertices. */
 static sf_status write_topology(sf_h5 *file, const sf_results *r, sf_error *err) {
@@ -68,69 +72,75 @@ static sf_status write_frame_data(sf_h5 *file, const sf_results *r, const sf_fra
     return SF_OK;
 }
 
-static void put_float_item(FILE *x, int64_t index, const char *name, int64_t rows, int columns) {
-    fprintf(x, "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"%lld",
+/* The text, and the name of the file that it speaks of. */
+typedef struct scene {
+    FILE *file;
+    const char *data;
+} scene;
+
+static void put_float_item(const scene *x, int64_t index, const char *name, int64_t rows, int columns) {
+    fprintf(x->file, "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"%lld",
             (long long)rows);
     if (columns > 1)
-        fprintf(x, " %d", columns);
-    fprintf(x, "\">pad.h5:/frames/%06lld/%s</DataItem>", (long long)index, name);
+        fprintf(x->file, " %d", columns);
+    fprintf(x->file, "\">%s:/frames/%06lld/%s</DataItem>", x->data, (long long)index, name);
 }
 
-static void put_grid_start(FILE *x, const char *name, double time) {
-    fprintf(x, "        <Grid Name=\"%s\" GridType=\"Uniform\">\n          <Time Value=\"%.9g\"/>\n", name,
-            time);
+static void put_grid_start(const scene *x, const char *name, double time) {
+    fprintf(x->file, "        <Grid Name=\"%s\" GridType=\"Uniform\">\n          <Time Value=\"%.9g\"/>\n",
+            name, time);
 }
 
-static void put_pad(FILE *x, const sf_results *r, const sf_frame *frame, double time, int64_t index) {
+static void put_pad(const scene *x, const sf_results *r, int fields, double time, int64_t index) {
     put_grid_start(x, "pad", time);
-    fprintf(
-        x,
-        "          <Topology TopologyType=\"Mixed\" NumberOfElements=\"%lld\"><DataItem Format=\"HDF\" "
-        "NumberType=\"Int\" Precision=\"4\" Dimensions=\"%lld\">pad.h5:/pad/topology</DataItem></Topology>\n"
-        "          <Geometry GeometryType=\"XYZ\">",
-        (long long)r->cell_count, (long long)(r->cell_nnz + r->cell_count));
+    fprintf(x->file,
+            "          <Topology TopologyType=\"Mixed\" NumberOfElements=\"%lld\"><DataItem Format=\"HDF\" "
+            "NumberType=\"Int\" Precision=\"4\" Dimensions=\"%lld\">%s:/pad/topology</DataItem></Topology>\n"
+            "          <Geometry GeometryType=\"XYZ\">",
+            (long long)r->cell_count, (long long)(r->cell_nnz + r->cell_count), x->data);
     put_float_item(x, index, "pad_position", r->node_count, 3);
-    fputs("</Geometry>\n", x);
+    fputs("</Geometry>\n", x->file);
     for (int f = 0; f < SF_FRAME_FIELDS; f++) {
         const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
-        if (!frame->field[f])
+        if (!(fields >> f & 1))
             continue;
-        fprintf(x, "          <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", info->array,
+        fprintf(x->file, "          <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">",
+                info->array,
                 info->components == 1   ? "Scalar"
                 : info->components == 3 ? "Vector"
                                         : "Tensor");
         put_float_item(x, index, info->array, r->node_count, info->components);
-        fputs("</Attribute>\n", x);
+        fputs("</Attribute>\n", x->file);
     }
-    fputs("        </Grid>\n", x);
+    fputs("        </Grid>\n", x->file);
 }
 
-static void put_missile(FILE *x, const sf_results *r, double time, int64_t index) {
+static void put_missile(const scene *x, const sf_results *r, double time, int64_t index) {
     if (r->surface_triangle_count == 0)
         return;
     put_grid_start(x, "missile", time);
-    fprintf(x,
+    fprintf(x->file,
             "          <Topology TopologyType=\"Triangle\" NumberOfElements=\"%lld\"><DataItem "
             "Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" Dimensions=\"%lld "
-            "3\">pad.h5:/missile/triangle</DataItem></Topology>\n"
+            "3\">%s:/missile/triangle</DataItem></Topology>\n"
             "          <Geometry GeometryType=\"XYZ\">",
-            (long long)r->surface_triangle_count, (long long)r->surface_triangle_count);
+            (long long)r->surface_triangle_count, (long long)r->surface_triangle_count, x->data);
     put_float_item(x, index, "missile_position", r->surface_node_count, 3);
-    fputs("</Geometry>\n        </Grid>\n", x);
+    fputs("</Geometry>\n        </Grid>\n", x->file);
 }
 
-static void put_frame(FILE *x, const sf_results *r, const sf_frame *frame, double time, int64_t index) {
-    fprintf(x,
+static void put_frame(const scene *x, const sf_results *r, int fields, double time, int64_t index) {
+    fprintf(x->file,
             "      <Grid Name=\"frame_%06lld\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
             "        <Time Value=\"%.9g\"/>\n",
             (long long)index, time);
-    put_pad(x, r, frame, time, index);
+    put_pad(x, r, fields, time, index);
     put_missile(x, r, time, index);
-    fputs("      </Grid>\n", x);
+    fputs("      </Grid>\n", x->file);
 }
 
-/* Every frame to pad.h5 and, as text, to `x`. */
-static sf_status write_frames(sf_h5 *file, FILE *x, sf_results *r, int64_t *frames, sf_error *err) {
+/* Every frame that can be read; `fields` [frame_count] gets which fields each has, a bit for each. */
+static sf_status write_frames(sf_h5 *file, sf_results *r, int *fields, int64_t *frames, sf_error *err) {
     bool moved = true;
     for (int64_t k = 0; k < r->frame_count; k++) {
         sf_frame frame = {0};
@@ -142,8 +152,11 @@ static sf_status write_frames(sf_h5 *file, FILE *x, sf_results *r, int64_t *fram
             return SF_OK;
         }
         moved = moved && frame.field[SF_FRAME_DISPLACEMENT];
-        if (write_frame_data(file, r, &r->frames[k], &frame, *frames, err) == SF_OK)
-            put_frame(x, r, &frame, r->frames[k].time, (*frames)++);
+        fields[k] = 0;
+        for (int f = 0; f < SF_FRAME_FIELDS; f++)
+            fields[k] |= (frame.field[f] != NULL) << f;
+        if (write_frame_data(file, r, &r->frames[k], &frame, k, err) == SF_OK)
+            (*frames)++;
         sf_frame_free(&frame);
         if (err->status != SF_OK)
             return err->status;
@@ -153,45 +166,76 @@ static sf_status write_frames(sf_h5 *file, FILE *x, sf_results *r, int64_t *fram
     return SF_OK;
 }
 
-static sf_status write_all(sf_h5 **file, FILE *x, sf_results *r, const char *command_line, int64_t *frames,
-                           sf_error *err) {
+static sf_status write_data(const char *path, sf_results *r, const char *command_line, int *fields,
+                            int64_t *frames, sf_error *err) {
     const sf_provenance provenance = {.program = "softfall-post", .command_line = command_line};
-    if (sf_provenance_write(*file, "softfall-paraview", &provenance, err) != SF_OK ||
-        write_topology(*file, r, err) != SF_OK)
+    sf_error ignored = SF_ERROR_INIT;
+    sf_h5 *file = NULL;
+    if (sf_h5_create(path, &file, err) != SF_OK)
+        return err->status;
+    if (sf_provenance_write(file, "softfall-paraview", &provenance, err) == SF_OK &&
+        write_topology(file, r, err) == SF_OK)
+        write_frames(file, r, fields, frames, err);
+    sf_h5_close(&file, err->status == SF_OK ? err : &ignored);
+    return err->status;
+}
+
+static sf_status write_text(const sf_staging *output, const sf_results *r, const int *fields, int64_t frames,
+                            const char *data, sf_error *err) {
+    const scene x = {sf_staging_open(output, "pad.xdmf", err), data};
+    if (!x.file)
         return err->status;
     fputs("<?xml version=\"1.0\" ?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf Version=\"2.0\">\n  "
           "<Domain>\n"
           "    <Grid Name=\"softfall\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
-          x);
-    if (write_frames(*file, x, r, frames, err) != SF_OK)
+          x.file);
+    for (int64_t k = 0; k < frames; k++)
+        put_frame(&x, r, fields[k], r->frames[k].time, k);
+    fputs("    </Grid>\n  </Domain>\n</Xdmf>\n", x.file);
+    return sf_staging_close(x.file, "pad.xdmf", err);
+}
+
+static const char NEW_DATA[] = "pad.h5"; /* before it has its name */
+
+/* Gives the data their name, and the text. */
+static sf_status name_data(const sf_staging *output, const char *path, char data[SF_XDMF_NAME_SIZE],
+                           sf_error *err) {
+    uint64_t hash = 0;
+    if (sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, err) != SF_OK)
         return err->status;
-    fputs("    </Grid>\n  </Domain>\n</Xdmf>\n", x);
-    return sf_h5_close(file, err);
+    snprintf(data, SF_XDMF_NAME_SIZE, "pad-%016llx.h5", (unsigned long long)hash);
+    char *named = sf_staging_path(output, data, err);
+    if (named && rename(path, named) != 0)
+        SF_FAIL(err, SF_ERR_IO, "%s cannot be renamed to %s", path, data);
+    free(named);
+    return err->status;
 }
 
 sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const char *command_line,
-                        int64_t *frames, sf_error *err) {
-    sf_h5 *file = NULL;
-    FILE *text = NULL;
-    sf_error ignored = SF_ERROR_INIT;
+                        char data[SF_XDMF_NAME_SIZE], int64_t *frames, sf_error *err) {
     *frames = 0;
-    char *data = sf_staging_path(output, "pad.h5", err);
-    char *xdmf = data ? sf_staging_path(output, "pad.xdmf", err) : NULL;
-    if (!xdmf || sf_h5_create(data, &file, err) != SF_OK)
-        goto done;
-    text = sf_staging_open(output, "pad.xdmf", err);
-    if (!text)
-        goto done;
-    write_all(&file, text, results, command_line, frames, err);
-    sf_staging_close(text, "pad.xdmf", err);
-done:
-    if (file)
-        sf_h5_close(&file, err->status == SF_OK ? err : &ignored);
-    if (*frames == 0 && xdmf) {
-        remove(data);
-        remove(xdmf);
-    }
-    free(data);
-    free(xdmf);
+    char *path = sf_staging_path(output, NEW_DATA, err);
+    int *fields =
+        sf_alloc(err, (unsigned long)results->frame_count, sizeof *fields, "the fields of the frames");
+    if (err->status == SF_OK)
+        write_data(path, results, command_line, fields, frames, err);
+    if (path && *frames == 0)
+        remove(path);
+    else if (err->status == SF_OK && name_data(output, path, data, err) == SF_OK)
+        write_text(output, results, fields, *frames, data, err);
+    free(fields);
+    free(path);
     return err->status;
+}
+
+void sf_xdmf_remove_old(const char *directory, const char *data) {
+    DIR *listing = opendir(directory);
+    for (struct dirent *entry = listing ? readdir(listing) : NULL; entry; entry = readdir(listing)) {
+        const char *name = entry->d_name;
+        if (strncmp(name, "pad-", 4) == 0 && strspn(name + 4, "0123456789abcdef") == 16 &&
+            strcmp(name + 20, ".h5") == 0 && strcmp(name, data) != 0)
+            unlinkat(dirfd(listing), name, 0);
+    }
+    if (listing)
+        closedir(listing);
 }
