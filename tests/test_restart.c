@@ -557,6 +557,8 @@ static void rebounded_run_goes_on_when_an_end_time_is_given(void **state) {
 
 /* ---- campaigns ---- */
 
+static const char *step_of_drops = "solver.step_safety=0.1"; /* small: there is time to interrupt */
+
 static void run_drop(const program_place *p, const char *folder, sf_runner_result *result, sf_error *err) {
     char path[1024], source[1024];
     snprintf(path, sizeof path, "%s", program_path(p, folder));
@@ -567,8 +569,8 @@ static void run_drop(const program_place *p, const char *folder, sf_runner_resul
                            .override_count = 5,
                            .overrides = {"geometry.parameters.fine_spacing=20.0",
                                          "geometry.parameters.outer_spacing=20.0",
-                                         "geometry.missile_parameters.element_size=20.0",
-                                         "solver.step_safety=0.1", "pad.mesh_error_limit=1"}};
+                                         "geometry.missile_parameters.element_size=20.0", step_of_drops,
+                                         "pad.mesh_error_limit=1"}};
     sf_runner_run(&runner, &drop, result, err);
 }
 
@@ -608,6 +610,76 @@ static void campaign_goes_on_with_an_interrupted_drop(void **state) {
     sf_runner_result_free(&two);
 }
 
+/* When the file was written, 0: it is not there. */
+static struct timespec written_at(const char *folder, const char *name) {
+    struct stat info;
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0, 0};
+}
+
+static bool is_other(struct timespec a, struct timespec b) {
+    return a.tv_sec != b.tv_sec || a.tv_nsec != b.tv_nsec;
+}
+
+/* A drop of a campaign that is killed with its programs (or alone) as soon as it has a new model or
+ * checkpoint: each life goes on where the one before was killed, and none begins anew. */
+static int count_lives(const program_place *p, const char *parent, const char *folder, bool alone) {
+    for (int life = 1; life <= 150; life++) {
+        struct timespec model = written_at(folder, "model.h5"),
+                        checkpoint = written_at(folder, "results.h5.restart");
+        int status = 0;
+        pid_t child = fork();
+        assert_true(child >= 0);
+        if (child == 0) {
+            sf_error err = SF_ERROR_INIT;
+            sf_runner_result result;
+            setpgid(0, 0);
+            run_drop(p, parent, &result, &err);
+            _exit(err.status == SF_OK ? 0 : 1);
+        }
+        setpgid(child, child);
+        while (waitpid(child, &status, WNOHANG) == 0)
+            if (is_other(model, written_at(folder, "model.h5")) ||
+                is_other(checkpoint, written_at(folder, "results.h5.restart")))
+                kill(alone ? child : -child, SIGKILL);
+            else
+                run_sleep(0.001);
+        if (WIFEXITED(status)) {
+            assert_int_equal(WEXITSTATUS(status), 0);
+            return life;
+        }
+        assert_false(life > 1 && is_other(model, written_at(folder, "model.h5"))); /* not made again */
+    }
+    return 0;
+}
+
+static void killed_campaign_makes_progress_in_every_life(void **state) {
+    const program_place *p = *state;
+    static const char *const parents[] = {"campaign_killed", "campaign_left"};
+    sf_error err = SF_ERROR_INIT;
+    sf_runner_result one, two;
+    step_of_drops = "solver.step_safety=0.9"; /* each life has 0.1 s of wall time, on a busy machine little */
+    run_drop(p, "campaign_one", &one, &err);
+    assert_int_equal(err.status, SF_OK);
+    char leaf[512], folder[1024];
+    snprintf(leaf, sizeof leaf, "%s", strstr(one.path, "campaign_one/") + strlen("campaign_one/"));
+    *strchr(leaf, '/') = '\0';
+    for (int alone = 0; alone < 2; alone++) {
+        snprintf(folder, sizeof folder, "%s/%s", program_path(p, parents[alone]), leaf);
+        int lives = count_lives(p, parents[alone], folder, alone);
+        print_message("%d lives\n", lives);
+        assert_true(lives > 1);
+        run_drop(p, parents[alone], &two, &err);
+        assert_int_equal(err.status, SF_OK);
+        assert_true(two.reused);
+        assert_memory_equal(&one.a_max_g, &two.a_max_g, sizeof one.a_max_g);
+        assert_int_equal(one.steps, two.steps);
+        sf_runner_result_free(&two);
+    }
+    sf_runner_result_free(&one);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finished_run_goes_on_to_a_later_end),
@@ -626,6 +698,7 @@ int main(void) {
         cmocka_unit_test(overflow_leaves_the_last_finite_state),
         cmocka_unit_test(rebounded_run_goes_on_when_an_end_time_is_given),
         cmocka_unit_test(campaign_goes_on_with_an_interrupted_drop),
+        cmocka_unit_test(killed_campaign_makes_progress_in_every_life),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -7,10 +7,14 @@
 #include "io/process.h"
 #include "post/results.h"
 #include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { MAX_ARGUMENTS = 64 };
@@ -78,14 +82,30 @@ static sf_status run_program(const char *const *arguments, const char *log, sf_e
                    "%s (exit code %d; see %s)", said, code, log);
 }
 
-/* Resumes an interrupted drop. False if there is none or it cannot be resumed: then the drop starts anew. */
-static bool resume(const char *solve, const char *threads, const sf_run_folder *at, sf_error *err) {
-    const char *run[] = {solve, "--restart", at->results, at->model, "-t", threads, NULL};
+/* A campaign that was killed may have left its solver at work, which holds the folder of its run
+ * (solver/run/output.c): its drop is waited for. */
+static sf_status wait_for_orphan(const sf_run_folder *at, sf_error *err) {
+    const struct timespec pause = {0, 100000000};
+    char folder[SF_RUN_PATH_SIZE + 8];
+    snprintf(folder, sizeof folder, "%s.run", at->results);
+    int handle = open(folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    while (handle >= 0 && !sf_process_stopped() && flock(handle, LOCK_EX | LOCK_NB) != 0 &&
+           errno == EWOULDBLOCK)
+        nanosleep(&pause, NULL);
+    if (handle >= 0)
+        close(handle); /* and the lock with it */
+    return sf_process_stopped() ? sf_run_folder_interrupted(err) : SF_OK;
+}
+
+/* Resumes a drop of which a model, whole because softfall-pre moves it into its place, and perhaps a
+ * checkpoint are there. False if there is none or it cannot be resumed: then the drop starts anew. */
+static bool resume(const char *const *run, const char *const *restart, const sf_run_folder *at,
+                   sf_error *err) {
     sf_error trial = SF_ERROR_INIT;
-    if (access(at->model, R_OK) != 0 || access(at->checkpoint, R_OK) != 0 ||
+    if (access(at->model, R_OK) != 0 ||
         !sf_campaign_geometry_is_same(at->model, "/provenance/geometry_files", true))
         return false;
-    run_program(run, at->log, &trial);
+    run_program(access(at->checkpoint, R_OK) == 0 ? restart : run, at->log, &trial);
     if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC)
         return false;
     if (trial.status != SF_OK)
@@ -105,11 +125,14 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
     }
     snprintf(thread_text, sizeof thread_text, "%d", threads);
     const char *run[] = {solve, at->model, "-o", at->results, "--force", "-t", thread_text, NULL};
+    const char *restart[] = {solve, "--restart", at->results, at->model, "-t", thread_text, NULL};
     if (sf_process_find("softfall-pre", pre, sizeof pre, err) != SF_OK ||
         sf_process_find("softfall-solve", solve, sizeof solve, err) != SF_OK ||
-        sf_folder_make(at->path, err) != SF_OK)
+        sf_folder_make(at->path, err) != SF_OK || wait_for_orphan(at, err) != SF_OK)
         return err->status;
-    if (!resume(solve, thread_text, at, err)) {
+    if (!sf_run_folder_is_finished(at) && !resume(run, restart, at, err) &&
+        wait_for_orphan(at, err) == SF_OK &&
+        !sf_run_folder_is_finished(at)) { /* it may have begun meanwhile */
         remove(at->log);
         if (run_program(build, at->log, err) == SF_OK)
             run_program(run, at->log, err);

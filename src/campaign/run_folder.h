@@ -26,9 +26,10 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
 bool sf_run_folder_is_finished(const sf_run_folder *folder);
 
 /* Simulates the drop by softfall-pre and softfall-solve on `threads` threads, with their output in the log. A
- * drop that was interrupted resumes from its checkpoint, or starts anew if it cannot. Errors: the last line
- * that the program printed, with its exit code and the log; SF_INTERRUPTED (io/process.h), which keeps model
- * and checkpoint. */
+ * drop that was interrupted or killed resumes from its model and its checkpoint, or starts anew if it cannot;
+ * one whose campaign was killed, but whose solver still runs, is waited for. Errors: the last line that the
+ * program printed, with its exit code and the log; SF_INTERRUPTED (io/process.h), which keeps model and
+ * checkpoint. */
 sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err);
 
