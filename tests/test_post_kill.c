@@ -95,7 +95,7 @@ static void assert_pair(const program_place *p) {
     program_result name = program_shell(p, "grep -o 'pad-[0-9a-f]*.h5' pair/pad.xdmf | sort -u");
     name.out[strcspn(name.out, "\n")] = '\0';
     assert_int_equal(sscanf(name.out, "pad-%16llx.h5", &named), 1);
-    snprintf(path, sizeof path, "%s/pair/%s", p->folder, name.out);
+    snprintf(path, sizeof path, "%s/pair/%.40s", p->folder, name.out);
     if (sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_true(hash == named);

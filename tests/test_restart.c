@@ -613,7 +613,7 @@ static void campaign_goes_on_with_an_interrupted_drop(void **state) {
 /* When the file was written, 0: it is not there. */
 static struct timespec written_at(const char *folder, const char *name) {
     struct stat info;
-    char path[1024];
+    char path[2048];
     snprintf(path, sizeof path, "%s/%s", folder, name);
     return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0, 0};
 }
