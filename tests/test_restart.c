@@ -682,6 +682,7 @@ static void killed_campaign_makes_progress_in_every_life(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(killed_campaign_makes_progress_in_every_life),
         cmocka_unit_test(finished_run_goes_on_to_a_later_end),
         cmocka_unit_test(interrupted_run_goes_on),
         cmocka_unit_test(killed_run_loses_nothing),
@@ -698,7 +699,6 @@ int main(void) {
         cmocka_unit_test(overflow_leaves_the_last_finite_state),
         cmocka_unit_test(rebounded_run_goes_on_when_an_end_time_is_given),
         cmocka_unit_test(campaign_goes_on_with_an_interrupted_drop),
-        cmocka_unit_test(killed_campaign_makes_progress_in_every_life),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

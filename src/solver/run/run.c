@@ -23,6 +23,7 @@ typedef struct drop {
     sf_recorder r;
     bool replay;            /* repeats steps that are in the files already */
     bool foreign;           /* the checkpoint on the disk is not from before these steps */
+    int64_t saved;          /* step of the checkpoint on the disk, -1: none */
     int64_t published;      /* rows of history in results.h5 */
     int64_t last_step;      /* of a replay */
     double first_time;      /* s, where this part of the run begins */
@@ -80,6 +81,7 @@ static sf_status save(drop *d, sf_error *err) {
     sf_checkpoint_write(d->out, d->run->provenance, d->m, d->s, &d->r, err);
     d->r.wall_time = before;
     d->foreign = false;
+    d->saved = d->s->step;
     d->last_checkpoint = sf_clock();
     d->next_checkpoint = d->s->time + d->run->checkpoint_time;
     return err->status;
@@ -238,11 +240,13 @@ static sf_status begin(drop *d, const sf_checkpoint *from, bool *taken, sf_error
     *taken = from != NULL;
     if (load(d, from, err) != SF_OK)
         return err->status;
+    d->saved = from ? d->s->step : -1;
     if (from)
         resume_rebounded(d);
     if (sf_output_recover(d->out, d->r.frames, &lost) == SF_OK)
         return SF_OK;
     *taken = false;
+    d->saved = -1;
     return start_anew(d, lost.text, err);
 }
 
@@ -269,7 +273,7 @@ static sf_status replay(drop *d, sf_error *err) {
 static void end_run(drop *d, const sf_error *failure, sf_error *late) {
     bool failed = failure->status != SF_OK;
     sf_error unsaved = SF_ERROR_INIT; /* results without a checkpoint are better than none */
-    if (d->run->checkpoints && !failed)
+    if (d->run->checkpoints && !failed && d->saved != d->s->step)
         save(d, &unsaved);
     d->run->wall_time = d->r.wall_time + sf_clock() - d->start;
     d->run->shown = sf_state_is_finite(d->m, d->s);
