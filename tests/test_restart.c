@@ -618,8 +618,9 @@ static struct timespec written_at(const char *folder, const char *name) {
     return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0, 0};
 }
 
+/* Is `b` there, and another file than `a`? */
 static bool is_other(struct timespec a, struct timespec b) {
-    return a.tv_sec != b.tv_sec || a.tv_nsec != b.tv_nsec;
+    return b.tv_sec != 0 && (a.tv_sec != b.tv_sec || a.tv_nsec != b.tv_nsec);
 }
 
 /* A drop of a campaign that is killed with its programs (or alone) as soon as it has a new model or
