@@ -205,6 +205,7 @@ sf_status fixture_write(const char *path, const fixture_options *o, sf_error *er
     sf_h5 *file = NULL;
     cloud c = {0};
     cloud_build(&c, o->bad_cell);
+    remove(path);
     if (sf_h5_create(path, &file, err) != SF_OK)
         return err->status;
     sf_h5_set_attribute(file, "/", "format", o->format ? o->format : "softfall-results", err);

@@ -424,7 +424,7 @@ static void bad_input_is_refused_with_its_cause(void **state) {
     };
     outcome result = run_post(p, "");
     assert_int_equal(result.code, SF_ERR_IO);
-    assert_says(&result, "results.h5: No such file");
+    assert_says(&result, "results.h5 cannot be read: No such file");
     assert_int_equal(run_shell("echo text > '%s'", p->results).code, 0);
     result = run_post(p, "");
     assert_int_equal(result.code, SF_ERR_IO);

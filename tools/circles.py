@@ -48,7 +48,8 @@ def object_files(build):
     return found
 
 
-def edges_by_calls(build):
+def symbols(build):
+    """The unit that defines each symbol, and the symbols that each unit uses and does not define."""
     objects = object_files(build)
     if not objects:
         sys.exit(f"{build}: no object file of src/ stands there")
@@ -64,9 +65,14 @@ def edges_by_calls(build):
             defined[symbol] = unit_of_object[path]
     if not defined:
         sys.exit(f"{build}: its object files name no symbol (link-time optimisation?)")
+    return defined, used
+
+
+def edges_by_calls(build):
+    defined, used = symbols(build)
     edges = {}
-    for unit, symbols in used.items():
-        for symbol in sorted(symbols):
+    for unit, names in used.items():
+        for symbol in sorted(names):
             if defined.get(symbol, unit) != unit:
                 edges.setdefault(unit, {}).setdefault(defined[symbol], []).append(symbol)
     return edges

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "campaign/config.h"
 
-#include <errno.h>
+#include "io/plain_file.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
                            const char *format, ...) {
@@ -191,9 +190,9 @@ sf_status sf_config_file(const sf_config *config, const config_setting_t *group,
         path = NULL;
     if (!path)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", text);
-    if (access(path, R_OK) != 0) {
-        sf_config_refuse(config, config_setting_get_member(group, name), err, "%s: %s cannot be read: %s",
-                         name, path, strerror(errno));
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_plain_check(path, NULL, &inner) != SF_OK) {
+        sf_config_refuse(config, config_setting_get_member(group, name), err, "%s: %s", name, inner.text);
         free(path);
         return err->status;
     }

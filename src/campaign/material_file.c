@@ -2,7 +2,7 @@
 #include "campaign/material_file.h"
 
 #include "case/case.h"
-#include <errno.h>
+#include "io/replace.h"
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
@@ -25,27 +25,20 @@ static void curve_name(const char *name, const sf_law_curves *curves, int64_t in
         snprintf(out, PATH_SIZE, "%s-%lld.csv", name, (long long)index + 1);
 }
 
-static sf_status close_file(FILE *file, const char *path, sf_error *err) {
-    int failed = ferror(file);
-    if (fclose(file) != 0 || failed)
-        return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", path);
-    return SF_OK;
-}
-
-static FILE *open_file(const char *folder, const char *name, char *path, sf_error *err) {
-    FILE *file = NULL;
-    if (snprintf(path, PATH_SIZE, "%s/%s", folder, name) >= PATH_SIZE)
-        SF_FAIL(err, SF_ERR_INPUT, "the path of %s is longer than %d characters", name, PATH_SIZE - 1);
-    else if (!(file = fopen(path, "w")))
-        SF_FAIL(err, SF_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
-    return file;
+static FILE *open_file(const char *folder, const char *name, sf_replacement *out, sf_error *err) {
+    char path[PATH_SIZE];
+    if (snprintf(path, PATH_SIZE, "%s/%s", folder, name) < PATH_SIZE)
+        return sf_replace_open(path, out, err);
+    SF_FAIL(err, SF_ERR_INPUT, "the path of %s is longer than %d characters", name, PATH_SIZE - 1);
+    return NULL;
 }
 
 static sf_status write_curve(const char *folder, const char *name, const sf_law_curves *curves, int64_t index,
                              const sf_material_text *text, sf_error *err) {
-    char file_name[PATH_SIZE], path[PATH_SIZE];
+    char file_name[PATH_SIZE];
+    sf_replacement out;
     curve_name(name, curves, index, file_name);
-    FILE *file = open_file(folder, file_name, path, err);
+    FILE *file = open_file(folder, file_name, &out, err);
     if (!file)
         return err->status;
     put_comment(file, text->title);
@@ -55,7 +48,7 @@ static sf_status write_curve(const char *folder, const char *name, const sf_law_
     fputs(".\nstrain,stress_kPa\n", file);
     for (int64_t k = curves->curve_ptr[index]; k < curves->curve_ptr[index + 1]; k++)
         fprintf(file, "%.12g,%.12g\n", curves->curve_strain[k], 1e-3 * curves->curve_stress[k]);
-    return close_file(file, path, err);
+    return sf_replace_close(&out, err);
 }
 
 static void put_curves(FILE *file, const char *name, const sf_law_curves *curves) {
@@ -122,13 +115,14 @@ static void put_card(FILE *file, const char *name, const sf_material *m) {
 
 sf_status sf_material_write(const char *folder, const char *name, const sf_material *material,
                             const sf_material_text *text, sf_error *err) {
-    char file_name[PATH_SIZE], path[PATH_SIZE];
+    char file_name[PATH_SIZE];
+    sf_replacement out;
     const sf_law_curves *curves = sf_material_curves(material);
     for (int64_t k = 0; curves && k < curves->curve_count; k++)
         if (write_curve(folder, name, curves, k, text, err) != SF_OK)
             return err->status;
     snprintf(file_name, sizeof file_name, "%s.cfg", name);
-    FILE *file = open_file(folder, file_name, path, err);
+    FILE *file = open_file(folder, file_name, &out, err);
     if (!file)
         return err->status;
     put_comment(file, text->title);
@@ -139,7 +133,7 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
         "material=@%s.cfg\n",
         name, name);
     put_card(file, name, material);
-    return close_file(file, path, err);
+    return sf_replace_close(&out, err);
 }
 
 sf_status sf_material_write_checked(const char *folder, const char *name, const sf_material *material,

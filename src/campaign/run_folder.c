@@ -4,6 +4,7 @@
 #include "campaign/key.h"
 #include "case/case.h"
 #include "io/folder.h"
+#include "io/plain_file.h"
 #include "io/process.h"
 #include "post/results.h"
 #include <assert.h>
@@ -47,18 +48,14 @@ bool sf_run_folder_is_finished(const sf_run_folder *at) {
 
 /* The last line of a log that says something, for an error's sentence. */
 static void last_line(const char *path, char *out, size_t size) {
-    char *line = NULL;
-    size_t room = 0;
-    FILE *file = fopen(path, "r");
+    sf_error ignored = SF_ERROR_INIT;
+    char *text = NULL, *line;
     snprintf(out, size, "it said nothing");
-    while (file && getline(&line, &room, file) >= 0) {
-        line[strcspn(line, "\n")] = '\0';
+    sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &ignored);
+    for (char *rest = text; rest && (line = strsep(&rest, "\n"));)
         if (*line)
             snprintf(out, size, "%s", line);
-    }
-    free(line);
-    if (file)
-        fclose(file);
+    free(text);
 }
 
 sf_status sf_run_folder_interrupted(sf_error *err) {
@@ -128,18 +125,18 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
     const char *restart[] = {solve, "--restart", at->results, at->model, "-t", thread_text, NULL};
     if (sf_process_find("softfall-pre", pre, sizeof pre, err) != SF_OK ||
         sf_process_find("softfall-solve", solve, sizeof solve, err) != SF_OK ||
-        sf_folder_make(at->path, err) != SF_OK || wait_for_orphan(at, err) != SF_OK)
+        sf_folder_own(at->path, err) != SF_OK || wait_for_orphan(at, err) != SF_OK)
         return err->status;
     if (!sf_run_folder_is_finished(at) && !resume(run, restart, at, err) &&
         wait_for_orphan(at, err) == SF_OK &&
         !sf_run_folder_is_finished(at)) { /* it may have begun meanwhile */
-        remove(at->log);
+        sf_folder_remove_file(at->log);
         if (run_program(build, at->log, err) == SF_OK)
             run_program(run, at->log, err);
     }
     if (err->status != SF_INTERRUPTED) {
-        remove(at->model);
-        remove(at->checkpoint);
+        sf_folder_remove_file(at->model);
+        sf_folder_remove_file(at->checkpoint);
     }
     return err->status;
 }

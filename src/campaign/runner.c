@@ -85,7 +85,7 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
     bool reused = sf_run_folder_is_finished(&at);
     if (sf_process_stopped())
         return sf_run_folder_interrupted(err);
-    if (!reused && (sf_folder_make(runner->folder, err) != SF_OK ||
+    if (!reused && (sf_folder_own(runner->folder, err) != SF_OK ||
                     sf_run_folder_simulate(&at, drop->case_path, count, list, runner->threads, err) != SF_OK))
         return err->status;
     if (read_result(at.results, result, err) != SF_OK)

@@ -4,11 +4,11 @@
 
 #include "case/material.h"
 #include "case/motion.h"
+#include "io/plain_file.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { KEY_PATH_SIZE = 160 };
 static const double LARGEST_PARAMETER = 1e12; /* of a geometry, in its own unit */
@@ -320,9 +320,9 @@ static sf_status read_path(sf_case_reader *reader, const sf_key *key, const conf
     *path = sf_case_resolve(reader, setting, text, err);
     if (!*path)
         return err->status;
-    if (access(*path, R_OK) != 0)
-        return FAIL_AT(reader, key, setting, err, "the file \"%s\" cannot be read (looked for %s)", text,
-                       *path);
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_plain_check(*path, NULL, &inner) != SF_OK)
+        return FAIL_AT(reader, key, setting, err, "\"%s\": %s", text, inner.text);
     snprintf(detail, size, "-");
     return SF_OK;
 }

@@ -112,7 +112,8 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
     sf_cfh_rig rig = sf_cfh_free_fall();
     sf_cfh_points points = {0};
     sf_cfh_result result;
-    if ((o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
+    if (sf_staging_check(o->directory, output_names, o->force, err) != SF_OK ||
+        (o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
         return err->status;
     if (rig.understood[0])
         printf("rig %s: %s, %d pairs\n", o->rig_path, rig.understood, rig.pairs);

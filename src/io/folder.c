@@ -1,12 +1,139 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/folder.h"
 
+#include "io/plain_file.h"
+#include "io/replace.h"
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
-sf_status sf_folder_make(const char *path, sf_error *err) {
-    if (mkdir(path, 0777) != 0 && errno != EEXIST)
+static const char MARK[] = ".softfall-own";
+static const char TEXT[] =
+    "softfall keeps this folder: it removes files of its own here when they are no longer needed\n";
+
+int sf_folder_open(const char *path) {
+    return open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+static DIR *list_folder(int handle) {
+    int copy = openat(handle, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *list = copy >= 0 ? fdopendir(copy) : NULL;
+    if (!list && copy >= 0)
+        close(copy);
+    return list;
+}
+
+/* Number of entries but the mark; -1: unknown. */
+static int count_others(int handle) {
+    DIR *list = list_folder(handle);
+    struct dirent *entry;
+    int count = 0;
+    if (!list)
+        return -1;
+    while ((entry = readdir(list)) != NULL)
+        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
+                 strcmp(entry->d_name, MARK) != 0;
+    closedir(list);
+    return count;
+}
+
+static bool was_read(int handle, const char *name) {
+    struct stat info;
+    return fstatat(handle, name, &info, AT_SYMLINK_NOFOLLOW) == 0 && sf_plain_name(info.st_dev, info.st_ino);
+}
+
+sf_status sf_folder_check(int handle, const char *path, bool (*known)(const char *name), sf_error *err) {
+    DIR *list = list_folder(handle);
+    struct dirent *entry;
+    if (!list)
+        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be read: %s", path, strerror(errno));
+    while (err->status == SF_OK && (entry = readdir(list)) != NULL)
+        if (known(entry->d_name) && was_read(handle, entry->d_name))
+            SF_FAIL(err, SF_ERR_INPUT, "the output %s/%s would replace an input: give another name", path,
+                    entry->d_name);
+        else if (known(entry->d_name) && !sf_replace_is_ours(handle, entry->d_name))
+            SF_FAIL(err, SF_ERR_INPUT, "%s/%s is not a file of softfall: move it away", path, entry->d_name);
+    closedir(list);
+    return err->status;
+}
+
+void sf_folder_remove_known(int handle, bool (*known)(const char *name), const char *kept) {
+    DIR *list = list_folder(handle);
+    struct dirent *entry;
+    while (list && (entry = readdir(list)) != NULL)
+        if (known(entry->d_name) && !(kept && strcmp(entry->d_name, kept) == 0) &&
+            sf_replace_is_ours(handle, entry->d_name))
+            unlinkat(handle, entry->d_name, 0);
+    if (list)
+        closedir(list);
+}
+
+/* A process that was killed may have written the beginning of the text only. */
+bool sf_folder_is_own(int handle) {
+    char text[sizeof TEXT];
+    int file = openat(handle, MARK, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    struct stat info;
+    if (file < 0)
+        return false;
+    ssize_t length = fstat(file, &info) == 0 && S_ISREG(info.st_mode) ? read(file, text, sizeof text) : -1;
+    close(file);
+    return length >= 0 && length <= (ssize_t)strlen(TEXT) && memcmp(text, TEXT, (size_t)length) == 0;
+}
+
+sf_status sf_folder_mark(int handle, const char *path, sf_error *err) {
+    int file = openat(handle, MARK, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    bool done = file >= 0 && write(file, TEXT, strlen(TEXT)) == (ssize_t)strlen(TEXT);
+    int reason = errno;
+    if (file >= 0 && close(file) != 0)
+        done = false;
+    return done ? SF_OK
+                : SF_FAIL(err, SF_ERR_IO, "cannot write in the folder %s: %s", path, strerror(reason));
+}
+
+static sf_status take(int handle, const char *path, sf_error *err) {
+    if (sf_folder_is_own(handle))
+        return SF_OK;
+    if (count_others(handle) != 0)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the folder %s holds files and was not made by softfall: move it away, or give another "
+            "output",
+            path);
+    return sf_folder_mark(handle, path, err);
+}
+
+sf_status sf_folder_own(const char *path, sf_error *err) {
+    bool made = mkdir(path, 0777) == 0;
+    if (!made && errno != EEXIST)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", path, strerror(errno));
-    return SF_OK;
+    int handle = sf_folder_open(path);
+    if (handle < 0)
+        return SF_FAIL(err, errno == ENOTDIR ? SF_ERR_INPUT : SF_ERR_IO, "%s cannot be used as a folder: %s",
+                       path, strerror(errno));
+    take(handle, path, err);
+    close(handle);
+    if (made && err->status != SF_OK)
+        sf_folder_leave(path);
+    else if (made)
+        sf_replace_sync_name(path);
+    return err->status;
+}
+
+void sf_folder_leave(const char *path) {
+    int handle = sf_folder_open(path);
+    if (handle < 0)
+        return;
+    if (sf_folder_is_own(handle) && count_others(handle) == 0)
+        unlinkat(handle, MARK, 0);
+    close(handle);
+    rmdir(path);
+}
+
+void sf_folder_remove_file(const char *path) {
+    struct stat info;
+    if (lstat(path, &info) == 0 && S_ISREG(info.st_mode))
+        unlink(path);
 }

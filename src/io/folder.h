@@ -1,11 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Folders. */
+/* Folders that softfall keeps for itself: those of runs and drops, and what is being written. Such a folder
+ * holds a mark (a file of that name and text); softfall removes and replaces files only where that stands. */
 #ifndef SF_IO_FOLDER_H
 #define SF_IO_FOLDER_H
 
 #include "core/error.h"
+#include <stdbool.h>
 
-/* Makes the folder unless something of that name is there. */
-sf_status sf_folder_make(const char *path, sf_error *err);
+/* Makes the folder, or takes an empty one or one with the mark. SF_ERR_INPUT: it holds files but no mark, or
+ * is no folder. */
+sf_status sf_folder_own(const char *path, sf_error *err);
+
+/* Of an open folder: makes the mark; true if it has the mark. */
+sf_status sf_folder_mark(int handle, const char *path, sf_error *err);
+bool sf_folder_is_own(int handle);
+
+/* Opens it: -1 with errno on failure. */
+int sf_folder_open(const char *path);
+
+/* Of the files in an open folder whose names are `known`: SF_ERR_INPUT if one is not softfall's
+ * (sf_replace_is_ours) or was read by this process; removes those that are, but the one named `kept` (NULL:
+ * none). */
+sf_status sf_folder_check(int handle, const char *path, bool (*known)(const char *name), sf_error *err);
+void sf_folder_remove_known(int handle, bool (*known)(const char *name), const char *kept);
+
+/* Removes the mark and the folder if nothing else is in it. */
+void sf_folder_leave(const char *path);
+
+/* In a folder with the mark, one file of this name: removed if it is a plain file. */
+void sf_folder_remove_file(const char *path);
 
 #endif

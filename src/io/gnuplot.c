@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/gnuplot.h"
 
+#include "io/plain_file.h"
 #include "io/process.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -86,16 +87,10 @@ void sf_gnuplot_draw(const sf_staging *output, const char *name, char *warning, 
 static char *take_file(const sf_staging *output, const char *name) {
     sf_error ignored = SF_ERROR_INIT;
     char *text = NULL, *path = sf_staging_path(output, name, &ignored);
-    size_t size = 0;
-    FILE *file = path ? fopen(path, "r") : NULL;
-    if (file && getdelim(&text, &size, '\0', file) < 0) {
-        free(text);
-        text = NULL;
+    if (path) {
+        sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &ignored);
+        sf_staging_remove(output, name);
     }
-    if (file)
-        fclose(file);
-    if (path)
-        remove(path);
     free(path);
     return text;
 }

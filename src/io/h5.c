@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/h5.h"
 
+#include "io/plain_file.h"
 #include "io/seal.h"
 #include <errno.h>
 #include <hdf5.h>
@@ -67,28 +68,42 @@ sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
     *file = NULL;
     begin_library();
     errno = 0;
-    hid_t id = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    if (id < 0)
+    hid_t id = H5Fcreate(path, H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
+    if (id >= 0)
+        H5Fflush(id, H5F_SCOPE_LOCAL); /* its signature tells what it is if this process is killed */
+    else
         return SF_FAIL(err, SF_ERR_IO, "cannot create %s: %s", path,
                        errno ? strerror(errno) : "HDF5 refuses it");
     return wrap(id, path, true, file, err);
 }
 
+/* Opens a file that passes the gate. HDF5 gets the descriptor by its name in /proc: it opens the very file
+ * that was looked at, whatever stands at `path` meanwhile. Without /proc it looks for the path. */
+static hid_t open_plain(const char *path, sf_error *err) {
+    static const char signature[8] = "\211HDF\r\n\032\n";
+    char name[32], begin[sizeof signature];
+    sf_error inner = SF_ERROR_INIT;
+    int gate;
+    hid_t id = -1;
+    if (sf_plain_open(path, NULL, &gate, NULL, &inner) != SF_OK) {
+        SF_FAIL(err, inner.status == SF_ERR_MEMORY ? inner.status : SF_ERR_IO, "%s", inner.text);
+        return -1;
+    }
+    snprintf(name, sizeof name, "/proc/self/fd/%d", gate);
+    if (pread(gate, begin, sizeof begin, 0) != (ssize_t)sizeof begin ||
+        memcmp(begin, signature, sizeof begin) != 0)
+        SF_FAIL(err, SF_ERR_IO, "%s is not an HDF5 file", path);
+    else if ((id = H5Fopen(access(name, F_OK) == 0 ? name : path, H5F_ACC_RDONLY, H5P_DEFAULT)) < 0)
+        SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: it is damaged or another program is writing it", path);
+    close(gate);
+    return id;
+}
+
 static sf_status open_file(const char *path, bool alone, sf_h5 **file, sf_error *err) {
     *file = NULL;
     begin_library();
-    struct stat info;
-    if (access(path, R_OK) != 0 || stat(path, &info) != 0)
-        return SF_FAIL(err, SF_ERR_IO, "cannot read %s: %s", path, strerror(errno));
-    if (!S_ISREG(info.st_mode)) /* opening a pipe would wait for ever */
-        return SF_FAIL(err, SF_ERR_IO, "%s is not a plain file", path);
-    if (H5Fis_hdf5(path) <= 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s is not an HDF5 file", path);
-    hid_t id = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (id < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: it is damaged or another program is writing it",
-                       path);
-    return wrap(id, path, alone, file, err);
+    hid_t id = open_plain(path, err);
+    return id < 0 ? err->status : wrap(id, path, alone, file, err);
 }
 
 sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
@@ -175,7 +190,7 @@ static int open_part(const sf_h5 *file, const char *folder, const char *name, hi
     if (strcmp(file->checked, name) != 0 && sf_seal_check(path, &problem) != SF_OK)
         return LINK_DAMAGED;
     snprintf(file->checked, NAME_MAX + 1, "%s", name);
-    *part = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    *part = open_plain(path, &problem);
     return *part < 0 ? LINK_DAMAGED : LINK_HARD;
 }
 

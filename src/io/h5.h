@@ -21,8 +21,9 @@ typedef struct sf_h5_info {
     const char *description; /* one phrase, with the shape's meaning */
 } sf_h5_info;
 
-/* Creates (truncating) or opens read-only. `*file` is owned by the caller: release with sf_h5_close. Opening
- * a file that is missing, unreadable or not HDF5 is SF_ERR_IO with a sentence that says which. */
+/* Creates a new file, where none of the name may be, or opens read-only. `*file` is owned by the caller:
+ * release with sf_h5_close. Opening a file that is missing, unreadable or not HDF5 is SF_ERR_IO with a
+ * sentence that says which. */
 sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err);
 sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
 /* The same of a file that has no folder of its own (a checkpoint, a file of such a folder): no link of it is

@@ -54,8 +54,10 @@ static int prepare(posix_spawn_file_actions_t *actions, const sf_process *p) {
     if (result == 0)
         result = posix_spawn_file_actions_addopen(actions, 0, "/dev/null", O_RDONLY, 0);
     if (result == 0)
-        result = posix_spawn_file_actions_addopen(actions, 1, p->log ? p->log : "/dev/null",
-                                                  O_WRONLY | O_CREAT | O_APPEND, 0666);
+        result = p->log
+                     ? posix_spawn_file_actions_addopen(
+                           actions, 1, p->log, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK, 0666)
+                     : posix_spawn_file_actions_addopen(actions, 1, "/dev/null", O_WRONLY, 0);
     return result == 0 ? posix_spawn_file_actions_adddup2(actions, 1, 2) : result;
 }
 

@@ -15,8 +15,8 @@ typedef struct sf_process {
     const char *const *arguments; /* the program, a path or a name to look for in PATH, and its arguments;
                                      ends with NULL */
     const char *folder;           /* in which it runs; NULL: the present one */
-    const char *log;              /* file to which its output is appended; NULL: the output is dropped */
-    bool stoppable;               /* signals are passed on to it, see sf_process_handle_signals */
+    const char *log; /* file to which its output is appended, not through a link; NULL: dropped */
+    bool stoppable;  /* signals are passed on to it, see sf_process_handle_signals */
 } sf_process;
 
 /* Runs the program with nothing to read. Returns 0 and its exit code (128 + the signal that ended it), or the

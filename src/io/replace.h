@@ -1,19 +1,68 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that are complete at any instant: written under another name on the same file system, synchronised
  * (fsync) and renamed. After a failure in between, the earlier file remains. Model, results, checkpoint and
- * reports all go through here. */
+ * reports all go through here: the only code that makes files.
+ *
+ * The other name, "path.partial-<process>-<8 digits>", is always a new file: what has that name is neither
+ * followed nor overwritten. */
 #ifndef SF_IO_REPLACE_H
 #define SF_IO_REPLACE_H
 
 #include "core/error.h"
+#include <stdbool.h>
+#include <stdio.h>
 
 enum { SF_PATH_SIZE = 4096 };
 
-/* "path.partial", the name to write under. */
+/* Whether an output of this name can be written, before anything is computed or made. SF_ERR_INPUT: the name
+ * is empty or too long (also with what is appended to it), or stands for a folder, pipe, socket or device, or
+ * for a file that this process has read (io/plain_file.h). SF_ERR_IO: its folder is missing or cannot be
+ * written in. */
+sf_status sf_replace_check(const char *path, sf_error *err);
+
+/* The last part of that: the folder in which `path` would be. */
+sf_status sf_replace_check_folder(const char *path, sf_error *err);
+
+/* Something of this name is there, even if it is a link to nothing. */
+bool sf_replace_exists(const char *path);
+
+/* The name to write under; nothing is made. */
 sf_status sf_replace_begin(const char *path, char partial[SF_PATH_SIZE], sf_error *err);
 
+/* Makes a file of this very name for writing; NULL on failure, also if the name is taken. The caller closes
+ * it. */
+FILE *sf_replace_create(const char *path, sf_error *err);
+
+/* A text file on its way to its name. */
+typedef struct sf_replacement {
+    FILE *file;
+    char path[SF_PATH_SIZE], partial[SF_PATH_SIZE];
+} sf_replacement;
+
+/* Begins and creates: the file, or NULL. sf_replace_close closes it, reports writes that failed, and commits.
+ */
+FILE *sf_replace_open(const char *path, sf_replacement *out, sf_error *err);
+sf_status sf_replace_close(sf_replacement *out, sf_error *err);
+
+/* Opens a file for reading and writing that this process has made, for a last change or fsync: not through a
+ * link, only a plain file. -1 with errno on failure. */
+int sf_replace_reopen(const char *path);
+
 /* Makes the closed file `partial` the file `path`, both on the disk (fsync of the file and of the folder);
- * removes it on failure. */
+ * removes it on failure. A folder, pipe, socket or device of the name `path` stays: SF_ERR_IO. */
 sf_status sf_replace_commit(const char *partial, const char *path, sf_error *err);
+
+/* The name of a file or folder that was made is on the disk (fsync of the folder that holds it). */
+void sf_replace_sync_name(const char *path);
+
+/* True if `name` is that of a partial file of `of`; `*process`, if not NULL: of which process. */
+bool sf_replace_is_partial(const char *name, const char *of, int *process);
+
+/* Removes the partial files of `path` whose process has ended: plain files of that name that are empty or of
+ * HDF5, and that no program has open. */
+void sf_replace_clean(const char *path);
+
+/* The file of that name in the open folder is plain, and empty or of HDF5. */
+bool sf_replace_is_ours(int folder, const char *name);
 
 #endif

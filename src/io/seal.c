@@ -2,10 +2,12 @@
 #include "io/seal.h"
 
 #include "core/hash.h"
-#include <stdbool.h>
+#include "io/plain_file.h"
+#include "io/replace.h"
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct seal {
     char name[8];
@@ -33,9 +35,14 @@ static seal compute(FILE *file, uint64_t length) {
 }
 
 sf_status sf_seal_add(const char *path, sf_error *err) {
-    FILE *file = fopen(path, "r+b");
-    if (!file)
-        return SF_FAIL(err, SF_ERR_IO, "cannot open %s: %s", path, strerror(errno));
+    int handle = sf_replace_reopen(path);
+    FILE *file = handle >= 0 ? fdopen(handle, "r+b") : NULL;
+    if (!file) {
+        SF_FAIL(err, SF_ERR_IO, "cannot open %s: %s", path, strerror(errno));
+        if (handle >= 0)
+            close(handle);
+        return err->status;
+    }
     seal s = compute(file, UINT64_MAX);
     bool done = !ferror(file) && fseeko(file, 0, SEEK_END) == 0 && fwrite(&s, sizeof s, 1, file) == 1;
     if (fclose(file) != 0 || !done)
@@ -45,9 +52,13 @@ sf_status sf_seal_add(const char *path, sf_error *err) {
 
 static sf_status check(const char *path, bool required, sf_error *err) {
     seal stored, found;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return SF_FAIL(err, SF_ERR_IO, "cannot read %s: %s", path, strerror(errno));
+    int handle;
+    SF_TRY(sf_plain_open(path, NULL, &handle, NULL, err));
+    FILE *file = fdopen(handle, "rb");
+    if (!file) {
+        close(handle);
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory to read %s", path);
+    }
     bool there = fseeko(file, -(off_t)sizeof stored, SEEK_END) == 0 &&
                  fread(&stored, sizeof stored, 1, file) == 1 && memcmp(stored.name, NAME, sizeof NAME) == 0;
     off_t length = there ? ftello(file) - (off_t)sizeof stored : 0;

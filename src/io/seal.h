@@ -8,7 +8,8 @@
 
 sf_status sf_seal_add(const char *path, sf_error *err);
 
-/* SF_ERR_IO if the file cannot be read, was cut or has changed. */
+/* SF_ERR_INPUT if the file is missing or not plain; SF_ERR_IO if it cannot be read, was cut or has changed.
+ */
 sf_status sf_seal_check(const char *path, sf_error *err);
 /* The same for a file that may have come from another tool (h5repack), without a seal: then SF_OK. */
 sf_status sf_seal_check_any(const char *path, sf_error *err);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/staging.h"
 
+#include "io/folder.h"
 #include "io/replace.h"
 #include <dirent.h>
 #include <errno.h>
@@ -27,36 +28,54 @@ static char *join(const char *directory, const char *name, sf_error *err) {
 static bool file_exists(const char *directory, const char *name) {
     sf_error ignored = SF_ERROR_INIT;
     char *path = join(directory, name, &ignored);
-    bool found = path && access(path, F_OK) == 0;
+    bool found = path && sf_replace_exists(path);
     free(path);
     return found;
 }
 
-static sf_status make_directory(sf_staging *output, bool force, sf_error *err) {
-    struct stat status;
-    if (mkdir(output->directory, 0777) == 0) {
-        output->created = true;
-        return SF_OK;
+/* Each file that is there may be replaced: it is plain and not an input. */
+static sf_status check_files(const char *directory, const char *const *names, bool force, sf_error *err) {
+    for (; *names && err->status == SF_OK; names++) {
+        char *path = join(directory, *names, err);
+        if (path && sf_replace_check(path, err) == SF_OK && !force && sf_replace_exists(path))
+            SF_FAIL(err, SF_ERR_INPUT,
+                    "%s already holds %s: give another directory, or --force to replace it", directory,
+                    *names);
+        free(path);
     }
-    if (errno != EEXIST)
-        return SF_FAIL(err, SF_ERR_IO, "cannot make the directory %s: %s", output->directory,
-                       strerror(errno));
-    if (stat(output->directory, &status) != 0 || !S_ISDIR(status.st_mode))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s exists and is not a directory", output->directory);
-    for (const char *const *name = output->names; *name && !force; name++)
-        if (file_exists(output->directory, *name))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s already holds %s: give another directory, or --force to replace it",
-                           output->directory, *name);
-    return SF_OK;
+    return err->status;
 }
 
-/* Removes the plain files of a directory and itself; a link instead of a directory is not followed. */
+sf_status sf_staging_check(const char *directory, const char *const *names, bool force, sf_error *err) {
+    struct stat info;
+    if (!*directory)
+        return SF_FAIL(err, SF_ERR_INPUT, "the name of the output directory is empty");
+    if (stat(directory, &info) == 0)
+        return S_ISDIR(info.st_mode)
+                   ? check_files(directory, names, force, err)
+                   : SF_FAIL(err, SF_ERR_INPUT, "%s exists and is not a directory", directory);
+    if (errno != ENOENT || lstat(directory, &info) == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "the directory %s cannot be made: %s", directory, strerror(errno));
+    return sf_replace_check_folder(directory, err);
+}
+
+static sf_status make_directory(sf_staging *output, bool force, sf_error *err) {
+    SF_TRY(sf_staging_check(output->directory, output->names, force, err));
+    if (mkdir(output->directory, 0777) == 0)
+        output->created = true;
+    else if (errno != EEXIST)
+        SF_FAIL(err, SF_ERR_IO, "cannot make the directory %s: %s", output->directory, strerror(errno));
+    return err->status;
+}
+
+/* Removes the plain files of a directory with softfall's mark, and itself; a link instead of a directory is
+ * not followed. */
 static void remove_flat(int parent, const char *name) {
     int handle = openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    bool own = handle >= 0 && sf_folder_is_own(handle);
     DIR *listing = handle >= 0 ? fdopendir(handle) : NULL;
     struct dirent *entry;
-    while (listing && (entry = readdir(listing)) != NULL)
+    while (own && listing && (entry = readdir(listing)) != NULL)
         if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
             unlinkat(handle, entry->d_name, 0);
     if (listing)
@@ -104,6 +123,8 @@ sf_status sf_staging_begin(const char *directory, const char *const *names, bool
         output->aside = NULL;
         goto failed;
     }
+    if (sf_folder_own(output->aside, err) != SF_OK)
+        goto failed;
     return SF_OK;
 failed:
     sf_staging_end(output);
@@ -116,9 +137,7 @@ char *sf_staging_path(const sf_staging *output, const char *name, sf_error *err)
 
 FILE *sf_staging_open(const sf_staging *output, const char *name, sf_error *err) {
     char *path = sf_staging_path(output, name, err);
-    FILE *file = path ? fopen(path, "w") : NULL;
-    if (path && !file)
-        SF_FAIL(err, SF_ERR_IO, "cannot write %s: %s", path, strerror(errno));
+    FILE *file = path ? sf_replace_create(path, err) : NULL;
     free(path);
     return file;
 }
@@ -134,7 +153,16 @@ bool sf_staging_has(const sf_staging *output, const char *name) {
     return file_exists(output->aside ? output->aside : output->directory, name);
 }
 
+void sf_staging_remove(const sf_staging *output, const char *name) {
+    sf_error ignored = SF_ERROR_INIT;
+    char *path = sf_staging_path(output, name, &ignored);
+    if (path)
+        unlink(path);
+    free(path);
+}
+
 sf_status sf_staging_commit(sf_staging *output, sf_error *err) {
+    SF_TRY(check_files(output->directory, output->names, true, err));
     for (const char *const *name = output->names; *name && err->status == SF_OK; name++) {
         char *from = join(output->aside, *name, err);
         char *to = from ? join(output->directory, *name, err) : NULL;
@@ -149,8 +177,10 @@ sf_status sf_staging_commit(sf_staging *output, sf_error *err) {
     }
     if (err->status != SF_OK)
         return err->status;
+    if (output->created)
+        sf_replace_sync_name(output->directory);
     output->created = false;
-    rmdir(output->aside);
+    remove_flat(AT_FDCWD, output->aside);
     free(output->aside);
     output->aside = NULL;
     return SF_OK;

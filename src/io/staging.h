@@ -17,6 +17,12 @@ typedef struct sf_staging {
     bool created;             /* the directory did not exist before */
 } sf_staging;
 
+/* Whether that can be the output directory, before anything is computed or made. SF_ERR_INPUT: the name is
+ * empty or too long, there is no folder of that name, or it holds one of the files without `force`, or one
+ * that cannot be replaced (io/replace.h: a folder, a pipe, a device, an input). The other functions check
+ * again. */
+sf_status sf_staging_check(const char *directory, const char *const *names, bool force, sf_error *err);
+
 /* Makes the directory if need be. SF_ERR_INPUT if it holds one of the named files already and `force` is
  * false. */
 sf_status sf_staging_begin(const char *directory, const char *const *names, bool force, sf_staging *output,
@@ -29,6 +35,9 @@ char *sf_staging_path(const sf_staging *output, const char *name, sf_error *err)
  * failed. */
 FILE *sf_staging_open(const sf_staging *output, const char *name, sf_error *err);
 sf_status sf_staging_close(FILE *file, const char *name, sf_error *err);
+
+/* Removes a file from the staging directory. */
+void sf_staging_remove(const sf_staging *output, const char *name);
 
 /* True if the file has been written in this run. */
 bool sf_staging_has(const sf_staging *output, const char *name);

@@ -2,16 +2,13 @@
 #include "io/table_csv.h"
 
 #include "core/decimal.h"
-
+#include "io/plain_file.h"
 #include "io/table_heading.h"
-
 #include <ctype.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { PREAMBLE = 200 }; /* lines among which the heading must stand */
 static const char SEPARATORS[] = ";\t, ";
@@ -45,30 +42,8 @@ void sf_table_free(sf_table *table) {
 
 static sf_status load(csv *file, sf_error *err) {
     const char *what = file->layout->what;
-    struct stat info;
-    if (stat(file->path, &info) == 0 && !S_ISREG(info.st_mode))
-        return SF_FAIL(err, SF_ERR_INPUT, "the %s %s is not a plain file", what, file->path);
-    FILE *stream = fopen(file->path, "r");
-    if (!stream)
-        return SF_FAIL(err, SF_ERR_INPUT, "the %s %s cannot be read: %s", what, file->path, strerror(errno));
-    size_t length = 0, size = 0, got;
-    do {
-        size = size ? 2 * size : 65536;
-        char *grown = realloc(file->text, size + 1);
-        if (!grown) {
-            SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", what, file->path);
-            break;
-        }
-        file->text = grown;
-        got = fread(grown + length, 1, size - length, stream);
-        length += got;
-    } while (length == size);
-    if (err->status == SF_OK && ferror(stream))
-        SF_FAIL(err, SF_ERR_IO, "reading the %s %s failed: %s", what, file->path, strerror(errno));
-    fclose(stream);
-    if (err->status != SF_OK)
-        return err->status;
-    file->text[length] = '\0';
+    size_t length = 0;
+    SF_TRY(sf_plain_read(file->path, what, SF_PLAIN_TEXT, &file->text, &length, err));
     if (strlen(file->text) < length)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "the %s %s holds zero bytes: it is not a text in UTF-8 (save it as CSV UTF-8)", what,

@@ -156,13 +156,9 @@ static char *draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], c
 /* Draws NAME as SVG and removes its script. */
 static char *take_curve(const sf_staging *output, const char *name, char *text, size_t size) {
     char warning[320], file[64];
-    sf_error ignored = SF_ERROR_INIT;
     char *svg = sf_gnuplot_svg(output, name, "softfall-post", warning, sizeof warning);
     snprintf(file, sizeof file, "%s.gp", name);
-    char *path = sf_staging_path(output, file, &ignored);
-    if (path)
-        remove(path);
-    free(path);
+    sf_staging_remove(output, file);
     if (!svg)
         snprintf(text, size, "%s.", warning);
     return svg;

@@ -3,6 +3,7 @@
 #include "build_info.h"
 #include "core/program.h"
 #include "io/model_io.h"
+#include "io/replace.h"
 #include "case/case.h"
 #include "pre/make.h"
 #include "pre/report.h"
@@ -10,7 +11,6 @@
 #include <argp.h>
 #include <omp.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 enum { MAX_OVERRIDES = 64, KEY_SET = 1, KEY_KEYS = 2 };
 
@@ -60,11 +60,15 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
     sf_build_report report;
     char libraries[SF_LIBRARIES_SIZE];
     const sf_sink sink = sf_program_sink("softfall-pre");
-    if (!o->force && access(o->output, F_OK) == 0)
+    SF_TRY(sf_replace_check(o->output, err));
+    if (!o->force && sf_replace_exists(o->output))
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it", o->output);
     if (sf_case_read(o->case_path, o->overrides, o->override, &sink, &c, err) != SF_OK ||
-        sf_model_make(&c, &model, &report, libraries, &sink, err) != SF_OK)
+        sf_replace_check(o->output, err) != SF_OK || /* not one of what the case names */
+        sf_model_make(&c, &model, &report, libraries, &sink, err) != SF_OK ||
+        sf_replace_check(o->output, err) != SF_OK) /* nor of what a geometry names */
         goto done;
+    sf_replace_clean(o->output);
     sf_report_print(stdout, &model, &report);
     sf_provenance provenance = {.program = "softfall-pre",
                                 .command_line = command,

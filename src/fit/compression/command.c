@@ -4,6 +4,7 @@
 
 #include "fit/compression/output.h"
 #include "fit/command_line.h"
+#include "io/plain_file.h"
 #include "io/process.h"
 
 #include <argp.h>
@@ -88,7 +89,11 @@ static sf_status run(const options *o, sf_error *err) {
     sf_compression_config config = {0};
     sf_compression_fit fit = {0};
     const sf_sink sink = sf_program_sink("softfall-fit");
-    if (sf_compression_config_read(o->path, &config, err) != SF_OK)
+    uint64_t ignored; /* the case can be read: nothing is made before */
+    if (sf_compression_output_check(o->directory, o->force, err) != SF_OK ||
+        (o->cube.case_path &&
+         sf_plain_hash(o->cube.case_path, "case file", SF_PLAIN_TEXT, &ignored, err) != SF_OK) ||
+        sf_compression_config_read(o->path, &config, err) != SF_OK)
         return err->status;
     print_tests(&config);
     if (sf_compression_fit_run(&config, &fit, err) == SF_OK)

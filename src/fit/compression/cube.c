@@ -4,6 +4,7 @@
 #include "campaign/material_file.h"
 #include "campaign/runner.h"
 #include "fit/material_point.h"
+#include "io/replace.h"
 #include "post/results.h"
 #include "solver/material/foam.h"
 
@@ -36,14 +37,13 @@ static sf_foam_card quicken(const sf_foam_card *card, double k, double *rates) {
 }
 
 static sf_status write_motion(const char *path, double displacement, double turn_time, sf_error *err) {
-    FILE *file = fopen(path, "w");
+    sf_replacement out;
+    FILE *file = sf_replace_open(path, &out, err);
     if (!file)
-        return SF_FAIL(err, SF_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
+        return err->status;
     fprintf(file, "time_s,displacement_m\n0,0\n%.12g,%.12g\n%.12g,0\n", turn_time, displacement,
             2 * turn_time);
-    if (fclose(file) != 0)
-        return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", path);
-    return SF_OK;
+    return sf_replace_close(&out, err);
 }
 
 static sf_status check_specimen(const sf_compression_config *c, sf_error *err) {

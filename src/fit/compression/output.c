@@ -117,7 +117,7 @@ static sf_status write_simulation(const sf_staging *output, const sf_compression
     if (!cube->case_path)
         return SF_OK;
     snprintf(folder, sizeof folder, "%s/simulation", output->directory);
-    if (sf_folder_make(folder, err) != SF_OK ||
+    if (sf_folder_own(folder, err) != SF_OK ||
         sf_compression_simulate(fit, card, cube, folder, check->cube, err) != SF_OK)
         return err->status;
     check->simulated = true;
@@ -166,6 +166,10 @@ static void warn(const sf_compression_fit *fit, const char *plot, const sf_sink 
             sqrt(fit->misfit));
     if (*plot)
         sf_sink_tell(sink, SF_WARNING, "%s", plot);
+}
+
+sf_status sf_compression_output_check(const char *directory, bool force, sf_error *err) {
+    return sf_staging_check(directory, output_names, force, err);
 }
 
 sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *command,

@@ -9,6 +9,9 @@
 #include "fit/compression/fit.h"
 #include <stdbool.h>
 
+/* Whether that can be the directory of the output (sf_staging_check). */
+sf_status sf_compression_output_check(const char *directory, bool force, sf_error *err);
+
 /* Writes into `directory` (sf_staging), and the summary to cube->log; warnings go to `sink`. `path`: FIT.cfg,
  * as given; `command`: the words of the command. Simulates the tests first if `cube` names a case. */
 sf_status sf_compression_output(const sf_compression_fit *fit, const char *path, const char *command,

@@ -65,7 +65,7 @@ static void name_files(const sf_fit_input *in, names *n) {
 /* The drops' folders are kept between runs of the command: DIR/runs. */
 static sf_status make_runs(const char *directory, char *runs, sf_error *err) {
     snprintf(runs, PATH_MAX, "%s/runs", directory);
-    return sf_folder_make(runs, err);
+    return sf_folder_own(runs, err);
 }
 
 static void print_curves(const sf_fit_input *in) {
@@ -79,7 +79,9 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_st
                      sf_error *err) {
     char runs[PATH_MAX], warning[512] = "";
     names n;
-    if (sf_fit_input_read(o->input, in, err) != SF_OK)
+    const char *const none[] = {NULL}; /* the names are in the input */
+    if (sf_staging_check(o->directory, none, o->force, err) != SF_OK ||
+        sf_fit_input_read(o->input, in, err) != SF_OK)
         return err->status;
     name_files(in, &n);
     if (sf_staging_begin(o->directory, n.list, o->force, output, err) != SF_OK ||

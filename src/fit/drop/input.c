@@ -3,6 +3,7 @@
 #include "fit/drop/input.h"
 
 #include "campaign/config.h"
+#include "io/plain_file.h"
 #include "post/compare.h"
 #include "post/reference.h"
 #include "case/case.h"
@@ -279,23 +280,11 @@ static sf_status read_unknowns(const sf_config *config, const config_setting_t *
     return SF_OK;
 }
 
-static sf_status read_text(const char *path, sf_fit_input *in, sf_error *err) {
-    size_t size = 0;
-    char block[4096];
-    FILE *file = fopen(path, "r"), *copy = open_memstream(&in->text, &size);
-    while (file && copy && (size = fread(block, 1, sizeof block, file)) > 0)
-        fwrite(block, 1, size, copy);
-    if (file)
-        fclose(file);
-    if (!copy || fclose(copy) != 0 || !file)
-        return SF_FAIL(err, SF_ERR_IO, "%s cannot be read", path);
-    return SF_OK;
-}
-
 sf_status sf_fit_input_read(const char *path, sf_fit_input *in, sf_error *err) {
     sf_config config;
     *in = (sf_fit_input){0};
-    if (sf_config_open(path, &config, err) == SF_OK && read_text(path, in, err) == SF_OK) {
+    if (sf_config_open(path, &config, err) == SF_OK &&
+        sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err) == SF_OK) {
         const config_setting_t *root = config_root_setting(&config.config);
         if (sf_config_names(&config, root, "name|title|material|curve_form|start|unknown|drops|predict",
                             err) == SF_OK &&

@@ -4,6 +4,7 @@
 #include "build_info.h"
 #include "core/program.h"
 #include "io/model_io.h"
+#include "io/replace.h"
 #include "solver/program/report.h"
 #include "solver/run/run.h"
 #include <limits.h>
@@ -13,14 +14,20 @@
 #include <string.h>
 #include <unistd.h>
 
+static sf_status check_names(const sf_output *output, sf_error *err) {
+    SF_TRY(sf_replace_check(output->results, err));
+    return sf_replace_check(output->checkpoint, err);
+}
+
 /* A file of an earlier run is replaced only with --force. */
 static sf_status check_output(const sf_solve_options *o, const sf_output *output, sf_error *err) {
+    SF_TRY(check_names(output, err));
     if (o->force)
         return SF_OK;
-    if (access(output->results, F_OK) == 0)
+    if (sf_replace_exists(output->results))
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it%s", output->results,
-                       access(output->checkpoint, F_OK) == 0 ? ", --restart resumes it" : "");
-    if (access(output->checkpoint, F_OK) == 0)
+                       sf_replace_exists(output->checkpoint) ? ", --restart resumes it" : "");
+    if (sf_replace_exists(output->checkpoint))
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --restart %s resumes from it, --force starts a new run",
                        output->checkpoint, output->results);
     return SF_OK;
@@ -119,6 +126,7 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     if (o->restart ? sf_checkpoint_open(output.checkpoint, &from, err) : check_output(o, &output, err))
         return err->status;
     if (read_model(o, &from, &model, &model_file, hash, err) != SF_OK ||
+        (!o->restart && check_names(&output, err) != SF_OK) || /* now that the input is known */
         set_end_time(o, &from, &model, err) != SF_OK)
         goto done;
     const char *named = o->model ? o->model : from.model_path;
@@ -134,6 +142,8 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
         sf_output_abandon(&output);
         goto done;
     }
+    sf_replace_clean(output.results);
+    sf_replace_clean(output.checkpoint);
     if (!o->restart)
         unlink(output.checkpoint); /* of an earlier run, with --force */
     const sf_sink sink = sf_program_sink("softfall-solve");

@@ -6,9 +6,7 @@
 #include "io/seal.h"
 #include "solver/run/frame.h"
 #include "solver/run/results_file.h"
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
@@ -46,36 +44,36 @@ sf_status sf_output_name(sf_output *o, const char *results, sf_error *err) {
     return SF_OK;
 }
 
-/* Under its own name or as `.partial`. */
-static bool is_ours(const char *name) {
-    static const char *const begin[] = {"frame-", BASE, PEAK};
-    for (size_t k = 0; k < sizeof begin / sizeof begin[0]; k++)
-        if (strncmp(name, begin[k], strlen(begin[k])) == 0)
-            return true;
-    return false;
+/* Base, peak or a frame, under its own name or as a partial file. */
+static bool is_name(const char *name) {
+    char whole[64];
+    int length = (int)strcspn(name, "."), end = 0;
+    long long index;
+    snprintf(whole, sizeof whole, "%.*s.h5", length, name);
+    bool known = strcmp(whole, BASE) == 0 || strcmp(whole, PEAK) == 0 ||
+                 (sscanf(whole, "frame-%lld.h5%n", &index, &end) == 1 &&
+                  end >= (int)strlen("frame-000000.h5") && whole[end] == '\0');
+    return known && (strcmp(name, whole) == 0 || sf_replace_is_partial(name, whole, NULL));
 }
 
-/* All but the one named `kept`, if it is not NULL. */
-static void remove_files(const sf_output *o, const char *kept) {
-    DIR *folder = opendir(o->folder);
-    for (struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder))
-        if (is_ours(entry->d_name) && !(kept && strcmp(entry->d_name, kept) == 0))
-            unlinkat(dirfd(folder), entry->d_name, 0);
-    if (folder)
-        closedir(folder);
+/* Of another process. */
+static bool is_rest(const char *name) {
+    return is_name(name) && strstr(name, ".h5.") != NULL;
 }
 
 sf_status sf_output_open(sf_output *o, sf_error *err) {
-    if (sf_folder_make(o->folder, err) != SF_OK)
+    if (sf_folder_own(o->folder, err) != SF_OK)
         return err->status;
-    o->lock = open(o->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    o->lock = sf_folder_open(o->folder);
     if (o->lock < 0)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be opened: %s", o->folder, strerror(errno));
     if (flock(o->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         sf_output_close(o);
         return SF_FAIL(err, SF_ERR_INPUT, "another softfall-solve is writing %s", o->results);
     }
-    return SF_OK;
+    if (sf_folder_check(o->lock, o->folder, is_name, err) == SF_OK)
+        sf_folder_remove_known(o->lock, is_rest, NULL);
+    return err->status;
 }
 
 void sf_output_close(sf_output *o) {
@@ -85,8 +83,8 @@ void sf_output_close(sf_output *o) {
 }
 
 void sf_output_clear(const sf_output *o) {
-    remove_files(o, NULL);
-    rmdir(o->folder);
+    sf_folder_remove_known(o->lock, is_name, NULL);
+    sf_folder_leave(o->folder);
 }
 
 /* Closes a file, seals it and gives it its name; removes it if it failed. */
@@ -118,7 +116,7 @@ sf_status sf_output_start(const sf_output *o, bool keep, sf_error *err) {
     if (place(o, BASE, path, partial, err) != SF_OK)
         return err->status;
     if (sf_replace_commit(partial, path, err) == SF_OK && !keep)
-        remove_files(o, BASE);
+        sf_folder_remove_known(o->lock, is_name, BASE);
     return err->status;
 }
 
@@ -129,7 +127,7 @@ void sf_output_abandon(const sf_output *o) {
         return;
     if (place(o, BASE, path, partial, &ignored) == SF_OK)
         unlink(partial);
-    rmdir(o->folder); /* fails if an earlier run has files in it */
+    sf_folder_leave(o->folder); /* stays if an earlier run has files in it */
 }
 
 /* The present state as the group of a file of the folder, whose size is added to `*size` (NULL: to none). */
