@@ -43,6 +43,7 @@ ALLOWED = {
     "solver/run/checkpoint": {"remove": "its own partial file"},
     "solver/run/output": {"remove": "its own partial files"},
     "solver/program/solve": {"remove": "results and checkpoint of an earlier run, with --force"},
+    "campaign/run_folder": {"open": "the folder of a drop, to ask whether a run has it locked"},
     "campaign/material_file": {"remove": "a material that it has just written and that is refused"},
 }
 # Not yet through the gate.
