@@ -134,9 +134,9 @@ static void cover_pair(double *ai, double *aj, double p, double o, double q) {
     }
     if (*ai >= q && *aj >= p && (*aj - p) * (*ai - q) >= o * o)
         return;
-    *aj = fmax(*aj, p + fabs(o));
+    *aj = larger(*aj, p + fabs(o));
     if (*aj > p)
-        *ai = fmax(*ai, q + o * o / (*aj - p));
+        *ai = larger(*ai, q + o * o / (*aj - p));
 }
 
 /* Theory eq. 18. */

@@ -68,7 +68,7 @@ static void conclude(sf_study *study, const sf_drop *base, const sf_drop *drop) 
         double largest = 0;
         for (int k = 0; k < VARIATIONS; k++) {
             double change = 100 * fabs(drop[k].a_max_g / base->a_max_g - 1);
-            if ((int)variations[k].kind == kind && change > largest) {
+            if ((int)variations[k].kind == kind && !(change <= largest)) {
                 largest = change;
                 worst = k;
             }

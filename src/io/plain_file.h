@@ -8,8 +8,8 @@
  * the path alone. SF_ERR_INPUT: the file is missing, not permitted, not plain or too large; SF_ERR_IO:
  * reading failed, or the file changed meanwhile.
  *
- * Every file that passed is entered in the register of this process: an output is never one of them
- *, and a key can be made of their contents. */
+ * Every file that passed is entered in the register of this process: an output is never one of them,
+ * and a key can be made of their contents. */
 #ifndef SF_IO_PLAIN_FILE_H
 #define SF_IO_PLAIN_FILE_H
 

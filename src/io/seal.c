@@ -50,30 +50,47 @@ sf_status sf_seal_add(const char *path, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status check(const char *path, bool required, sf_error *err) {
+/* What the open file ends with. */
+static sf_seal_state examine(FILE *file) {
     seal stored, found;
+    if (fseeko(file, -(off_t)sizeof stored, SEEK_END) != 0 || fread(&stored, sizeof stored, 1, file) != 1 ||
+        memcmp(stored.name, NAME, sizeof NAME) != 0)
+        return SF_SEAL_NONE;
+    off_t length = ftello(file) - (off_t)sizeof stored;
+    rewind(file);
+    found = compute(file, (uint64_t)length);
+    return found.length == stored.length && found.hash == stored.hash ? SF_SEAL_SOUND : SF_SEAL_BROKEN;
+}
+
+sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err) {
     int handle;
+    *state = SF_SEAL_NO_FILE;
+    if (access(path, F_OK) != 0 && errno == ENOENT)
+        return SF_OK;
     SF_TRY(sf_plain_open(path, NULL, &handle, NULL, err));
     FILE *file = fdopen(handle, "rb");
     if (!file) {
         close(handle);
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory to read %s", path);
     }
-    bool there = fseeko(file, -(off_t)sizeof stored, SEEK_END) == 0 &&
-                 fread(&stored, sizeof stored, 1, file) == 1 && memcmp(stored.name, NAME, sizeof NAME) == 0;
-    off_t length = there ? ftello(file) - (off_t)sizeof stored : 0;
-    if (there) {
-        rewind(file);
-        found = compute(file, (uint64_t)length);
-    }
+    errno = 0;
+    *state = examine(file);
+    if (ferror(file))
+        SF_FAIL(err, SF_ERR_IO, "reading %s failed: %s", path, strerror(errno));
     fclose(file);
-    if (!there && !required)
-        return SF_OK;
-    if (!there)
+    return err->status;
+}
+
+static sf_status check(const char *path, bool required, sf_error *err) {
+    sf_seal_state state;
+    SF_TRY(sf_seal_examine(path, &state, err));
+    if (state == SF_SEAL_NO_FILE)
+        return SF_FAIL(err, SF_ERR_IO, "%s does not exist", path);
+    if (state == SF_SEAL_NONE && required)
         return SF_FAIL(err, SF_ERR_IO, "%s is incomplete: it does not end with its checksum", path);
-    if (found.length != stored.length || found.hash != stored.hash)
-        return SF_FAIL(err, SF_ERR_IO, "%s is damaged: its checksum is %016llx, not %016llx", path,
-                       (unsigned long long)found.hash, (unsigned long long)stored.hash);
+    if (state == SF_SEAL_BROKEN)
+        return SF_FAIL(err, SF_ERR_IO, "%s is damaged: it does not have the checksum that it ends with",
+                       path);
     return SF_OK;
 }
 

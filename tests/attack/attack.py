@@ -20,11 +20,11 @@ import physics
 from place import Place, Tally
 
 PARTS = {  # name: function and turns at scale 1
-    "flips": (flips.attack, 540),
-    "kills": (calls.kills, 120),
-    "faults": (calls.faults, 160),
+    "flips": (flips.attack, 270),
+    "kills": (calls.kills, 50),
+    "faults": (calls.faults, 80),
     "limits": (limits.attack, 200),
-    "physics": (physics.attack, 150),
+    "physics": (physics.attack, 60),
     "geometries": (geometries.attack, 200),
 }
 

@@ -174,26 +174,36 @@ sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf
     return recover(checkpoint, PEAK_GROUP, path, partial, err);
 }
 
-/* Frame `k` from results.h5, which is opened when it is needed, and where it must not be a link. */
-static sf_status recover_frame(const sf_output *o, int64_t k, sf_h5 **results, const char *path,
-                               const char *partial, const char *why, sf_error *err) {
-    char group[32];
-    sf_error none = SF_ERROR_INIT;
-    frame_group(group, k);
-    if ((*results || sf_h5_open_alone(o->results, results, &none) == SF_OK) && sf_h5_exists(*results, group))
-        return recover(*results, group, path, partial, err);
-    return SF_FAIL(err, SF_ERR_IO, "%s, and %s does not hold %s", why, o->results, group);
+/* Opens results.h5 if it is whole; it may be missing or damaged. */
+static sf_status open_results(const sf_output *o, sf_h5 **results, sf_error *err) {
+    sf_seal_state state;
+    SF_TRY(sf_seal_examine(o->results, &state, err));
+    return state == SF_SEAL_SOUND || state == SF_SEAL_NONE ? sf_h5_open_alone(o->results, results, err)
+                                                           : SF_OK;
 }
 
-sf_status sf_output_recover(const sf_output *o, int64_t count, sf_error *err) {
+/* Frame `k`: if its file is not sound, then from results.h5, where it must not be a link. */
+static sf_status recover_frame(const sf_output *o, int64_t k, sf_h5 **results, bool *lost, sf_error *err) {
+    char name[32], group[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
+    sf_seal_state state;
+    frame_name(name, k);
+    frame_group(group, k);
+    if (place(o, name, path, partial, err) != SF_OK || sf_seal_examine(path, &state, err) != SF_OK ||
+        state == SF_SEAL_SOUND)
+        return err->status;
+    if (!*results && open_results(o, results, err) != SF_OK)
+        return err->status;
+    *lost = !*results || !sf_h5_exists(*results, group);
+    return *lost ? SF_OK : recover(*results, group, path, partial, err);
+}
+
+sf_status sf_output_recover(const sf_output *o, int64_t count, int64_t *lost, sf_error *err) {
     sf_h5 *results = NULL;
-    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
-        char name[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
-        sf_error problem = SF_ERROR_INIT;
-        frame_name(name, k);
-        if (place(o, name, path, partial, err) == SF_OK && sf_seal_check(path, &problem) != SF_OK)
-            recover_frame(o, k, &results, path, partial, problem.text, err);
-    }
+    bool gone = false;
+    *lost = -1;
+    for (int64_t k = 0; k < count && !gone && err->status == SF_OK; k++)
+        if (recover_frame(o, k, &results, &gone, err) == SF_OK && gone)
+            *lost = k;
     sf_h5_close(&results, err);
     return err->status;
 }

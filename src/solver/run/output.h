@@ -51,8 +51,9 @@ sf_status sf_output_copy_peak(const sf_output *output, sf_h5 *file, sf_error *er
 sf_status sf_output_recover_peak(const sf_output *output, const sf_h5 *checkpoint, sf_error *err);
 
 /* Frames 0 to count - 1 of the run so far: those that are not in the folder, or damaged there, come back from
- * results.h5, which has those of an ended run. SF_ERR_IO with a sentence about the first that is lost. */
-sf_status sf_output_recover(const sf_output *output, int64_t count, sf_error *err);
+ * results.h5, which has those of an ended run. `*lost`: the first that is nowhere whole, or -1. Fails if a
+ * file cannot be read or written: then nothing is known to be lost. */
+sf_status sf_output_recover(const sf_output *output, int64_t count, int64_t *lost, sf_error *err);
 
 /* May results.h5 be replaced with `rows` new rows of history? A new file takes somewhat more bytes than the
  * last one, and four times as many must be new: then all of them together take a part of the data only. */

@@ -220,9 +220,11 @@ static void resume_rebounded(drop *d) {
 
 /* Everything anew at t = 0, in place of a checkpoint that cannot be used: of its recorder only what is told
  * of the run as a whole remains. */
-static sf_status start_anew(drop *d, const char *why, sf_error *err) {
+static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     const sf_recorder old = d->r;
-    sf_sink_tell(d->run->sink, SF_WARNING, "%s: the run starts from the beginning", why);
+    sf_sink_tell(d->run->sink, SF_WARNING,
+                 "frame %lld of the run so far is missing or damaged: the run starts from the beginning",
+                 (long long)frame);
     sf_recorder_free(&d->r);
     sf_state_free(d->s);
     d->foreign = true;
@@ -236,18 +238,18 @@ static sf_status start_anew(drop *d, const char *why, sf_error *err) {
 
 /* Where the run begins; `*taken`: with a step that has been taken. */
 static sf_status begin(drop *d, const sf_checkpoint *from, bool *taken, sf_error *err) {
-    sf_error lost = SF_ERROR_INIT;
+    int64_t lost;
     *taken = from != NULL;
     if (load(d, from, err) != SF_OK)
         return err->status;
     d->saved = from ? d->s->step : -1;
     if (from)
         resume_rebounded(d);
-    if (sf_output_recover(d->out, d->r.frames, &lost) == SF_OK)
-        return SF_OK;
+    if (sf_output_recover(d->out, d->r.frames, &lost, err) != SF_OK || lost < 0)
+        return err->status;
     *taken = false;
     d->saved = -1;
-    return start_anew(d, lost.text, err);
+    return start_anew(d, lost, err);
 }
 
 /* After a failure: repeats the steps up to the last valid one, for a checkpoint there. */
