@@ -11,10 +11,14 @@
 
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 static const sf_gas_curve eva = {0.4136e6, 7.4e3, 134e3, 23e3, 2.8};
@@ -538,6 +542,101 @@ static void hidden_foam_is_found(void **state) {
     program_tear_down(&place);
 }
 
+/* ---- kills ---- */
+
+/* s of processor time of a process and of the children that it has waited for; 0: it has ended. */
+static double time_of(pid_t process) {
+    char path[64], text[1024] = "";
+    unsigned long own[2] = {0}, children[2] = {0};
+    snprintf(path, sizeof path, "/proc/%d/stat", (int)process);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return 0;
+    size_t length = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    text[length] = '\0';
+    if (length > 0)
+        sscanf(strrchr(text, ')'), ") %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu %lu %lu", &own[0],
+               &own[1], &children[0], &children[1]);
+    return (double)(own[0] + own[1] + children[0] + children[1]) / (double)sysconf(_SC_CLK_TCK);
+}
+
+/* The same with its children at work. */
+static double time_of_all(pid_t process) {
+    char path[64];
+    int child;
+    double sum = time_of(process);
+    snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)process, (int)process);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return sum;
+    while (fscanf(file, "%d", &child) == 1)
+        sum += time_of(child);
+    fclose(file);
+    return sum;
+}
+
+/* A fit of `fit.cfg` in a process group of its own, killed with all its programs once they have had `life`
+ * seconds of processor time. The wait status. */
+static int run_fit_for(const program_place *place, double life, double *used) {
+    const struct timespec pause = {0, 2000000};
+    char program[1024];
+    snprintf(program, sizeof program, "%s/softfall-fit", getenv("SF_BIN_DIR"));
+    int status = 0;
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        setpgid(0, 0);
+        if (chdir(place->folder) == 0 && freopen("log", "w", stdout))
+            execl(program, "softfall-fit", "drop", "fit.cfg", "-o", "killed", "-t", "1", "--force", NULL);
+        _exit(1);
+    }
+    setpgid(child, child);
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        double now = time_of_all(child);
+        *used = larger(*used, now);
+        if (now >= life)
+            kill(-child, SIGKILL);
+        nanosleep(&pause, NULL);
+    }
+    return status;
+}
+
+/* A fit that is killed over and over after a share of its processor time in which it could not even repeat
+ * what it computes between the drops: it ends, and with the bits of a fit that was left alone. */
+static void killed_fit_ends_with_the_same_material(void **state) {
+    (void)state;
+    enum { SHARES = 5, MOST = 6 * SHARES };
+    program_place place;
+    double whole = 0, used = 0;
+    int lives = 0, status;
+    program_set_up(&place);
+    put_case(&place);
+    program_write_text(
+        &place, "fit.cfg",
+        "material = \"start.cfg\";\nunknown = ( { name = \"p0\"; }, { name = \"B\"; }, { name = \"ED\"; "
+        "}, { name = \"E\"; }, { name = \"HU\"; } );\n"
+        "start: { m = 2.8; s0 = \"7.4 kPa\"; };\n"
+        "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = 50.0; HIC = 180.0; } );\n");
+    assert_int_equal(run_fit_for(&place, INFINITY, &whole), 0);
+    assert_int_equal(program_shell(&place, "mv killed whole").code, 0);
+    do
+        status = run_fit_for(&place, whole / SHARES, &used);
+    while (++lives < MOST && WIFSIGNALED(status));
+    print_message("%d lives of %.2g s, %.2g s without kills\n", lives, whole / SHARES, whole);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        fail_msg("wait status %d in life %d: %s", status, lives, program_shell(&place, "cat log").out);
+    assert_true(lives > 2); /* the machine may be quicker now */
+    static const char *const same[] = {"material.cfg", "material.csv", "fit.json", "fit-drops.csv",
+                                       "fit-curve.csv"};
+    for (size_t k = 0; k < sizeof same / sizeof same[0]; k++)
+        if (program_shell(&place, "cmp whole/%s killed/%s", same[k], same[k]).code != 0)
+            fail_msg("%s differs: %s", same[k],
+                     program_shell(&place, "diff whole/%s killed/%s", same[k], same[k]).out);
+    assert_int_equal(program_shell(&place, "test ! -e killed/runs/columns.bin").code, 0);
+    program_tear_down(&place);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gas_curve_rises_from_its_modulus),
@@ -552,6 +651,7 @@ int main(void) {
         cmocka_unit_test(bad_input_gets_one_sentence),
         cmocka_unit_test(measured_curves_are_filtered_like_the_simulated),
         cmocka_unit_test(hidden_foam_is_found),
+        cmocka_unit_test(killed_fit_ends_with_the_same_material),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

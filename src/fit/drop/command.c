@@ -62,7 +62,8 @@ static void name_files(const sf_fit_input *in, names *n) {
     memcpy(n->list, list, sizeof list);
 }
 
-/* The drops' folders are kept between runs of the command: DIR/runs. */
+/* The drops' folders are kept between runs of the command: DIR/runs. So is, until the fit has ended, what was
+ * computed between the drops: DIR/runs/columns.bin. */
 static sf_status make_runs(const char *directory, char *runs, sf_error *err) {
     snprintf(runs, PATH_MAX, "%s/runs", directory);
     return sf_folder_own(runs, err);
@@ -75,10 +76,11 @@ static void print_curves(const sf_fit_input *in) {
     fflush(stdout);
 }
 
-static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_staging *output,
-                     sf_error *err) {
+static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_fit_memory *memory,
+                     sf_staging *output, sf_error *err) {
     char runs[PATH_MAX], warning[512] = "";
     names n;
+    char columns[PATH_MAX + 16];
     const char *const none[] = {NULL}; /* the names are in the input */
     if (sf_staging_check(o->directory, none, o->force, err) != SF_OK ||
         sf_fit_input_read(o->input, in, err) != SF_OK)
@@ -88,7 +90,9 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_st
         make_runs(o->directory, runs, err) != SF_OK)
         return err->status;
     sf_runner runner = {.folder = runs, .threads = o->threads, .log = stdout};
-    *fit = (sf_drop_fit){.input = in, .runner = &runner, .folder = runs, .log = stdout};
+    snprintf(columns, sizeof columns, "%s/columns.bin", runs);
+    sf_fit_memory_open(columns, memory);
+    *fit = (sf_drop_fit){.input = in, .runner = &runner, .folder = runs, .log = stdout, .memory = memory};
     printf("softfall-fit drop: %d unknown parameters, %d drops; finished drops are kept in %s\n",
            in->unknown_count, in->drop_count, runs);
     print_curves(in);
@@ -96,6 +100,8 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_st
         sf_drop_report_write(fit, o->input, o->command, output, warning, sizeof warning, err) != SF_OK ||
         sf_staging_commit(output, err) != SF_OK)
         return err->status;
+    if (memory->file >= 0)
+        sf_folder_remove_file(columns);
     sf_drop_report_print(fit, stdout);
     printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.html, fit.json, fit.png\n",
            (long long)runner.simulated, (long long)runner.reused, o->directory, in->material_name);
@@ -126,14 +132,16 @@ int sf_fit_drop_main(int argc, char **argv) {
     sf_error err = SF_ERROR_INIT;
     sf_fit_input input = {0};
     sf_drop_fit fit = {0};
+    sf_fit_memory memory = {.file = -1};
     sf_staging output = {0};
     static char name[] = "softfall-fit drop";
     argv[0] = name;
     gsl_set_error_handler_off(); /* statuses are looked at */
     sf_process_handle_signals();
     argp_parse(&parser, argc, argv, 0, NULL, &o);
-    run(&o, &input, &fit, &output, &err);
+    run(&o, &input, &fit, &memory, &output, &err);
     sf_staging_end(&output);
+    sf_fit_memory_close(&memory);
     sf_drop_fit_free(&fit);
     sf_fit_input_free(&input);
     free(command);

@@ -2,6 +2,7 @@
 #include "fit/drop/fit.h"
 
 #include "campaign/material_file.h"
+#include "core/hash.h"
 #include "post/compare.h"
 #include "post/injury.h"
 #include "solver/material/foam.h"
@@ -108,12 +109,59 @@ static sf_status columns_respond(const sf_drop_fit *fit, int first, int last, co
     return err->status;
 }
 
+/* Of the program, the start material with the form of its curve, and the samples. */
+static uint64_t hash_inputs(const sf_drop_fit *fit) {
+    const sf_fit_input *in = fit->input;
+    sf_foam_card base = in->form.base;
+    const sf_material material = sf_foam_material(&base);
+    uint64_t hash = sf_hash(SF_HASH_START, &fit->memory->program, sizeof fit->memory->program);
+    hash = sf_material_hash(hash, &material);
+    hash = sf_hash(hash, &in->form.gas, sizeof in->form.gas);
+    hash = sf_hash(hash, in->start, sizeof in->start);
+    hash = sf_hash(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
+    for (int d = 0; d < in->drop_count; d++) {
+        const sf_fit_drop *drop = &in->drop[d];
+        hash = sf_hash(hash, &drop->samples, sizeof drop->samples);
+        hash = sf_hash(hash, &drop->sample_scale, sizeof drop->sample_scale);
+        hash = sf_hash(hash, drop->sample_time, (size_t)drop->samples * sizeof *drop->sample_time);
+    }
+    return hash;
+}
+
+static uint64_t hash_columns(uint64_t hash, const sf_columns *c) {
+    const double missile[] = {c->mass, c->speed, c->thickness};
+    hash = sf_hash(hash, missile, sizeof missile);
+    hash = sf_hash(hash, &c->count, sizeof c->count);
+    hash = sf_hash(hash, c->area, (size_t)c->count * sizeof *c->area);
+    return sf_hash(hash, c->gap, (size_t)c->count * sizeof *c->gap);
+}
+
+enum { AS_GIVEN = -2, NOWHERE = -1 }; /* in place of the bin in which the curve is raised */
+
+/* Key of the responses of drops `first` to `last` - 1; 0 without a memory. */
+static uint64_t key_of(const sf_drop_fit *fit, int first, int last, int bin, const double *u) {
+    const int which[] = {first, last, bin, fit->parameters};
+    if (!fit->memory)
+        return 0;
+    uint64_t hash = sf_hash(fit->inputs, which, sizeof which);
+    hash = sf_hash(hash, u, (size_t)fit->parameters * sizeof *u);
+    hash = sf_hash(hash, &fit->speed[first], (size_t)(last - first) * sizeof *fit->speed);
+    for (int d = first; d < last; d++)
+        hash = hash_columns(hash, &fit->columns[d]);
+    return hash;
+}
+
 static sf_status columns_at(const sf_drop_fit *fit, int first, int last, const double *u, double *y,
                             sf_error *err) {
     sf_foam_card card;
+    size_t count = (size_t)(fit->row[last] - fit->row[first]);
+    uint64_t key = key_of(fit, first, last, AS_GIVEN, u);
+    if (sf_fit_memory_find(fit->memory, key, count, &y[fit->row[first]]))
+        return SF_OK;
     if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
         return err->status;
-    columns_respond(fit, first, last, &card, u, y, err);
+    if (columns_respond(fit, first, last, &card, u, y, err) == SF_OK)
+        sf_fit_memory_add(fit->memory, key, count, &y[fit->row[first]]);
     sf_foam_card_free(&card);
     return err->status;
 }
@@ -296,9 +344,13 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
 
 static const double RAISE = 0.05; /* of the stress, by a hat over one bin */
 
-/* Responses of the columns with the curve raised in bin `b`; -1: nowhere. */
+/* Responses of the columns with the curve raised in bin `b`, or NOWHERE. */
 static sf_status respond_raised(const sf_drop_fit *fit, int b, double *y, sf_error *err) {
     sf_foam_card card;
+    size_t count = (size_t)fit->row[fit->measured_drops];
+    uint64_t key = key_of(fit, 0, fit->measured_drops, b, fit->result.u);
+    if (sf_fit_memory_find(fit->memory, key, count, y))
+        return SF_OK;
     if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) != SF_OK)
         return err->status;
     sf_foam_card_resample(&card, err);
@@ -306,8 +358,8 @@ static sf_status respond_raised(const sf_drop_fit *fit, int b, double *y, sf_err
         double away = fabs(card.curve_strain[k] - (b + 0.5) * BIN_WIDTH) / BIN_WIDTH;
         card.curve_stress[k] *= 1 + RAISE * fmax(0, 1 - away);
     }
-    if (err->status == SF_OK)
-        columns_respond(fit, 0, fit->measured_drops, &card, NULL, y, err);
+    if (err->status == SF_OK && columns_respond(fit, 0, fit->measured_drops, &card, NULL, y, err) == SF_OK)
+        sf_fit_memory_add(fit->memory, key, count, y);
     sf_foam_card_free(&card);
     return err->status;
 }
@@ -317,7 +369,7 @@ static sf_status locate_information(sf_drop_fit *fit, sf_error *err) {
     size_t n = (size_t)fit->row[fit->measured_drops];
     double *y = sf_alloc(err, n, sizeof *y, "responses"), *base = sf_alloc(err, n, sizeof *base, "responses");
     if (err->status == SF_OK)
-        respond_raised(fit, -1, base, err);
+        respond_raised(fit, NOWHERE, base, err);
     for (int b = 0; b < SF_FIT_STRAIN_BINS && err->status == SF_OK; b++) {
         respond_raised(fit, b, y, err);
         for (size_t k = 0; k < n; k++)
@@ -383,6 +435,7 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS];
     if (list_data(fit, err) != SF_OK)
         return err->status;
+    fit->inputs = fit->memory ? hash_inputs(fit) : 0;
     for (int k = 0; k < in->unknown_count; k++) {
         start[k] = log(in->prior[k]);
         prior_sd[k] = in->prior_sd[k];

@@ -10,6 +10,7 @@
 #include "campaign/runner.h"
 #include "fit/column.h"
 #include "fit/drop/input.h"
+#include "fit/drop/memory.h"
 #include "fit/space_mapping.h"
 
 enum { SF_FIT_A_MAX, SF_FIT_HIC, SF_FIT_SAMPLES }; /* rows of a drop; the samples from SF_FIT_SAMPLES on */
@@ -26,10 +27,12 @@ typedef struct sf_fit_simulated {
 typedef struct sf_drop_fit {
     const sf_fit_input *input;
     sf_runner *runner;
-    const char *folder; /* for the materials of the iterates; borrowed */
-    FILE *log;          /* progress; NULL: silent */
+    const char *folder;    /* for the materials of the iterates; borrowed */
+    FILE *log;             /* progress; NULL: silent */
+    sf_fit_memory *memory; /* of the columns' responses; borrowed; NULL: none */
 
     /* out */
+    uint64_t inputs;               /* hash of what all responses of columns depend on */
     int row[SF_FIT_MAX_DROPS + 1]; /* first response of each drop, and their number; measured drops first */
     int measured_drops;
     int parameters;              /* unknown parameters of the foam, then speeds */
@@ -52,7 +55,7 @@ typedef struct sf_drop_fit {
     double curve_prior_sd[SF_FIT_STRAIN_BINS]; /* the same before the data */
 } sf_drop_fit;
 
-/* Fits. `fit` holds input, runner, folder and log. Release with sf_drop_fit_free, also on failure. */
+/* Fits. `fit` holds input, runner, folder, log and memory. Release with sf_drop_fit_free, also on failure. */
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err);
 void sf_drop_fit_free(sf_drop_fit *fit);
 
