@@ -55,9 +55,9 @@ static void parts_are_refused(void **state) {
     even.jitter = 0;
     fixture_block_mesh(&even, &mesh);
     fixture_open_slit(&even, 4, -1, 0.0005, &mesh);
-    assert_refused(&mesh,
-                   (const char *const[]){"2 parts that share no faces", "of 32 cells between (40.5, 0, 0)",
-                                         "and (60, 40, 40) mm", "is 0.5 mm from", "fuse the volumes", NULL});
+    assert_refused(&mesh, (const char *const[]){"2 parts that share no faces",
+                                                "of 32 cells, lies between (40.5, 0, 0)",
+                                                "and (60, 40, 40) mm", "fuse the volumes", NULL});
 }
 
 /* The right half reaches 4 mm into the left one above the tip. */

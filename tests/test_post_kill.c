@@ -121,15 +121,23 @@ static void killed_between_two_moves_it_leaves_a_pair(void **state) {
     assert_int_equal(program_shell(p, "cmp now.xdmf other.xdmf && test $(ls pair/*.h5 | wc -l) = 1").code, 0);
 }
 
-/* The data of a run that was killed before it removed them, and of the versions that named them pad.h5. */
+/* The data of a run that was killed before it removed them are removed; not those that another .xdmf still
+ * names, nor files that only have such a name. */
 static void earlier_data_are_removed_and_other_files_are_not(void **state) {
     const program_place *p = *state;
-    program_shell(p, "rm -rf pair; mkdir pair; cd pair; touch pad-0123456789abcdef.h5 pad-mine.h5 "
-                     "pad-0123456789abcdef0.h5 pad-0123456789abcdef.h5.old pad.h5");
+    program_shell(p, "rm -rf pair kept left");
+    program_succeed(p, "post", "other.h5 -o pair");
+    program_succeed(p, "post", "other.h5 -o kept");
+    program_shell(p, "mv kept/pad.xdmf kept/earlier.xdmf; cd pair; touch pad-0123456789abcdef.h5 pad-mine.h5 "
+                     "pad-0123456789abcdef0.h5 pad-0123456789abcdef.h5.old; rm pad.xdmf");
     program_succeed(p, "post", "results.h5 -o pair --force");
-    program_result list = program_shell(p, "cd pair; ls pad-0* pad-m* pad.h5 2>/dev/null");
-    assert_string_equal(list.out, "pad-0123456789abcdef.h5.old\npad-0123456789abcdef0.h5\npad-mine.h5\n");
-    assert_int_equal(program_shell(p, "ls pair/pad-????????????????.h5 | wc -l | grep -qx 1").code, 0);
+    program_succeed(p, "post", "results.h5 -o kept --force");
+    program_result list = program_shell(p, "cd pair; ls pad-0123* pad-mine.h5");
+    assert_string_equal(
+        list.out,
+        "pad-0123456789abcdef.h5\npad-0123456789abcdef.h5.old\npad-0123456789abcdef0.h5\npad-mine.h5\n");
+    assert_int_equal(program_shell(p, "ls pair/pad-????????????????.h5 | wc -l | grep -qx 2").code, 0);
+    assert_int_equal(program_shell(p, "ls kept/pad-????????????????.h5 | wc -l | grep -qx 2").code, 0);
 }
 
 int main(void) {

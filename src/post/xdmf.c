@@ -3,6 +3,7 @@
 
 #include "io/plain_file.h"
 #include "io/provenance.h"
+#include "io/replace.h"
 #include "post/results_check.h"
 #include <dirent.h>
 #include <stdio.h>
@@ -228,13 +229,44 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const cha
     return err->status;
 }
 
+/* Does an .xdmf file of the directory speak of these data? Also if that is not known. */
+static bool is_named(const char *directory, const char *data) {
+    DIR *listing = opendir(directory);
+    bool named = !listing;
+    for (struct dirent *entry = listing ? readdir(listing) : NULL; entry && !named;
+         entry = readdir(listing)) {
+        char path[SF_PATH_SIZE], *text = NULL;
+        sf_error unread = SF_ERROR_INIT;
+        size_t length = strlen(entry->d_name);
+        if (length < 5 || strcmp(entry->d_name + length - 5, ".xdmf") != 0)
+            continue;
+        named = snprintf(path, sizeof path, "%s/%s", directory, entry->d_name) >= (int)sizeof path ||
+                sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &unread) != SF_OK || strstr(text, data);
+        free(text);
+    }
+    if (listing)
+        closedir(listing);
+    return named;
+}
+
+/* Is that the name of data that softfall wrote: pad-HASH.h5 with the hash of the content? */
+static bool are_ours(const char *path, const char *name) {
+    unsigned long long hash = 0;
+    uint64_t found = 0;
+    sf_error unread = SF_ERROR_INIT;
+    return strncmp(name, "pad-", 4) == 0 && strspn(name + 4, "0123456789abcdef") == 16 &&
+           strcmp(name + 20, ".h5") == 0 && sscanf(name + 4, "%16llx", &hash) == 1 &&
+           sf_plain_hash(path, NULL, SF_PLAIN_ANY, &found, &unread) == SF_OK && found == hash;
+}
+
 void sf_xdmf_remove_old(const char *directory, const char *data) {
     DIR *listing = opendir(directory);
     for (struct dirent *entry = listing ? readdir(listing) : NULL; entry; entry = readdir(listing)) {
+        char path[SF_PATH_SIZE];
         const char *name = entry->d_name;
-        if (strncmp(name, "pad-", 4) == 0 && strspn(name + 4, "0123456789abcdef") == 16 &&
-            strcmp(name + 20, ".h5") == 0 && strcmp(name, data) != 0)
-            unlinkat(dirfd(listing), name, 0);
+        if (snprintf(path, sizeof path, "%s/%s", directory, name) < (int)sizeof path &&
+            strcmp(name, data) != 0 && are_ours(path, name) && !is_named(directory, name))
+            unlink(path);
     }
     if (listing)
         closedir(listing);

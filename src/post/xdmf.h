@@ -19,8 +19,8 @@ enum { SF_XDMF_NAME_SIZE = 32 };
 sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const char *command_line,
                         char data[SF_XDMF_NAME_SIZE], int64_t *frames, sf_error *err);
 
-/* Removes the data of earlier runs from the directory, all but those named `data`: after pad.xdmf is in its
- * place. */
+/* Removes data of earlier runs from the directory, after pad.xdmf is in its place: files pad-HASH.h5 with
+ * that hash that no .xdmf file there names, but not `data`. */
 void sf_xdmf_remove_old(const char *directory, const char *data);
 
 #endif

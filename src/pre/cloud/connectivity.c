@@ -171,51 +171,13 @@ static int64_t *start_sets(int64_t count, sf_error *err) {
     return parent;
 }
 
-/* A node by its place along x. */
-typedef struct placed {
-    double x;
-    int32_t node;
-} placed;
-
-static int by_place(const void *a, const void *b) {
-    const placed *p = a, *q = b;
-    return (p->x > q->x) - (p->x < q->x);
-}
-
-enum { IN_PART = 1, IN_OTHERS = 2 };
-
-/* Smallest distance (m) between nodes of the part and of the others. */
-static double nearest(const sf_mesh *mesh, const uint8_t *mark, sf_error *err) {
-    double least = INFINITY;
-    placed *list = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *list, "sorted nodes");
-    for (int32_t i = 0; list && i < mesh->node_count; i++)
-        list[i] = (placed){mesh->position[3 * (int64_t)i], i};
-    if (list)
-        qsort(list, (size_t)mesh->node_count, sizeof *list, by_place);
-    for (int64_t a = 0; list && a < mesh->node_count; a++)
-        for (int64_t b = a + 1; b < mesh->node_count && list[b].x - list[a].x < least; b++)
-            if ((mark[list[a].node] | mark[list[b].node]) == (IN_PART | IN_OTHERS))
-                least = fmin(least, distance(&mesh->position[3 * (int64_t)list[a].node],
-                                             &mesh->position[3 * (int64_t)list[b].node]));
-    free(list);
-    return least;
-}
-
-static bool touches(const sf_mesh *mesh, const uint8_t *mark) {
-    for (int64_t i = 0; i < mesh->node_count; i++)
-        if (mark[i] == (IN_PART | IN_OTHERS))
-            return true;
-    return false;
-}
-
 /* The smallest of several parts, with its place. */
 static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *err) {
     int64_t parts = 0, least = 0;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     int64_t *cells = sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
-    uint8_t *mark = sf_alloc(err, (unsigned long)mesh->node_count, 1, "node marks");
-    if (err->status != SF_OK)
-        goto done;
+    if (!cells)
+        return err->status;
     for (int64_t c = 0; c < mesh->cell_count; c++)
         cells[find(parent, c)]++;
     for (int64_t c = 0; c < mesh->cell_count; c++) {
@@ -223,26 +185,19 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
         least = cells[c] > 0 && (cells[least] == 0 || cells[c] <= cells[least]) ? c : least;
     }
     for (int64_t c = 0; c < mesh->cell_count; c++)
-        for (int64_t k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) {
+        for (int64_t k = mesh->cell_ptr[c]; find(parent, c) == least && k < mesh->cell_ptr[c + 1]; k++) {
             const double *x = &mesh->position[3 * (int64_t)mesh->cell_node[k]];
-            bool part = find(parent, c) == least;
-            mark[mesh->cell_node[k]] |= part ? IN_PART : IN_OTHERS;
-            for (int i = 0; part && i < 3; i++) {
+            for (int i = 0; i < 3; i++) {
                 low[i] = fmin(low[i], 1e3 * x[i]);
                 high[i] = fmax(high[i], 1e3 * x[i]);
             }
         }
-    double gap = touches(mesh, mark) ? 0 : nearest(mesh, mark, err);
-    if (err->status == SF_OK)
-        SF_FAIL(
-            err, SF_ERR_INPUT,
-            "the pad is in %lld parts that share no faces of cells: the smallest, of %lld cells between (%.4g, "
-            "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm, is %.3g mm from the nearest node of the others: " ADVICE,
-            (long long)parts, (long long)cells[least], low[0], low[1], low[2], high[0], high[1], high[2],
-            1e3 * gap);
-done:
+    SF_FAIL(
+        err, SF_ERR_INPUT,
+        "the pad is in %lld parts that share no faces of cells: the smallest, of %lld cells, lies between (%.4g, "
+        "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm: " ADVICE,
+        (long long)parts, (long long)cells[least], low[0], low[1], low[2], high[0], high[1], high[2]);
     free(cells);
-    free(mark);
     return err->status;
 }
 

@@ -78,7 +78,7 @@ static sf_status check_faces(const sf_case *c, const sf_mesh *mesh, const face_l
         return SF_FAIL(
             err, SF_ERR_INPUT,
             "%s: %lld of the %lld faces of the surface group \"%s\" lie on no cell of the volume group "
-            "\"%s\": does it lack a volume?",
+            "\"%s\": does it lack a volume, or has the group faces of the missile?",
             key, (long long)bare, (long long)all, set->name, c->pad_group);
     if (bare > 0)
         return SF_FAIL(
@@ -113,16 +113,19 @@ static bool find_plane(const sf_mesh *mesh, const sf_node_set *set, int *axis, d
     return high[*axis] - low[*axis] <= *slack;
 }
 
-/* The pad's faces in the plane that the group leaves out would be free. */
-static sf_status check_plane(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
-                             sf_error *err) {
+/* The pad's faces in the plane of a group that no symmetry group holds would be free. */
+static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual,
+                             const sf_node_set *set, sf_error *err) {
     int axis;
     double place, slack;
     if (!find_plane(mesh, set, &axis, &place, &slack))
         return SF_OK;
     uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "nodes of a symmetry plane");
-    for (int64_t k = 0; member && k < set->count; k++)
-        member[set->node[k]] = 1;
+    for (int g = 0; member && g < c->symmetry_count; g++) { /* a plane may be that of several groups */
+        const sf_node_set *any = sf_mesh_find_set(mesh, c->symmetry_group[g]);
+        for (int64_t k = 0; any && k < any->count; k++)
+            member[any->node[k]] = 1;
+    }
     for (int64_t f = 0; member && f < dual->face_count && err->status == SF_OK; f++) {
         const sf_boundary_face *face = &dual->face[f];
         bool in_plane = true, in_set = true;
@@ -135,7 +138,7 @@ static sf_status check_plane(const sf_mesh *mesh, const sf_dual *dual, const sf_
             SF_FAIL(
                 err, SF_ERR_INPUT,
                 "pad.symmetry: the pad's surface at (%.4g, %.4g, %.4g) mm lies in the plane of the group \"%s\" but "
-                "not in the group: it would be free",
+                "in none of these groups: it would be free (a crack in a symmetry plane cannot be modelled)",
                 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], set->name);
     }
     free(member);
@@ -161,7 +164,7 @@ sf_status sf_group_check(const sf_case *c, const sf_mesh *mesh, const sf_dual *d
                 continue;
             if (check_faces(c, mesh, &lists, list[k].key, set, list[k].inside, err) == SF_OK &&
                 list[k].name == c->symmetry_group)
-                check_plane(mesh, dual, set, err);
+                check_plane(c, mesh, dual, set, err);
         }
     free(lists.outer);
     free(lists.inner);
