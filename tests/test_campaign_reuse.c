@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 /* A cube whose .geo includes one file and merges another; the drop ends at once. */
@@ -19,20 +20,24 @@ static int set_up(void **state) {
     return program_shell(p,
                          "cp -r '%s/examples' '%s/geo' . && cd geo && mv cube.geo inner.geo && "
                          "printf 'Include \"inner.geo\";\\nMerge \"size.geo\";\\n' > cube.geo && "
-                         "printf '// nothing\\n' > size.geo",
+                         "printf '// nothing\\n' > first.geo && ln -s first.geo size.geo && "
+                         "printf '// something\\n' > second.geo",
                          getenv("SF_SOURCE_DIR"), getenv("SF_SOURCE_DIR"))
         .code;
 }
 
-static bool is_finished(const program_place *p, bool simulate) {
+static bool is_case_finished(const program_place *p, const char *case_path, bool simulate) {
     static const char *const overrides[] = {"geometry.parameters.spacing=25", "solver.end_time=0.1 ms"};
     sf_run_folder at;
     sf_error err = SF_ERROR_INIT;
-    const char *case_path = program_path(p, "examples/compression/case.cfg");
     if (sf_run_folder_name(program_path(p, "runs"), "drop", case_path, 2, overrides, &at, &err) != SF_OK ||
         (simulate && sf_run_folder_simulate(&at, case_path, 2, overrides, 1, &err) != SF_OK))
         fail_msg("%s", err.text);
     return sf_run_folder_is_finished(&at);
+}
+
+static bool is_finished(const program_place *p, bool simulate) {
+    return is_case_finished(p, program_path(p, "examples/compression/case.cfg"), simulate);
 }
 
 static void what_was_included_or_merged_counts(void **state) {
@@ -45,6 +50,7 @@ static void what_was_included_or_merged_counts(void **state) {
         {"echo '// otherwise' > geo/size.geo", "echo '// nothing' > geo/size.geo"},
         {"mv geo/size.geo away", "mv away geo/size.geo"},
         {"mv geo/size.geo away; mkdir geo/size.geo", "rmdir geo/size.geo; mv away geo/size.geo"},
+        {"ln -sfn second.geo geo/size.geo", "ln -sfn first.geo geo/size.geo"},
         {"touch geo/inner.geo.opt", "rm geo/inner.geo.opt"},
         {"cp geo/platen.geo kept; echo '// changed' >> geo/platen.geo", "cp kept geo/platen.geo"},
     };
@@ -56,6 +62,29 @@ static void what_was_included_or_merged_counts(void **state) {
         if (!is_finished(p, false))
             fail_msg("after %s the drop is not used again", changes[k][1]);
     }
+}
+
+/* Each project has its own files, and takes its drops along. */
+static void a_copied_project_is_compared_with_its_own_files(void **state) {
+    const program_place *p = *state;
+    const char *copy = program_path(p, "copy/examples/compression/case.cfg");
+    program_shell(p, "mkdir copy && cp -a examples geo copy");
+    assert_true(is_case_finished(p, copy, false));
+    program_shell(p, "echo '// changed' >> copy/geo/inner.geo");
+    assert_false(is_case_finished(p, copy, false));
+    assert_true(is_finished(p, false));
+}
+
+static void a_moved_project_keeps_its_drops(void **state) {
+    const program_place *p = *state;
+    program_shell(p, "rm -r runs copy && mkdir runs one && cp -a examples geo one");
+    assert_int_equal(chdir(p->folder), 0);
+    assert_true(is_case_finished(p, "one/examples/compression/case.cfg", true));
+    program_shell(p, "mv one two");
+    assert_true(is_case_finished(p, "two/examples/compression/case.cfg", false));
+    program_shell(p, "ln -sfn second.geo two/geo/size.geo");
+    assert_false(is_case_finished(p, "two/examples/compression/case.cfg", false));
+    assert_int_equal(chdir("/"), 0);
 }
 
 /* The drop is simulated again where it was, and then used with the new content. */
@@ -80,7 +109,9 @@ static void an_unconfined_drop_is_not_used_again(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_was_included_or_merged_counts),
+        cmocka_unit_test(a_copied_project_is_compared_with_its_own_files),
         cmocka_unit_test(a_changed_geometry_is_simulated_again),
+        cmocka_unit_test(a_moved_project_keeps_its_drops),
         cmocka_unit_test(an_unconfined_drop_is_not_used_again),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);

@@ -5,6 +5,7 @@
 #include "io/h5.h"
 #include "io/plain_file.h"
 #include "io/process.h"
+#include "pre/mesh/gmsh_session.h"
 #include "pre/mesh/mesher_start.h"
 #include <inttypes.h>
 #include <limits.h>
@@ -12,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+enum { PATH_SIZE = 2 * PATH_MAX };
 
 static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     uint64_t content = 0;
@@ -58,46 +61,79 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
     return err->status;
 }
 
-/* Has the file of a line, "hash path", the content that it had? */
-static bool is_same(const char *line, size_t length) {
-    char path[PATH_MAX + 8];
-    uint64_t then = 0, hash = 0;
+/* The files of one geometry in a list of files, and the folder that their paths begin at. */
+typedef struct section {
+    const char *begin, *end, *folder;
+} section;
+
+/* The path at the end of a line, with `ending`. */
+static bool join(const section *s, const char *name, size_t length, const char *ending, char out[PATH_SIZE]) {
+    bool relative = *name != '/';
+    return snprintf(out, PATH_SIZE, "%s%s%.*s%s", relative ? s->folder : "", relative ? "/" : "", (int)length,
+                    name, ending) < PATH_SIZE;
+}
+
+/* Has the file the content that it had? */
+static bool is_same(const section *s, uint64_t then, const char *name, size_t length) {
+    char path[PATH_SIZE];
+    uint64_t hash = 0;
     sf_error none = SF_ERROR_INIT;
-    int begin = 0;
-    if (sscanf(line, "%16" SCNx64 " %n", &then, &begin) != 1 || begin == 0 || (size_t)begin >= length ||
-        length - (size_t)begin > PATH_MAX)
-        return false;
-    snprintf(path, sizeof path, "%.*s", (int)(length - (size_t)begin), line + begin);
-    return sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, &none) == SF_OK && hash == then;
+    return join(s, name, length, "", path) &&
+           sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, &none) == SF_OK && hash == then;
 }
 
 /* gmsh reads the file NAME.opt beside a geometry NAME, if there is one. */
-static bool has_new_options(const char *line, size_t length, const char *files) {
-    const char *path = memchr(line, ' ', length);
-    char name[PATH_MAX + 8];
-    snprintf(name, sizeof name, "%.*s.opt\n", (int)(path ? line + length - path : 0), path ? path : "");
-    const char *listed = strstr(files, name);
-    name[strlen(name) - 1] = '\0';
-    return !listed && path && access(name + 1, F_OK) == 0;
+static bool has_new_options(const section *s, const char *name, size_t length) {
+    char path[PATH_SIZE], line[PATH_SIZE];
+    snprintf(line, sizeof line, " %.*s.opt\n", (int)length, name);
+    const char *listed = strstr(s->begin, line);
+    return (!listed || listed >= s->end) && join(s, name, length, ".opt", path) && access(path, F_OK) == 0;
 }
 
-static bool are_same(const char *files) {
-    for (const char *line = files; *line;) {
+/* Its lines are "hash path". */
+static bool is_section_same(const section *s) {
+    for (const char *line = s->begin; line < s->end;) {
         size_t length = strcspn(line, "\n");
-        if (!is_same(line, length) || has_new_options(line, length, files))
+        uint64_t then = 0;
+        int begin = 0;
+        if (sscanf(line, "%16" SCNx64 " %n", &then, &begin) != 1 || begin == 0 || (size_t)begin >= length ||
+            length - (size_t)begin > PATH_MAX)
             return false;
-        line += length + (line[length] == '\n');
+        const char *name = line + begin;
+        length -= (size_t)begin;
+        if (!is_same(s, then, name, length) || has_new_options(s, name, length))
+            return false;
+        line = name + length + (name[length] == '\n');
     }
     return true;
 }
 
-bool sf_campaign_geometry_is_same(const char *path, const char *text, bool unlisted) {
+/* A section for the pad's geometry, and one for the missile's if it has one. */
+static bool are_same(const char *files, const char *const folder[2]) {
+    static const char head[] = SF_GMSH_FILES_OF "\n";
+    for (int k = 0; k < 2; k++) {
+        if (k == 1 && *folder[k] == '\0')
+            break;
+        if (strncmp(files, head, sizeof head - 1) != 0)
+            return false;
+        section s = {.begin = files + sizeof head - 1, .folder = folder[k]};
+        s.end = strstr(s.begin - 1, "\n" SF_GMSH_FILES_OF "\n");
+        s.end = s.end ? s.end + 1 : s.begin + strlen(s.begin);
+        if (!is_section_same(&s))
+            return false;
+        files = s.end;
+    }
+    return *files == '\0';
+}
+
+bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
+                                  bool unlisted) {
     sf_error none = SF_ERROR_INIT;
     sf_h5 *file = NULL;
     char *files = NULL;
     bool same = unlisted;
     if (sf_h5_open(path, &file, &none) == SF_OK && sf_h5_exists(file, text))
-        same = sf_h5_read_text(file, text, &files, &none) == SF_OK && are_same(files);
+        same = sf_h5_read_text(file, text, &files, &none) == SF_OK && are_same(files, folder);
     free(files);
     sf_h5_close(&file, &none);
     return same;

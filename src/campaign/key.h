@@ -12,8 +12,11 @@
  * only after it was read: sf_campaign_geometry_is_same. */
 sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 
-/* Has every file that the geometry read, by the list at `text` of the HDF5 file `path` (docs/formats.md,
- * geometry_files), the content that it had? `unlisted`: the answer if there is no such file or list. */
-bool sf_campaign_geometry_is_same(const char *path, const char *text, bool unlisted);
+/* Has every file that the geometries read, by the list at `text` of the HDF5 file `path` (docs/formats.md,
+ * geometry_files), the content that it had? `folder`: of the pad's and the missile's geometry, where paths in
+ * the list begin; "" without a geometry of the missile. `unlisted`: the answer if there is no such file or
+ * list. */
+bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
+                                  bool unlisted);
 
 #endif

@@ -20,13 +20,25 @@
 
 enum { MAX_ARGUMENTS = 64 };
 
+/* The folder of a file; "" of none. */
+static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err) {
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    const char *folder = !path ? "" : !slash ? "." : path;
+    int length = slash ? (int)(slash - path) + (slash == path) : (int)strlen(folder);
+    if (snprintf(out, PATH_MAX, "%.*s", length, folder) >= PATH_MAX)
+        return SF_FAIL(err, SF_ERR_INPUT, "the name of the geometry is too long: %.100s...", path);
+    return SF_OK;
+}
+
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *at, sf_error *err) {
     sf_case c;
     uint64_t key = 0;
     if (sf_case_read(case_path, count, overrides, NULL, &c, err) != SF_OK)
         return err->status;
-    sf_campaign_key(&c, &key, err);
+    if (name_folder(c.pad.path, at->pad_folder, err) == SF_OK &&
+        name_folder(c.missile.path, at->missile_folder, err) == SF_OK)
+        sf_campaign_key(&c, &key, err);
     sf_case_free(&c);
     snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
     snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
@@ -36,6 +48,11 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
     return err->status;
 }
 
+static bool is_geometry_same(const sf_run_folder *at, const char *path, const char *text, bool unlisted) {
+    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    return sf_campaign_geometry_is_same(folder, path, text, unlisted);
+}
+
 bool sf_run_folder_is_finished(const sf_run_folder *at) {
     sf_error none = SF_ERROR_INIT;
     sf_results r;
@@ -43,7 +60,7 @@ bool sf_run_folder_is_finished(const sf_run_folder *at) {
         return false;
     bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;
     sf_results_close(&r);
-    return finished && sf_campaign_geometry_is_same(at->results, "/provenance/model/geometry_files", false);
+    return finished && is_geometry_same(at, at->results, "/provenance/model/geometry_files", false);
 }
 
 /* The last line of a log that says something, for an error's sentence. */
@@ -99,8 +116,7 @@ static sf_status wait_for_orphan(const sf_run_folder *at, sf_error *err) {
 static bool resume(const char *const *run, const char *const *restart, const sf_run_folder *at,
                    sf_error *err) {
     sf_error trial = SF_ERROR_INIT;
-    if (access(at->model, R_OK) != 0 ||
-        !sf_campaign_geometry_is_same(at->model, "/provenance/geometry_files", true))
+    if (access(at->model, R_OK) != 0 || !is_geometry_same(at, at->model, "/provenance/geometry_files", true))
         return false;
     run_program(access(at->checkpoint, R_OK) == 0 ? restart : run, at->log, &trial);
     if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC)

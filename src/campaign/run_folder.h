@@ -14,6 +14,7 @@ typedef struct sf_run_folder {
     char path[PATH_MAX];
     char model[SF_RUN_PATH_SIZE], results[SF_RUN_PATH_SIZE], checkpoint[SF_RUN_PATH_SIZE],
         log[SF_RUN_PATH_SIZE];
+    char pad_folder[PATH_MAX], missile_folder[PATH_MAX]; /* of the geometries; "": no geometry of a missile */
 } sf_run_folder;
 
 /* The names, "parent/label-<key of the case with its overrides>" and the names of its files; nothing is

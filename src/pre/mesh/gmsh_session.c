@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Of softfall-pre at its peak, per node of the mesh: measured on the example pad (docs/reliability.md). */
 static const double BYTES_PER_NODE = 4500;
@@ -52,20 +53,37 @@ static bool has_suffix(const char *path, const char *suffix) {
     return n > m && strcasecmp(path + n - m, suffix) == 0;
 }
 
+/* A file that gmsh asked for by `path`, links unresolved. One that was asked for by its place below the
+ * folder of `geometry` is listed by that place, and also by its whole path if the geometry itself may have
+ * named that: then the two look the same. */
+static void list_file(FILE *out, uint64_t hash, const char *path, const char *geometry) {
+    const char *slash = strrchr(geometry, '/');
+    size_t folder = slash ? (size_t)(slash + 1 - geometry) : 0;
+    bool below = folder > 0 ? strncmp(path, geometry, folder) == 0 : *path != '/';
+    char here[PATH_MAX];
+    const char *inside = path + folder + (below ? strspn(path + folder, "/") : 0);
+    if (below)
+        fprintf(out, "%016llx %s\n", (unsigned long long)hash, inside);
+    if (*path == '/' && strcmp(path, geometry) != 0)
+        fprintf(out, "%016llx %s\n", (unsigned long long)hash, path);
+    else if (!below)
+        fprintf(out, "%016llx %s/%s\n", (unsigned long long)hash, getcwd(here, sizeof here) ? here : "",
+                path);
+}
+
 /* The files that the open geometry read, after those of the earlier ones. */
-static sf_status list_files(sf_gmsh *session, sf_error *err) {
+static sf_status list_files(sf_gmsh *session, const char *geometry, sf_error *err) {
     const sf_broker *read = &session->open.broker;
-    char *text = NULL, whole[PATH_MAX];
+    char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
-    fputs(session->files ? session->files : "", out);
+    fprintf(out, "%s" SF_GMSH_FILES_OF "\n", session->files ? session->files : "");
     if (!session->open.confined)
         fputs(SF_GMSH_UNKNOWN_FILES "\n", out);
     for (size_t k = 0; k < read->count; k++)
-        fprintf(out, "%016llx %s\n", (unsigned long long)read->file[k].hash,
-                realpath(read->file[k].path, whole) ? whole : read->file[k].path);
+        list_file(out, read->file[k].hash, read->file[k].path, geometry);
     fclose(out);
     free(session->files);
     session->files = text;
@@ -80,7 +98,7 @@ sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *
         return err->status;
     snprintf(session->version, sizeof session->version, "%s%s", open->data.version,
              open->confined ? "" : " (unconfined)");
-    return list_files(session, err);
+    return list_files(session, source->path, err);
 }
 
 static const char *kind_of(int dimension) {

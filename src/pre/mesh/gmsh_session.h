@@ -37,9 +37,11 @@ sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, doub
  * long as the session. */
 const char *sf_gmsh_version(const sf_gmsh *session);
 
-/* Every file that the geometries so far read, a line each: hash of its content (16 hexadecimal digits),
- * blank, path. The line SF_GMSH_UNKNOWN_FILES stands for files that are not known, because gmsh was not
- * confined. Valid until the next load; NULL: no geometry. */
+/* Every file that the geometries so far read. A line SF_GMSH_FILES_OF for each geometry, then a line for each
+ * file: hash of its content (16 hexadecimal digits), blank, path as it was asked for, from the folder of that
+ * geometry or absolute. The line SF_GMSH_UNKNOWN_FILES stands for files that are not known, because gmsh was
+ * not confined. Valid until the next load; NULL: no geometry. */
+#define SF_GMSH_FILES_OF "geometry"
 #define SF_GMSH_UNKNOWN_FILES "unknown"
 const char *sf_gmsh_files(const sf_gmsh *session);
 

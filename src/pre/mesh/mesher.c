@@ -35,7 +35,8 @@ typedef struct conversation {
     char line[LINE_SIZE], last_line[LINE_SIZE], error_line[LINE_SIZE]; /* of what gmsh prints */
     size_t line_length;
     bool program, memory, late, stopped; /* it tried to start one; lacked it; took too long; was ended here */
-    int no_filter, messages, status;      /* errno value of the filter; count; of wait */
+    bool lingers;                        /* it closed everything and did not end */
+    int no_filter, messages, status;     /* errno value of the filter; count; of wait */
 } conversation;
 
 static double now(void) {
@@ -65,7 +66,13 @@ static char *parameter_text(const sf_geo_source *source) {
 
 /* ---- what the child says ---- */
 
-static void answer(const conversation *c, int error, int file) {
+static void stop(conversation *c) {
+    kill(c->child.process, SIGKILL);
+    c->stopped = true;
+}
+
+/* Never waits for the child to read. */
+static void answer(conversation *c, int error, int file, sf_error *err) {
     sf_mesher_answer text = {error};
     union {
         struct cmsghdr header;
@@ -79,13 +86,15 @@ static void answer(const conversation *c, int error, int file) {
         control.header = (struct cmsghdr){.cmsg_len = CMSG_LEN(sizeof(int)), SOL_SOCKET, SCM_RIGHTS};
         memcpy(CMSG_DATA(&control.header), &file, sizeof file);
     }
-    while (sendmsg(c->child.control, &message, MSG_NOSIGNAL) < 0 && errno == EINTR)
-        ;
-}
-
-static void stop(conversation *c) {
-    kill(c->child.process, SIGKILL);
-    c->stopped = true;
+    ssize_t sent;
+    do
+        sent = sendmsg(c->child.control, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+    while (sent < 0 && errno == EINTR);
+    if (sent >= 0 || errno == EPIPE || errno == ECONNRESET) /* it has ended: what it printed is still read */
+        return;
+    SF_FAIL(err, SF_ERR_INPUT, "%s: gmsh asks for files without reading the answers (%s)", c->source->path,
+            strerror(errno));
+    stop(c);
 }
 
 /* False: the conversation is over. */
@@ -113,7 +122,7 @@ static bool hear_message(conversation *c, sf_error *err) {
         break;
     case SF_ASK_OPEN: {
         int file = -1, error = sf_broker_open(&c->broker, ask.text, ask.detail, &file);
-        answer(c, error, file);
+        answer(c, error, file, err);
         if (file >= 0)
             close(file);
         break;
@@ -252,7 +261,9 @@ static sf_status judge_ending(const conversation *c, sf_error *err) {
                  c->seconds);
         return fail(c, what, err);
     }
-    if (signal_number)
+    if (c->lingers)
+        snprintf(what, sizeof what, "gmsh closed its pipes, but did not end");
+    else if (signal_number)
         snprintf(what, sizeof what, "gmsh crashed (%s)%s%s", strsignal(signal_number), *line ? ": " : "",
                  line);
     else
@@ -287,10 +298,25 @@ static void send_request(const conversation *c, sf_error *err) {
         SF_FAIL(err, SF_ERR_IO, "softfall-mesh does not listen: %s", strerror(errno));
 }
 
+/* The child has closed everything and has a moment to end. False: it was still there, and was killed. */
+static bool end_soon(conversation *c) {
+    const struct timespec pause = {0, 1000000};
+    for (int k = 0; k < 2000 && !c->stopped; k++) {
+        siginfo_t info = {0};
+        if (waitid(P_PID, (id_t)c->child.process, &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+            info.si_pid != 0)
+            return true;
+        nanosleep(&pause, NULL);
+    }
+    kill(c->child.process, SIGKILL);
+    return c->stopped;
+}
+
 static void end(conversation *c) {
     close(c->child.control);
     close(c->child.data);
     close(c->child.print);
+    c->lingers = !end_soon(c);
     while (waitpid(c->child.process, &c->status, 0) < 0)
         if (errno != EINTR) {
             c->status = 0; /* the host takes the ends of children itself: the stream tells */
