@@ -241,7 +241,7 @@ static void bytes_written_are_those_of_the_data(void **state) {
     sf_h5 *file = program_open_h5(p, "many_results.h5");
     assert_true(sf_h5_group_size(file, "/frames") >= 500);
     sf_h5_close(&file, &err);
-    assert_true(written < 3.2 * (double)info.st_size);
+    assert_true((double)written < 3.2 * (double)info.st_size);
 }
 
 int main(void) {

@@ -29,9 +29,13 @@ static struct {
 } fault;
 
 /* Nothing is initialised yet: no function of a library and no sanitizer may be called from here on. */
+#ifdef __clang__
+#define FIRST __attribute__((no_sanitize("address", "thread", "undefined"), no_builtin))
+#else
 #define FIRST                                                                                                \
     __attribute__((no_sanitize("address", "thread", "undefined"),                                            \
                    optimize("no-tree-loop-distribute-patterns")))
+#endif
 
 /* What follows the prefix in the text; NULL if the text begins otherwise. */
 FIRST static const char *after(const char *text, const char *prefix) {
