@@ -196,12 +196,14 @@ static long try_pipe(void) {
 
 #define TRIALS(X)                                                                                            \
     X(execve)                                                                                                \
-    X(execveat) X(fork) X(clone3) X(write) X(create) X(append) X(device) X(folder) X(path) X(temporary)      \
-        X(openat2) X(socket) X(socketpair) X(ptrace) X(attach) X(memory_of_parent) X(kill) X(tgkill)         \
-            X(pidfd) X(memfd) X(executable) X(mprotect) X(prctl) X(mount) X(unlink) X(rename) X(mkdir)       \
-                X(rmdir) X(truncate) X(chmod) X(chown) X(link) X(symlink) X(mkfifo) X(utime) X(chdir)        \
-                    X(chroot) X(setuid) X(limit) X(sigsys) X(ioctl) X(duplicate) X(nonblocking) X(bpf)       \
-                        X(io_uring) X(userfaultfd) X(keyring) X(unshare) X(pipe)
+    X(execveat)                                                                                              \
+    X(fork)                                                                                                  \
+    X(clone3) X(write) X(create) X(append) X(device) X(folder) X(path) X(temporary) X(openat2) X(socket)     \
+        X(socketpair) X(ptrace) X(attach) X(memory_of_parent) X(kill) X(tgkill) X(pidfd) X(memfd)            \
+            X(executable) X(mprotect) X(prctl) X(mount) X(unlink) X(rename) X(mkdir) X(rmdir) X(truncate)    \
+                X(chmod) X(chown) X(link) X(symlink) X(mkfifo) X(utime) X(chdir) X(chroot) X(setuid)         \
+                    X(limit) X(sigsys) X(ioctl) X(duplicate) X(nonblocking) X(bpf) X(io_uring)               \
+                        X(userfaultfd) X(keyring) X(unshare) X(pipe)
 #define ROW(name) {#name, try_##name},
 static const struct {
     const char *name;
@@ -216,6 +218,7 @@ typedef struct findings {
     unsigned char open[COUNT]; /* 1: the call succeeded */
     char read[16];             /* of the file that it may read */
     int written;               /* errno value of writing to that file's descriptor */
+    int too_long;              /* errno value of opening a path that is too long */
     int thread;                /* 1: a thread could read the file too */
 } findings;
 
@@ -240,6 +243,9 @@ static void be_confined(int control, int data) {
     int file = open(inside, O_RDONLY);
     f.written = file >= 0 && read(file, f.read, sizeof f.read - 1) > 0 && write(file, "x", 1) < 0 ? errno : 0;
     close(file);
+    static char longest[5000];
+    memset(longest, '/', sizeof longest - 1);
+    f.too_long = open(longest, O_RDONLY) < 0 ? errno : 0;
     if (pthread_create(&thread, NULL, read_in_thread, &f.thread) == 0)
         pthread_join(thread, NULL);
     _exit(write(SF_MESHER_DATA, &f, sizeof f) != (ssize_t)sizeof f);
@@ -310,6 +316,7 @@ static void nothing_leads_out(void **state) {
             fail_msg("%s is not refused", trials[k].name);
     assert_string_equal(f.read, "content\n"); /* the line end is the broker's */
     assert_int_not_equal(f.written, 0);
+    assert_int_equal(f.too_long, ENAMETOOLONG);
     assert_int_equal(f.thread, 1);
     assert_int_equal(programs, 4); /* execve, execveat, fork, pipe */
     assert_int_equal(broker.count, 1);
@@ -317,6 +324,48 @@ static void nothing_leads_out(void **state) {
     sf_broker_free(&broker);
     close(control[0]);
     close(data[0]);
+}
+
+static sf_broker_file *open_in(sf_broker *broker, const char *path, struct stat *info) {
+    char byte = 0;
+    int file = -1;
+    assert_int_equal(sf_broker_open(broker, path, O_RDONLY, &file), 0);
+    assert_int_equal(fstat(file, info), 0);
+    assert_int_equal(read(file, &byte, 1), 1); /* from the beginning: each reader has its own place */
+    assert_int_equal(byte, 'c');
+    close(file);
+    return &broker->file[broker->count - 1];
+}
+
+/* A file that includes itself a thousand times is in memory once. */
+static void one_copy_serves_all_readers(void **state) {
+    sf_broker broker = {.parameters = "", .ready = true, .most = 1000};
+    struct stat first, again, other_name;
+    (void)state;
+    uint64_t hash = open_in(&broker, inside, &first)->hash;
+    open_in(&broker, inside, &again);
+    assert_int_equal(broker.count, 1);
+    assert_int_equal(open_in(&broker, "./file", &other_name)->hash, hash);
+    assert_int_equal(broker.count, 2);
+    assert_int_equal(first.st_ino, again.st_ino);
+    assert_int_equal(first.st_ino, other_name.st_ino);
+    assert_int_equal(broker.bytes, 2 * strlen("content\n")); /* text and copy */
+    sf_broker_free(&broker);
+}
+
+static void a_limit_of_file_sizes_is_named(void **state) {
+    sf_broker broker = {.parameters = "", .ready = true, .most = 1000};
+    struct rlimit limit, small = {4, 0};
+    int file = -1;
+    (void)state;
+    getrlimit(RLIMIT_FSIZE, &limit);
+    small.rlim_max = limit.rlim_max;
+    setrlimit(RLIMIT_FSIZE, &small);
+    int error = sf_broker_open(&broker, inside, O_RDONLY, &file);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    assert_int_equal(error, EACCES);
+    assert_non_null(strstr(broker.refused, "ulimit -f"));
+    sf_broker_free(&broker);
 }
 
 static int set_up(void **state) {
@@ -334,6 +383,8 @@ static int tear_down(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_leads_out)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_leads_out),
+                                       cmocka_unit_test(one_copy_serves_all_readers),
+                                       cmocka_unit_test(a_limit_of_file_sizes_is_named)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

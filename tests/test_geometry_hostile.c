@@ -227,8 +227,11 @@ static void a_process_that_fails_is_told(void **state) {
         {"head -c 100000 /dev/urandom >&4", "cut or damaged"},
         {"head -c 100000 /dev/zero >&4", "cut or damaged"},
         {"head -c 100000 /dev/urandom >&3; sleep 0.1", "gmsh ended without a mesh"},
-        {"exec 0<&- 1>&- 2>&- 3>&- 4>&- 5>&-; sleep 1000", "gmsh closed its pipes, but did not end"},
+        {"exec 0<&- 1>&- 2>&- 3>&- 4>&- 5>&-; exec sleep 1000", "gmsh closed its pipes, but did not end"},
         {"while printf '\\3\\0\\0\\0\\0\\0\\0\\0/absent\\0' >&3; do :; done", "without reading the answers"},
+        {"exec sleep 1000", "gmsh waits without working"},
+        {"while :; do :; done", "more than 3 s of processor time"},
+        {"kill -HUP $$", "interrupted (Hangup) while gmsh was at work"},
         {"yes 0123456789 | head -c 3000000 >&2; echo; echo last >&2", "gmsh ended without a mesh: last"},
     };
     write_text("attack.geo", BOX);
@@ -237,6 +240,13 @@ static void a_process_that_fails_is_told(void **state) {
     setenv("SOFTFALL_MEMORY_MB", "100", 1);
     check_mesher(*state, "cat /dev/zero >&4", "does not fit into 0.1 GB");
     unsetenv("SOFTFALL_MEMORY_MB");
+}
+
+/* As nohup starts softfall-pre. */
+static void an_ignored_signal_stays_ignored(void **state) {
+    void (*before)(int) = signal(SIGHUP, SIG_IGN);
+    check_mesher(*state, "kill -HUP $$; echo later >&2", "gmsh ended without a mesh: later");
+    signal(SIGHUP, before);
 }
 
 /* In a process where the kernel knows no filters. */
@@ -306,6 +316,7 @@ int main(void) {
         cmocka_unit_test(work_has_an_end),
         cmocka_unit_test(everything_else_may_be_used),
         cmocka_unit_test(a_process_that_fails_is_told),
+        cmocka_unit_test(an_ignored_signal_stays_ignored),
         cmocka_unit_test(without_filters_it_is_refused_unless_asked_for),
         cmocka_unit_test(what_was_read_is_listed),
     };

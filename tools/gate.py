@@ -37,6 +37,7 @@ ALLOWED = {
     "io/model_io": {"remove": "its own partial file"},
     "mesher/confine": {"open": "numbers of its own process in /proc, before it is confined"},
     "mesher/work": {"library": "the process of gmsh, which cannot open files: the gate of softfall-pre does it"},
+    "pre/mesh/broker": {"open": "its own sealed copies in memory, anew for each reader"},
     "pre/mesh/memory": {"open": "/proc/meminfo"},
     "pre/mesh/mesher_start": {"open": "/dev/null for that process"},
     "core/units": {"library": "the unit system of UDUNITS"},

@@ -46,7 +46,17 @@ static uint64_t mapped(void) {
     return (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
+/* When the memory of the machine runs out, this process is ended and no other. */
+static void be_first_victim(void) {
+    FILE *file = fopen("/proc/self/oom_score_adj", "w");
+    if (file) {
+        fputs("1000", file);
+        fclose(file);
+    }
+}
+
 void sf_confine_resources(uint64_t bytes, uint64_t seconds) {
+    be_first_victim();
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     signal(SIGXFSZ, SIG_IGN); /* writing then fails */
     limit(RLIMIT_CORE, 0, 0);
@@ -80,7 +90,7 @@ static atomic_flag busy = ATOMIC_FLAG_INIT; /* one conversation at a time, for `
 static sf_mesher_ask ask;
 
 static void send_ask(sf_mesher_ask_kind kind, int detail, const char *text) {
-    size_t length = strnlen(text, sizeof ask.text - 1);
+    size_t length = strlen(text); /* less than there is room */
     ask.kind = (uint32_t)kind;
     ask.detail = detail;
     memcpy(ask.text, text, length);
@@ -116,6 +126,8 @@ static int receive_file(void) {
 }
 
 static int ask_for_file(const char *path, int flags) {
+    if (strnlen(path, sizeof ask.text) == sizeof ask.text)
+        return -ENAMETOOLONG;
     while (atomic_flag_test_and_set(&busy))
         sched_yield();
     send_ask(SF_ASK_OPEN, flags, path);

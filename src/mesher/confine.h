@@ -7,7 +7,7 @@
 
 /* Limits of memory (bytes beyond what is mapped now; 0: none; none in builds with a sanitizer, whose shadow
  * takes terabytes), of processor time (seconds; 0: none), no core file, no file that grows, few open files;
- * ends with its parent. */
+ * first to be ended when the machine has no memory; ends with its parent. */
 void sf_confine_resources(uint64_t bytes, uint64_t seconds);
 
 /* From now on the kernel refuses every system call that is not on a list (EPERM): no program, file name,

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static void write_head(const char *error) {
     char version[32];
@@ -84,26 +85,30 @@ static void mesh_on_one_thread(void) {
         gmshOptionSetNumber(numbers[i], 1.0, &ierr);
 }
 
-static bool write_nodes(void) {
+static void write_nodes(void) {
     size_t *tags = NULL, count = 0, coordinates = 0, parameters = 0;
     double *xyz = NULL, *parameter = NULL;
     int ierr = 0;
     gmshModelMeshGetNodes(&tags, &count, &xyz, &coordinates, &parameter, &parameters, -1, -1, 0, 0, &ierr);
     if (ierr)
-        exit(1); /* the stream has begun: the parent says that gmsh failed */
+        _exit(1); /* the stream has begun: the parent says that gmsh failed */
     sf_stream_word(count);
     sf_stream_words(tags, count * sizeof *tags);
     sf_stream_words(xyz, 3 * count * sizeof *xyz);
     gmshFree(tags);
     gmshFree(xyz);
     gmshFree(parameter);
-    return true;
 }
 
 static int compare_int(const void *a, const void *b) {
     const int *p = a, *q = b;
     return (*p > *q) - (*p < *q);
 }
+
+typedef struct entity_list {
+    int *entity;
+    size_t count;
+} entity_list;
 
 /* Sorts and drops what is there twice. */
 static size_t sort_entities(int *entity, size_t count) {
@@ -116,8 +121,17 @@ static size_t sort_entities(int *entity, size_t count) {
     return kept;
 }
 
-/* The groups of a dimension go to the stream; the entities of the named ones to `*entity` too. */
-static void write_groups(int dimension, const int *pairs, size_t length, int **entity, size_t *count) {
+/* More entities for a list. */
+static void append(entity_list *list, const int *entity, size_t count) {
+    list->entity = realloc(list->entity, (list->count + count + 1) * sizeof *list->entity);
+    if (!list->entity)
+        _exit(1);
+    memcpy(list->entity + list->count, entity, count * sizeof *entity);
+    list->count += count;
+}
+
+/* The groups of a dimension go to the stream; the entities of the named ones to `named` too, unless NULL. */
+static void write_groups(int dimension, const int *pairs, size_t length, entity_list *named) {
     for (size_t g = 0; g < length / 2; g++) {
         int *member = NULL, ierr = 0, tag = pairs[2 * g + 1];
         size_t members = 0;
@@ -134,13 +148,8 @@ static void write_groups(int dimension, const int *pairs, size_t length, int **e
             member[i] = abs(member[i]);
             sf_stream_int(member[i]);
         }
-        if (name && *name) {
-            *entity = realloc(*entity, (*count + members + 1) * sizeof **entity);
-            if (!*entity)
-                exit(1);
-            memcpy(*entity + *count, member, members * sizeof *member);
-            *count += members;
-        }
+        if (named && name && *name && members > 0)
+            append(named, member, members);
         gmshFree(name);
         gmshFree(member);
     }
@@ -206,29 +215,29 @@ static void write_elements(const int *surface, size_t surfaces, const int *volum
 }
 
 static void write_mesh(void) {
-    int *pairs[2] = {NULL, NULL}, *surface = NULL, *volume = NULL, *named = NULL, ierr = 0;
-    size_t length[2] = {0, 0}, surfaces = 0, ignored = 0, volumes = 0;
+    int *pairs[2] = {NULL, NULL}, *volume = NULL, ierr = 0;
+    size_t length[2] = {0, 0}, volumes = 0;
+    entity_list surface = {NULL, 0};
     write_head("");
     write_nodes();
     gmshModelGetPhysicalGroups(&pairs[0], &length[0], 2, &ierr);
     gmshModelGetPhysicalGroups(&pairs[1], &length[1], 3, &ierr);
     sf_stream_word(length[0] / 2 + length[1] / 2);
-    write_groups(2, pairs[0], length[0], &surface, &surfaces);
-    write_groups(3, pairs[1], length[1], &named, &ignored);
-    surfaces = sort_entities(surface, surfaces);
+    write_groups(2, pairs[0], length[0], &surface);
+    write_groups(3, pairs[1], length[1], NULL);
+    surface.count = sort_entities(surface.entity, surface.count);
     gmshModelGetEntities(&volume, &volumes, 3, &ierr);
     volumes /= 2;
     for (size_t i = 0; i < volumes; i++)
         volume[i] = volume[2 * i + 1];
     volumes = sort_entities(volume, volumes);
-    write_elements(surface, surfaces, volume, volumes);
+    write_elements(surface.entity, surface.count, volume, volumes);
     sf_stream_word(SF_MESH_STREAM_END);
     sf_stream_flush();
     for (int k = 0; k < 2; k++)
         gmshFree(pairs[k]);
     gmshFree(volume);
-    free(surface);
-    free(named);
+    free(surface.entity);
 }
 
 void sf_work_mesh(const char *path) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/broker.h"
 
+#include "core/hash.h"
 #include "io/plain_file.h"
 #include "pre/mesh/mesher_protocol.h"
 #include <errno.h>
@@ -9,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 enum { MOST_FILES = 1000 };
@@ -20,6 +22,8 @@ static const char *const of_libraries[] = {
 
 void sf_broker_free(sf_broker *b) {
     for (size_t k = 0; k < b->count; k++) {
+        if (b->file[k].text)
+            close(b->file[k].memory);
         free(b->file[k].path);
         free(b->file[k].text);
     }
@@ -27,8 +31,22 @@ void sf_broker_free(sf_broker *b) {
     *b = (sf_broker){0};
 }
 
+/* Some systems insist on MFD_NOEXEC_SEAL, which older ones do not know. */
+static int create_memory(void) {
+    int file = -1;
+#ifdef MFD_NOEXEC_SEAL
+    file = memfd_create("softfall", MFD_CLOEXEC | MFD_ALLOW_SEALING | MFD_NOEXEC_SEAL);
+#endif
+    return file >= 0 ? file : memfd_create("softfall", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+}
+
 int sf_broker_memory(const char *text, size_t size) {
-    int file = memfd_create("softfall", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && size > limit.rlim_cur) { /* writing would send SIGXFSZ */
+        errno = EFBIG;
+        return -1;
+    }
+    int file = create_memory();
     size_t done = 0;
     while (file >= 0 && done < size) {
         ssize_t written = write(file, text + done, size - done);
@@ -73,6 +91,30 @@ static sf_broker_file *add_file(sf_broker *b) {
     return &b->file[b->count];
 }
 
+static void refuse(sf_broker *b, const char *path, const char *cause) {
+    if (*b->refused == '\0')
+        snprintf(b->refused, sizeof b->refused, "%.300s cannot be handed over: %.200s", path, cause);
+}
+
+/* One copy of each content, whatever its names. 0 or an errno value. */
+static int copy(sf_broker *b, sf_broker_file *f) {
+    for (size_t k = 0; k < b->count; k++) {
+        const sf_broker_file *other = &b->file[k];
+        if (other->text && other->size == f->size && memcmp(other->text, f->text, f->size) == 0) {
+            free(f->text);
+            f->text = NULL;
+            f->is_text = false;
+            f->memory = other->memory;
+            return 0;
+        }
+    }
+    f->memory = sf_broker_memory(f->text, f->size);
+    if (f->memory < 0)
+        return errno;
+    b->bytes += 2 * (uint64_t)f->size;
+    return 0;
+}
+
 /* Reads the file through the gate and keeps it. 0 or an errno value. */
 static int read_file(sf_broker *b, const char *path, const sf_broker_file **out) {
     sf_error err = SF_ERROR_INIT;
@@ -81,18 +123,20 @@ static int read_file(sf_broker *b, const char *path, const sf_broker_file **out)
         return ENFILE;
     if (access(path, F_OK) != 0)
         return errno;
-    if (sf_plain_read(path, NULL, b->most - b->bytes, &f->text, &f->size, &err) == SF_OK) {
-        f->hash = sf_plain_get(sf_plain_count() - 1).hash;
+    uint64_t room = b->bytes < b->most ? (b->most - b->bytes) / 2 : 0;
+    if (sf_plain_read(path, NULL, room, &f->text, &f->size, &err) == SF_OK) {
+        f->hash = sf_hash_bytes(SF_HASH_START, f->text, f->size);
         f->path = strdup(path);
-        if (f->path && end_last_line(f, &err) == SF_OK) {
-            b->bytes += f->size;
+        int error = !f->path || end_last_line(f, &err) != SF_OK ? ENOMEM : copy(b, f);
+        if (error == 0) {
             b->count++;
             *out = f;
             return 0;
         }
-    }
-    if (*b->refused == '\0')
+        refuse(b, path, error == EFBIG ? "it is larger than files may be (ulimit -f)" : strerror(error));
+    } else if (*b->refused == '\0') {
         snprintf(b->refused, sizeof b->refused, "%.590s", err.text);
+    }
     free(f->path);
     free(f->text);
     return EACCES;
@@ -103,6 +147,17 @@ static bool is_of_libraries(const char *path) {
         if (strncmp(path, of_libraries[k], strlen(of_libraries[k])) == 0)
             return true;
     return false;
+}
+
+/* A reader with its own place in the file. Without /proc it gets a copy of its own, which counts. */
+static int reopen(sf_broker *b, const sf_broker_file *f) {
+    char path[40];
+    snprintf(path, sizeof path, "/proc/self/fd/%d", f->memory);
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file >= 0 || !f->text || b->bytes + f->size > b->most)
+        return file;
+    b->bytes += f->size;
+    return sf_broker_memory(f->text, f->size);
 }
 
 int sf_broker_open(sf_broker *b, const char *path, int flags, int *file) {
@@ -127,6 +182,10 @@ int sf_broker_open(sf_broker *b, const char *path, int flags, int *file) {
     int error = found ? 0 : read_file(b, path, &found);
     if (error != 0)
         return error;
-    *file = sf_broker_memory(found->text, found->size);
-    return *file < 0 ? errno : 0;
+    *file = reopen(b, found);
+    if (*file >= 0)
+        return 0;
+    error = errno;
+    refuse(b, path, strerror(error));
+    return error;
 }

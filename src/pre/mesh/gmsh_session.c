@@ -267,13 +267,7 @@ static sf_status read_nodes(const sf_gmsh *session, sf_raw_mesh *raw, sf_error *
     return err->status;
 }
 
-static int compare_entities(const void *a, const void *b) {
-    const int32_t *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
-/* All cells of all volumes; those of `chosen` (may be NULL), which has its entities in ascending order, are
- * marked. */
+/* All cells of all volumes; those of `chosen` (may be NULL) are marked. */
 static sf_status read_cells(const sf_gmsh *session, const sf_geo_group *chosen, sf_raw_mesh *raw,
                             sf_error *err) {
     const sf_geo_data *data = &session->open.data;
@@ -281,10 +275,7 @@ static sf_status read_cells(const sf_gmsh *session, const sf_geo_group *chosen, 
         const sf_geo_block *block = &data->block[k];
         if (block->dimension != 3)
             continue;
-        const destination to = {.raw = raw,
-                                .chosen =
-                                    chosen && bsearch(&block->entity, chosen->entity, chosen->count,
-                                                      sizeof *chosen->entity, compare_entities) != NULL};
+        const destination to = {.raw = raw, .chosen = chosen && sf_geo_group_has(chosen, block->entity)};
         add_elements(session, &to, block, err);
     }
     return err->status;

@@ -4,7 +4,6 @@
 #include "pre/mesh/mesher_protocol.h"
 #include <assert.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -153,6 +152,11 @@ void sf_geo_data_free(sf_geo_data *data) {
     free(data->group);
     free(data->block);
     memset(data, 0, sizeof *data);
+}
+
+bool sf_geo_group_has(const sf_geo_group *group, int32_t entity) {
+    return group->count > 0 &&
+           bsearch(&entity, group->entity, group->count, sizeof *group->entity, compare_entities) != NULL;
 }
 
 size_t sf_geo_data_blocks(const sf_geo_data *data, int dimension, int entity, size_t *end) {

@@ -5,6 +5,7 @@
 #define SF_PRE_MESH_MESH_STREAM_H
 
 #include "core/error.h"
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -43,6 +44,8 @@ typedef struct sf_geo_data {
  * position is not finite; `file` for the sentence. On failure `*out` is empty. */
 sf_status sf_geo_data_read(const void *data, size_t size, const char *file, sf_geo_data *out, sf_error *err);
 void sf_geo_data_free(sf_geo_data *data);
+
+bool sf_geo_group_has(const sf_geo_group *group, int32_t entity);
 
 /* First block of the entity, `*end` is one beyond its last; equal if it has none. */
 size_t sf_geo_data_blocks(const sf_geo_data *data, int dimension, int entity, size_t *end);

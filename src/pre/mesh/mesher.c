@@ -35,8 +35,9 @@ typedef struct conversation {
     char line[LINE_SIZE], last_line[LINE_SIZE], error_line[LINE_SIZE]; /* of what gmsh prints */
     size_t line_length;
     bool program, memory, late, stopped; /* it tried to start one; lacked it; took too long; was ended here */
-    bool lingers;                        /* it closed everything and did not end */
-    int no_filter, messages, status;     /* errno value of the filter; count; of wait */
+    bool lingers, waits;                 /* it closed everything and did not end; it did nothing for long */
+    double worked, idle; /* seconds of processor time; of waiting, less a hundred times those of work since */
+    int no_filter, messages, status; /* errno value of the filter; count; of wait */
 } conversation;
 
 static double now(void) {
@@ -191,11 +192,33 @@ static void tell_progress(const conversation *c, double elapsed) {
                  elapsed, c->seconds, what ? ":" : "", what ? what + 1 : "");
 }
 
+/* Seconds of processor time that the child has taken. */
+static double processor_time(const conversation *c) {
+    clockid_t clock;
+    struct timespec t;
+    if (clock_getcpuclockid(c->child.process, &clock) != 0 || clock_gettime(clock, &t) != 0)
+        return c->worked;
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Ends a child that did not limit its own processor time, and one that uses less than a hundredth of a
+ * processor for long. `step`: seconds since the last look, of which few count: both processes may have been
+ * stopped meanwhile. */
+static void watch(conversation *c, double step) {
+    double worked = processor_time(c), patience = fmin(fmax(c->seconds, 10), 60);
+    c->idle = fmax(0, c->idle + fmin(step, 2) - 100 * (worked - c->worked));
+    c->worked = worked;
+    c->late = worked > c->seconds + 6;
+    c->waits = c->idle > patience;
+    if (c->late || c->waits)
+        stop(c);
+}
+
 /* Until the child has closed everything, or was stopped. */
 static void converse(conversation *c, sf_error *err) {
     struct pollfd channel[] = {
         {c->child.control, POLLIN, 0}, {c->child.data, POLLIN, 0}, {c->child.print, POLLIN, 0}};
-    double start = now(), told = 0;
+    double start = now(), told = 0, seen = 0;
     while (!c->stopped && (channel[0].fd >= 0 || channel[1].fd >= 0 || channel[2].fd >= 0)) {
         int ready = poll(channel, 3, 1000);
         double elapsed = now() - start;
@@ -203,9 +226,9 @@ static void converse(conversation *c, sf_error *err) {
             told = elapsed;
             tell_progress(c, elapsed);
         }
-        if (elapsed > 4 * c->seconds + 30) {
-            c->late = true;
-            stop(c);
+        if (elapsed > seen + 0.9) {
+            watch(c, elapsed - seen);
+            seen = elapsed;
         }
         if (ready <= 0)
             continue;
@@ -246,6 +269,10 @@ static sf_status judge_ending(const conversation *c, sf_error *err) {
     if (c->program || signal_number == SIGSYS) /* where signals are blocked, the trap kills */
         return SF_FAIL(err, SF_ERR_INPUT, "%s: the geometry tried to start a program, which it may not",
                        c->source->path);
+    if (signal_number == SIGHUP || signal_number == SIGINT || signal_number == SIGQUIT ||
+        signal_number == SIGTERM)
+        return SF_FAIL(err, SF_INTERRUPTED, "%s: interrupted (%s) while gmsh was at work", c->source->path,
+                       strsignal(signal_number));
     if (c->memory || strstr(c->last_line, "bad_alloc")) {
         snprintf(
             what, sizeof what,
@@ -261,7 +288,9 @@ static sf_status judge_ending(const conversation *c, sf_error *err) {
                  c->seconds);
         return fail(c, what, err);
     }
-    if (c->lingers)
+    if (c->waits)
+        snprintf(what, sizeof what, "gmsh waits without working");
+    else if (c->lingers)
         snprintf(what, sizeof what, "gmsh closed its pipes, but did not end");
     else if (signal_number)
         snprintf(what, sizeof what, "gmsh crashed (%s)%s%s", strsignal(signal_number), *line ? ": " : "",
@@ -275,7 +304,7 @@ static sf_status judge(conversation *c, sf_meshed *out, sf_error *err) {
     bool ended = WIFEXITED(c->status) && WEXITSTATUS(c->status) == 0;
     if (err->status != SF_OK)
         return err->status;
-    if (!ended || c->program || c->memory || c->late || c->no_filter || c->size == 0)
+    if (!ended || c->program || c->memory || c->late || c->waits || c->no_filter || c->size == 0)
         return judge_ending(c, err);
     if (sf_geo_data_read(c->stream, c->size, c->source->path, &out->data, err) != SF_OK)
         return err->status;
@@ -337,7 +366,7 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
     if (!parameters)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the parameters of %s", source->path);
     c.broker.parameters = parameters;
-    c.broker.most = c.bytes < 0x1p32 ? (uint64_t)c.bytes : (uint64_t)1 << 32;
+    c.broker.most = c.bytes < 0x1p34 ? (uint64_t)(c.bytes / 4) : (uint64_t)1 << 32;
     if (err->status == SF_OK && sf_plain_check(source->path, "geometry", err) == SF_OK &&
         sf_mesher_start(parameters, &c.child, err) == SF_OK) {
         send_request(&c, err);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs gmsh on a geometry in a process of its own, softfall-mesh, that can neither start programs nor open
- * files (docs/adr/ 0014-confined-gmsh.md). Whatever the geometry does there, this process gets a mesh or an
+ * files (docs/adr/0014-confined-gmsh.md). Whatever the geometry does there, this process gets a mesh or an
  * error. */
 #ifndef SF_PRE_MESH_MESHER_H
 #define SF_PRE_MESH_MESHER_H

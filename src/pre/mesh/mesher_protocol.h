@@ -48,12 +48,14 @@ typedef struct sf_mesher_answer {
 } sf_mesher_answer;
 
 /* The mesh stream: words of 64 bits of this machine.
- *   SF_MESH_STREAM_BEGIN, version of gmsh (text), error (text; if not empty, only SF_MESH_STREAM_END follows)
- *   node count, tags [count], positions [count][3]
- *   group count, per group: dimension, tag, name (text), entity count, entities
- *   block count, per block: dimension, entity, type of gmsh, its name (text), node count, tags; ascending by
- * dimension and entity SF_MESH_STREAM_END A text is its length in bytes and the bytes, filled with zeros to
- * whole words. The blocks are the elements of all volumes and of the surfaces in named groups; an entity
+ * - SF_MESH_STREAM_BEGIN, version of gmsh (text), error (text; if not empty, only SF_MESH_STREAM_END follows)
+ * - node count, tags [count], positions [count][3]
+ * - group count, per group: dimension, tag, name (text), entity count, entities
+ * - block count, per block: dimension, entity, type of gmsh, its name (text), node count, tags
+ * - SF_MESH_STREAM_END
+ *
+ * A text is its length in bytes and the bytes, filled with zeros to whole words. The blocks ascend by
+ * dimension and entity: they are the elements of all volumes and of the surfaces in named groups; an entity
  * without elements has no block. */
 #define SF_MESHER_VERSION UINT64_C(1)
 #define SF_MESH_STREAM_BEGIN UINT64_C(0x31306873656d6673)

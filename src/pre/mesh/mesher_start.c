@@ -118,10 +118,13 @@ static int spawn(const char *path, const posix_spawn_file_actions_t *actions,
     return posix_spawn(process, path, actions, attributes, arguments, environment);
 }
 
-/* Signals as in a fresh program. */
+/* Signals as in a fresh program; those that users send stay ignored if they are (nohup). */
 static int prepare_signals(posix_spawnattr_t *attributes) {
+    static const int sent[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM};
     sigset_t all, none;
     sigfillset(&all);
+    for (size_t k = 0; k < sizeof sent / sizeof sent[0]; k++)
+        sigdelset(&all, sent[k]);
     sigemptyset(&none);
     int result = posix_spawnattr_setflags(attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
     if (result == 0)
