@@ -5,6 +5,7 @@
 #include "mesher/work.h"
 #include "pre/mesh/mesher_protocol.h"
 
+#include <dlfcn.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,12 +18,18 @@ static void tell(sf_mesher_ask_kind kind, int detail) {
         _exit(1);
 }
 
-/* std::set_new_handler of C++: called when there is no memory. */
-void (*sf_set_new_handler(void (*handler)(void)))(void) __asm__("_ZSt15set_new_handlerPFvvE");
-
 static void no_memory(void) {
     tell(SF_ASK_MEMORY, 0);
     _exit(1);
+}
+
+/* By std::set_new_handler of the C++ library, which gmsh has loaded; nothing else needs C++. */
+static void tell_of_no_memory(void) {
+    void (*(*set_new_handler)(void (*)(void)))(void) = NULL;
+    void *found = dlsym(RTLD_DEFAULT, "_ZSt15set_new_handlerPFvvE");
+    memcpy(&set_new_handler, &found, sizeof found);
+    if (set_new_handler)
+        set_new_handler(no_memory);
 }
 
 /* The destructors of gmsh and its libraries do not run: nothing of them matters any more. */
@@ -33,7 +40,7 @@ int main(void) {
         fputs("softfall-mesh is started by softfall-pre\n", stderr);
         return 2;
     }
-    sf_set_new_handler(no_memory);
+    tell_of_no_memory();
     sf_confine_resources(request.bytes, request.seconds);
     int error = request.confined ? sf_confine_calls() : 0;
     if (error != 0) {
