@@ -103,8 +103,9 @@ static void what_is_no_plain_file_is_refused_at_once(void **state) {
     assert_refused(p->folder, "is not a plain file: it is a folder");
     assert_refused("/dev/zero", "it is a device");
     assert_refused("/proc/self/status", "the system makes it up");
-    assert_refused("/sys/kernel/notes", "the system makes it up");
-    if (geteuid() == 0) /* waits for the next message of the kernel */
+    if (access("/sys/kernel/notes", F_OK) == 0) /* not every container has sysfs */
+        assert_refused("/sys/kernel/notes", "the system makes it up");
+    if (geteuid() == 0 && access("/proc/kmsg", F_OK) == 0) /* waits for the next message of the kernel */
         assert_refused("/proc/kmsg", "the system makes it up");
     assert_refused(program_path(p, "missing"), "cannot be read: No such file");
 }

@@ -50,6 +50,7 @@ mirror=$(apt-get indextargets --format '$(ORIGIN)|$(LABEL)|$(CODENAME)|$(REPO_UR
 system=$(mktemp -d "${TMPDIR:-/var/tmp}/softfall-$release-XXXXXX")
 trap 'rm -rf --one-file-system "$system"' EXIT
 trap 'exit 130' INT TERM
+chmod 755 "$system" # the folder "/" of that system: its users pass
 debootstrap --variant=minbase --include=ca-certificates,git "$release" "$system" "$mirror" >"$system.log" 2>&1 ||
     fail "debootstrap failed; its last line: $(tail -n 1 "$system.log"); all of them: $system.log"
 rm -f "$system.log"

@@ -33,7 +33,12 @@ def run(name, seed, scale):
     function, turns = PARTS[name]
     tally, start = Tally(name), time.monotonic()
     with Place() as place:
-        function(place, tally, random.Random("%d %s" % (seed, name)), max(1, round(turns * scale)))
+        try:
+            function(place, tally, random.Random("%d %s" % (seed, name)), max(1, round(turns * scale)))
+        except RuntimeError as error:  # the undisturbed drop fails afterwards: a fault that ends the part
+            tally.fault(str(error), "after %d attempts" % sum(tally.counts.values()))
+    for fault in tally.faults:
+        print("FAULT " + fault, flush=True)
     tally.seconds = time.monotonic() - start
     return tally
 
@@ -57,9 +62,6 @@ def main():
     for tally in tallies:
         outcomes = ", ".join("%s %d" % item for item in sorted(tally.counts.items()) if item[0] != "faults")
         print("| %s | %d | %s | %d | %.0f |" % (tally.name, sum(tally.counts.values()), outcomes, len(tally.faults), tally.seconds))
-    for tally in tallies:
-        for fault in tally.faults:
-            print("FAULT " + fault)
     return 1 if any(tally.faults for tally in tallies) else 0
 
 

@@ -46,7 +46,8 @@ def attack(place, tally, random, turns):
             value = "%.6e" % draw(random, low, high)
             words += ["--set", "%s=%s" % (key, '"%s %s"' % (value, unit) if unit else value)]
         attempt = " ".join(words)
-        outcome = place.run(place.command("pre", "good.cfg", "-o", "model.h5", "--force", *COARSE, *words))
+        outcome = place.run(place.command("pre", "good.cfg", "-o", "model.h5", "--force", *COARSE, "--set",
+                                          "geometry.time_limit=20 s", *words), seconds=90)
         if outcome.code == 0 and not outcome.fault():
             # A drop may last long by its values alone: interrupted after a while, it ends in the agreed form.
             solve = place.command("solve", "model.h5", "-o", "results.h5", "--force", "--threads", "1")

@@ -114,9 +114,9 @@ class Place:
             raise RuntimeError("softfall-%s: the undisturbed drop fails: %s" % (program, outcome.err))
 
     def chain(self):
-        self.good("pre", "good.cfg", "-o", "model.h5", *COARSE)
-        self.good("solve", "model.h5", "-o", "results.h5", "--threads", "1")
-        self.good("post", "results.h5", "-o", "out")
+        self.good("pre", "good.cfg", "-o", "model.h5", "--force", *COARSE)
+        self.good("solve", "model.h5", "-o", "results.h5", "--force", "--threads", "1")
+        self.good("post", "results.h5", "-o", "out", "--force")
 
     def figures(self, out="out"):
         """What two drops must have in common to the bit: the history and the section through the pad at the peak."""
