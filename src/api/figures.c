@@ -66,6 +66,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .thickness = m->thickness,
                       .informed_strain = sf_model_informed_strain(m),
                       .expected_mesh_error = m->expected_mesh_error > 0 ? m->expected_mesh_error : NAN,
+                      .slit_fraction = m->slit_fraction,
                       .density = sf_material_density(&m->material[0]),
                       .missile_mass = m->missile.mass,
                       .missile_speed = m->missile.speed,

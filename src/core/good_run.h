@@ -40,6 +40,8 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "single nodes collapse or carry the missile alone: the foam is unstable or the mesh too coarse")                  \
     X(mesh, 0.03, 0.25, SF_AS_PERCENT, "expected error of a_max from the mesh",                                          \
       "`/model/expected_mesh_error` of results.h5", "the spacing under the missile is too coarse for its pad")         \
+    X(slit, 0, INFINITY, SF_AS_PERCENT, "nodes at a slit, hole or gap narrower than their supports",                     \
+      "`/model/slit_fraction` of results.h5", "the faces of the slit pass through each other where it closes")          \
     X(informed, 0.01, 0.5, SF_AS_PERCENT, "energy of the foam beyond the strains that its data inform",                \
       "`energy_beyond_data`", "there the material's curve is extrapolated, and with it the peak")                       \
     X(anvil, 0.9, 0.95, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \

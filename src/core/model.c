@@ -72,6 +72,8 @@ static const sf_model_field fields[] = {
     SCALAR(thickness, F64, "/model/thickness", "m", "pad thickness"),
     OPTIONAL_SCALAR(expected_mesh_error, F64, "/model/expected_mesh_error", "1",
                     "expected relative error of a_max from the spacing, 0: not estimated"),
+    OPTIONAL_SCALAR(slit_fraction, F64, "/model/slit_fraction", "1",
+                    "part of the nodes that lie at a slit, hole or gap narrower than their supports"),
     SCALAR(material_count, I64, "/material/count", "1", "number of materials"),
     SCALAR(missile.mass, F64, "/missile/mass", "kg", "mass of the whole missile"),
     SCALAR(missile.speed, F64, "/missile/speed", "m s-1", "speed at t = 0"),

@@ -126,6 +126,7 @@ typedef struct sf_model {
     int64_t symmetry_factor;    /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness;           /* m, of the pad along z */
     double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; 0 = not estimated */
+    double slit_fraction; /* of the nodes: those at a slit, hole or gap narrower than their supports */
     int64_t material_count;     /* 1 to SF_MATERIAL_MAX */
     sf_material *material;      /* [material_count] owned */
     sf_missile_card missile;

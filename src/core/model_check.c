@@ -116,6 +116,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"symmetry factor", (double)m->symmetry_factor, 1, 4},
         {"pad thickness (m)", m->thickness, 1e-6, 1e3},
         {"expected mesh error", m->expected_mesh_error, 0, 1e6},
+        {"slit fraction", m->slit_fraction, 0, 1},
         {"end time (s)", m->run.end_time, 1e-9, 1e3},
         {"step safety", m->run.step_safety, 1e-3, 1},
         {"step limit (s)", m->run.step_limit, 1e-12, 1e3},

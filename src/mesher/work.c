@@ -71,11 +71,6 @@ static bool has_elements(int dimension) {
     return count > 0;
 }
 
-static bool has_suffix(const char *path, const char *suffix) {
-    size_t n = strlen(path), m = strlen(suffix);
-    return n > m && strcasecmp(path + n - m, suffix) == 0;
-}
-
 /* With several threads meshes differ from run to run; the file may have asked for them. */
 static void mesh_on_one_thread(void) {
     static const char *const numbers[] = {"General.NumThreads", "Mesh.MaxNumThreads1D",
@@ -242,7 +237,7 @@ static void write_mesh(void) {
 
 void sf_work_mesh(const char *path) {
     int ierr = 0;
-    bool is_mesh = has_suffix(path, ".msh");
+    bool is_mesh = sf_mesher_has_suffix(path, ".msh");
     if (!has_elements(3) && !is_mesh) {
         mesh_on_one_thread();
         gmshModelMeshGenerate(3, &ierr);

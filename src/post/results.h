@@ -49,6 +49,8 @@ typedef struct sf_results {
     double thickness;            /* m */
     double density;              /* kg m-3 */
     double expected_mesh_error;  /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
+    double slit_fraction;        /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
+                                    the file does not say */
     double informed_strain;      /* -, up to which data inform the material; NaN: the file does not say */
     double missile_mass;         /* kg; 0 with a prescribed motion, like the speed */
     double missile_speed;        /* m s-1 */

@@ -111,7 +111,8 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         sf_h5_read_scalar(r->file, "/model/gravity_along", &r->gravity_along, err) != SF_OK ||
         read_flag(r, "/model/kinematic", &r->kinematic, err) != SF_OK ||
         read_flag(r, "/model/missile_driven", &r->driven, err) != SF_OK || read_mesh_error(r, err) != SF_OK ||
-        read_optional(r, "/model/informed_strain", &r->informed_strain, err) != SF_OK)
+        read_optional(r, "/model/informed_strain", &r->informed_strain, err) != SF_OK ||
+        read_optional(r, "/model/slit_fraction", &r->slit_fraction, err) != SF_OK)
         return err->status;
     return sf_results_check_model(r, err);
 }

@@ -78,6 +78,11 @@ static double mesh_value(const sf_results *r, const sf_figures *f) {
     return r->expected_mesh_error;
 }
 
+static double slit_value(const sf_results *r, const sf_figures *f) {
+    (void)f;
+    return r->slit_fraction;
+}
+
 static double informed_value(const sf_results *r, const sf_figures *f) {
     (void)r;
     return f->energy_beyond_data;

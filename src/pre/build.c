@@ -49,6 +49,7 @@ static void take_domains(sf_domains *d, sf_dual *dual, sf_model *m, sf_build_rep
     report->worst_condition = d->worst_condition;
     memcpy(report->worst_position, d->worst_position, sizeof d->worst_position);
     report->hidden_count = d->hidden_count;
+    m->slit_fraction = (double)d->hidden_count / (double)m->node_count;
     report->hidden_distance = d->hidden_distance;
     memcpy(report->hidden_position, d->hidden_position, sizeof d->hidden_position);
     m->volume = d->volume;

@@ -4,6 +4,7 @@
 #include "pre/mesh/memory.h"
 #include "pre/mesh/mesh_raw.h"
 #include "pre/mesh/mesher.h"
+#include "pre/mesh/mesher_protocol.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -46,11 +47,6 @@ void sf_gmsh_end(sf_gmsh **session) {
     free((*session)->files);
     free(*session);
     *session = NULL;
-}
-
-static bool has_suffix(const char *path, const char *suffix) {
-    size_t n = strlen(path), m = strlen(suffix);
-    return n > m && strcasecmp(path + n - m, suffix) == 0;
 }
 
 /* A file that gmsh asked for by `path`, links unresolved. One that was asked for by its place below the
@@ -184,7 +180,7 @@ static sf_status find_group(const sf_gmsh *session, int dimension, const char *n
         return SF_OK;
     group_names(data, 3, volumes, sizeof volumes);
     group_names(data, 2, surfaces, sizeof surfaces);
-    bool step = has_suffix(session->file, ".step") || has_suffix(session->file, ".stp");
+    bool step = sf_mesher_has_suffix(session->file, ".step") || sf_mesher_has_suffix(session->file, ".stp");
     return SF_FAIL(err, SF_ERR_INPUT,
                    "%s has no %s group \"%s\"; its volume groups: %s; its surface groups: %s%s",
                    session->file, kind_of(dimension), name, volumes, surfaces,

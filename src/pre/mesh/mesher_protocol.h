@@ -5,7 +5,10 @@
 #define SF_PRE_MESH_MESHER_PROTOCOL_H
 
 #include <limits.h>
+#include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
+#include <strings.h>
 
 /* The child's open files: 0 is /dev/null, 1 and 2 are the pipe of what gmsh prints. */
 enum {
@@ -60,5 +63,11 @@ typedef struct sf_mesher_answer {
 #define SF_MESHER_VERSION UINT64_C(1)
 #define SF_MESH_STREAM_BEGIN UINT64_C(0x31306873656d6673)
 #define SF_MESH_STREAM_END UINT64_C(0x646e656873656d00)
+
+/* Does the path end in `suffix`, in letters of either case? So gmsh tells formats apart. */
+static inline bool sf_mesher_has_suffix(const char *path, const char *suffix) {
+    size_t n = strlen(path), m = strlen(suffix);
+    return n > m && strcasecmp(path + n - m, suffix) == 0;
+}
 
 #endif

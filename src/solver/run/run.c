@@ -23,6 +23,7 @@ typedef struct drop {
     sf_recorder r;
     bool replay;            /* repeats steps that are in the files already */
     bool foreign;           /* the checkpoint on the disk is not from before these steps */
+    const char *note;       /* of the program, about the steps that are kept; "": none */
     int64_t saved;          /* step of the checkpoint on the disk, -1: none */
     int64_t published;      /* rows of history in results.h5 */
     int64_t last_step;      /* of a replay */
@@ -156,8 +157,8 @@ static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     sf_run_notes notes = {""};
     const sf_sink sink = sf_run_notes_sink(&notes);
     const sf_extremes extremes = sf_recorder_extremes(&d->r);
-    if (d->run->note[0])
-        sf_sink_tell(&sink, SF_WARNING, "%s", d->run->note);
+    if (d->note[0])
+        sf_sink_tell(&sink, SF_WARNING, "%s", d->note);
     sf_run_tell(d->m, d->s, &extremes, &sink);
     return sf_h5_write_text(file, &info, notes.text, err);
 }
@@ -228,6 +229,7 @@ static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     sf_recorder_free(&d->r);
     sf_state_free(d->s);
     d->foreign = true;
+    d->note = "";
     if (sf_state_create(d->m, d->s, err) != SF_OK || load(d, NULL, err) != SF_OK)
         return err->status;
     d->r.restarts = old.restarts;
@@ -292,7 +294,14 @@ static void end_run(drop *d, const sf_error *failure, sf_error *late) {
 
 sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf_run *run, sf_output *out,
                       const sf_checkpoint *from, sf_error *err) {
-    drop d = {.m = m, .op = op, .s = s, .run = run, .out = out, .start = sf_clock(), .left = INFINITY};
+    drop d = {.m = m,
+              .op = op,
+              .s = s,
+              .run = run,
+              .out = out,
+              .note = run->note,
+              .start = sf_clock(),
+              .left = INFINITY};
     sf_error late = SF_ERROR_INIT;
     d.last_checkpoint = d.start;
     bool taken = false;
