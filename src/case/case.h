@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The case file: libconfig syntax, every dimensional value a string with its unit ("4.6 kg"), read with
- * core/units.h. Groups geometry, pad, material, missile, kernel, solver, output; docs/case.md lists the keys. */
+ * core/units.h. Groups geometry, pad, material, missile, kernel, solver, output; docs/case.md lists the keys.
+ */
 #ifndef SF_CASE_CASE_H
 #define SF_CASE_CASE_H
 
@@ -13,7 +14,8 @@ enum {
     SF_CASE_NAME_SIZE = 128,
     SF_CASE_MAX_GROUPS = 16,
     SF_CASE_MAX_PARAMETERS = 64,
-    SF_CASE_MAX_TIMES = 256
+    SF_CASE_MAX_TIMES = 256,
+    SF_CASE_MAX_LAYERS = 32
 };
 
 /* A variable of a .geo file set by the case; plain numbers, in the geometry's own length unit. */
@@ -36,10 +38,10 @@ typedef struct sf_case {
     char *parameters; /* one line per key that exists: name, value, SI value, given|default; owned */
     sf_geo_source pad;
     sf_geo_source missile;
-    double length_unit;                    /* m per unit of the geometry */
-    double mesh_time_limit;                /* s of processor time for gmsh, per geometry */
-    char *geometry_files; /* what the geometries read (sf_gmsh_files), set when they are meshed; owned */
-    char pad_group[SF_CASE_NAME_SIZE];     /* physical volume group of the pad */
+    double length_unit;     /* m per unit of the geometry */
+    double mesh_time_limit; /* s of processor time for gmsh, per geometry */
+    char *geometry_files;   /* what the geometries read (sf_gmsh_files), set when they are meshed; owned */
+    char pad_group[SF_CASE_NAME_SIZE]; /* physical volume group of the pad; of layers, for sentences: all */
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */
     int fixed_count;                       /* physical surface groups held in all components */
     char fixed_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
@@ -51,11 +53,16 @@ typedef struct sf_case {
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
     double mesh_error_limit;               /* -, expected error of a_max above which the case is refused */
-    int kinematic;                /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
-    int shape_rule;               /* 0 "auto": sphere if the surface is one, 1 "sphere", 2 "surface" */
-    double support_ratio;         /* R/h */
-    double condition_limit;       /* of the moment matrix */
-    sf_material material;         /* owned by the case until moved into a model */
+    int kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
+    int shape_rule;         /* 0 "auto": sphere if the surface is one, 1 "sphere", 2 "surface" */
+    double support_ratio;   /* R/h */
+    double condition_limit; /* of the moment matrix */
+    sf_material material;   /* owned by the case until moved into a model; none in a case of layers */
+    int layer_count;        /* groups of `materials`; 0: one material */
+    sf_material *layer;     /* [layer_count] with the names of their volume groups; owned likewise */
+    int interface_count;    /* pairs of layers that slide on each other; all others are tied */
+    char interface_name[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE]; /* "NAME/NAME" */
+    int interface_layer[SF_CASE_MAX_GROUPS][2];                 /* their places in `layer` */
     sf_missile_card missile_card; /* sphere_* are left zero: they come from the geometry */
     int64_t motion_count;         /* points of the missile's prescribed motion; 0 = it is free */
     double *motion_time;          /* [motion_count] s; owned until moved into a model, like the next */

@@ -399,6 +399,9 @@ void sf_case_free(sf_case *c) {
     free(c->pad.path);
     free(c->missile.path);
     sf_material_free(&c->material);
+    for (int k = 0; c->layer && k < c->layer_count; k++)
+        sf_material_free(&c->layer[k]);
+    free(c->layer);
     free(c->motion_time);
     free(c->motion_displacement);
     memset(c, 0, sizeof *c);

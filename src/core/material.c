@@ -116,6 +116,7 @@ sf_status sf_material_check(const sf_material *m, int64_t index, sf_error *err) 
 }
 
 uint64_t sf_material_hash(uint64_t hash, const sf_material *m) {
+    hash = sf_hash(hash, m->name, strlen(m->name));
     hash = sf_hash(hash, m->law->name, strlen(m->law->name));
     for (int k = 0; k < m->law->parameter_count; k++)
         if (m->law->parameter[k].kind <= SF_PARAMETER_CHOICE) /* 8 bytes each */

@@ -6,9 +6,12 @@
 
 #include "core/law.h"
 
+enum { SF_MATERIAL_NAME_SIZE = 64 };
+
 typedef struct sf_material {
-    const sf_law *law; /* constant, of the table */
-    void *card;        /* law->card_size bytes, owned; its curves too */
+    const sf_law *law;                /* constant, of the table */
+    void *card;                       /* law->card_size bytes, owned; its curves too */
+    char name[SF_MATERIAL_NAME_SIZE]; /* of its layer; "" in a pad of one material */
 } sf_material;
 
 /* A card of zeros. */
@@ -30,7 +33,7 @@ double sf_material_length(const sf_material *material, double spacing);
  * `index`, parameter, value and bound. */
 sf_status sf_material_check(const sf_material *material, int64_t index, sf_error *err);
 
-/* The hash continued over law, parameters and curves. */
+/* The hash continued over name, law, parameters and curves. */
 uint64_t sf_material_hash(uint64_t hash, const sf_material *material);
 
 /* True if the value at `parameter` has an effect. */

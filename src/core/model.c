@@ -54,6 +54,10 @@ static const sf_model_field fields[] = {
     ARRAY(contact_node, I32, contact_count, 0, 1, "/contact/node", "1", "node that the missile may touch"),
     ARRAY(contact_area, F64, contact_count, 0, 1, "/contact/area", "m2",
           "area of the surface that belongs to it"),
+    OPTIONAL_SCALAR(tie_count, I64, "/tie/count", "1", "number of ties between layers"),
+    OPTIONAL_ARRAY(tie_node, I32, tie_count, "/tie/node", "1", "tied node"),
+    OPTIONAL_ARRAY(tie_other, I32, tie_count, "/tie/other", "1", "node of another layer at the same place"),
+    OPTIONAL_ARRAY(tie_mask, U8, tie_count, "/tie/mask", "1", "tied components: bit 0 x, 1 y, 2 z"),
     SCALAR(surface_node_count, I64, "/missile/surface_node_count", "1", "nodes of the missile's surface"),
     SCALAR(surface_triangle_count, I64, "/missile/surface_triangle_count", "1", "triangles of it"),
     ARRAY(surface_position, F64, surface_node_count, 0, 3, "/missile/surface_position", "m",
@@ -131,14 +135,15 @@ double sf_model_informed_strain(const sf_model *model) {
     return least;
 }
 
-sf_status sf_model_take_material(sf_model *model, sf_material *material, sf_error *err) {
-    model->node_material = sf_alloc(err, (unsigned long)model->node_count, 1, "materials of the nodes");
-    model->material = sf_alloc(err, 1, sizeof *model->material, "materials");
+sf_status sf_model_take_materials(sf_model *model, sf_material *material, int count, sf_error *err) {
+    if (!model->node_material)
+        model->node_material = sf_alloc(err, (unsigned long)model->node_count, 1, "materials of the nodes");
+    model->material = sf_alloc(err, (unsigned long)count, sizeof *model->material, "materials");
     if (err->status != SF_OK)
         return err->status;
-    model->material_count = 1;
-    model->material[0] = *material;
-    *material = (sf_material){0};
+    model->material_count = count;
+    memcpy(model->material, material, (size_t)count * sizeof *material);
+    memset(material, 0, (size_t)count * sizeof *material);
     return SF_OK;
 }
 

@@ -107,6 +107,13 @@ typedef struct sf_model {
     int32_t *contact_node; /* [contact_count] ascending */
     double *contact_area;  /* [contact_count] m2, of the undeformed surface that belongs to the node */
 
+    /* Ties between the layers of the pad: two nodes at one place, of two clouds, with the same components of
+     * u_h. No tie follows from the others and from what is held. */
+    int64_t tie_count;
+    int32_t *tie_node;  /* [tie_count] ascending */
+    int32_t *tie_other; /* [tie_count] the node tied to it, of a later layer */
+    uint8_t *tie_mask;  /* [tie_count] SF_FIX_* bits: the components that are tied */
+
     /* The missile's surface at t = 0, triangles turned outwards. */
     int64_t surface_node_count;
     int64_t surface_triangle_count;
@@ -126,8 +133,8 @@ typedef struct sf_model {
     int64_t symmetry_factor;    /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness;           /* m, of the pad along z */
     double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; 0 = not estimated */
-    double slit_fraction; /* of the nodes: those at a slit, hole or gap narrower than their supports */
-    int64_t material_count;     /* 1 to SF_MATERIAL_MAX */
+    double slit_fraction;       /* of the nodes: those at a slit, hole or gap narrower than their supports */
+    int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */
     sf_material *material;      /* [material_count] owned */
     sf_missile_card missile;
     sf_run_options run;
@@ -156,8 +163,9 @@ static inline const sf_material *sf_model_material(const sf_model *model, int64_
  * they do not say. */
 double sf_model_informed_strain(const sf_model *model);
 
-/* A model of this one material: moves it into the list, and gives it to every node. node_count is known. */
-sf_status sf_model_take_material(sf_model *model, sf_material *material, sf_error *err);
+/* Moves `count` materials into the list. node_material is allocated and, if there is one material only, stays
+ * zero; node_count is known. */
+sf_status sf_model_take_materials(sf_model *model, sf_material *material, int count, sf_error *err);
 
 /* Releases every array and zeroes the model. Safe on a zeroed model. */
 void sf_model_free(sf_model *model);

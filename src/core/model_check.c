@@ -3,6 +3,7 @@
 #include "core/motion.h"
 
 #include <math.h>
+#include <string.h>
 
 /* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
 static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr,
@@ -219,6 +220,22 @@ static sf_status check_constraints(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
+/* A tie joins two nodes at one place, the first of an earlier layer. */
+static sf_status check_ties(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->tie_count; k++) {
+        int64_t a = m->tie_node[k], b = m->tie_other[k];
+        if (a < 0 || b <= a || b >= m->node_count || (k > 0 && a < m->tie_node[k - 1]) ||
+            m->tie_mask[k] < 1 || m->tie_mask[k] > (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
+            return SF_FAIL(err, SF_ERR_MODEL, "tie %lld joins the nodes %lld and %lld of %lld with mask %d",
+                           (long long)k, (long long)a, (long long)b, (long long)m->node_count,
+                           m->tie_mask[k]);
+        if (memcmp(&m->position[3 * a], &m->position[3 * b], 3 * sizeof *m->position) != 0)
+            return SF_FAIL(err, SF_ERR_MODEL, "tie %lld joins the nodes %lld and %lld, which are apart",
+                           (long long)k, (long long)a, (long long)b);
+    }
+    return SF_OK;
+}
+
 static sf_status check_frame_times(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; k < m->frame_time_count; k++)
         if (m->frame_time[k] < 0 || (k > 0 && m->frame_time[k] < m->frame_time[k - 1]))
@@ -245,7 +262,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         check_edges(m, err) != SF_OK ||
         check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
         check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK ||
-        check_areas(m, err) != SF_OK || check_constraints(m, err) != SF_OK)
+        check_areas(m, err) != SF_OK || check_constraints(m, err) != SF_OK || check_ties(m, err) != SF_OK)
         return err->status;
     return check_mesh(m, err);
 }

@@ -10,6 +10,7 @@
 #include "pre/drop_check.h"
 #include "pre/cloud/dual.h"
 #include "pre/cloud/group_check.h"
+#include "pre/cloud/layers.h"
 #include "pre/cloud/surface_area.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/mesh/surface_orient.h"
@@ -43,30 +44,61 @@ static void take_mesh(sf_mesh *mesh, sf_model *m, sf_build_report *report) {
     mesh->node_count = mesh->cell_count = 0;
 }
 
-static void take_domains(sf_domains *d, sf_dual *dual, sf_model *m, sf_build_report *report) {
-    report->enlarged_count = d->enlarged_count;
-    report->largest_enlargement = d->largest_enlargement;
-    report->worst_condition = d->worst_condition;
-    memcpy(report->worst_position, d->worst_position, sizeof d->worst_position);
-    report->hidden_count = d->hidden_count;
-    m->slit_fraction = (double)d->hidden_count / (double)m->node_count;
-    report->hidden_distance = d->hidden_distance;
-    memcpy(report->hidden_position, d->hidden_position, sizeof d->hidden_position);
-    m->volume = d->volume;
-    m->domain_nnz = d->ptr[m->node_count];
-    m->domain_ptr = d->ptr;
-    m->domain_node = d->node;
-    m->domain_b = d->b;
-    m->phi_nnz = d->phi_ptr[m->node_count];
-    m->phi_ptr = d->phi_ptr;
-    m->phi_node = d->phi_node;
-    m->phi_value = d->phi_value;
-    m->edge_nnz = 2 * dual->edge_count;
-    m->edge_ptr = dual->edge_ptr;
-    m->edge_node = dual->edge_node;
-    memset(d, 0, sizeof *d);
-    dual->edge_ptr = NULL;
-    dual->edge_node = NULL;
+/* The worst of all layers. */
+static void report_domains(const sf_domains *d, sf_build_report *report) {
+    report->enlarged_count += d->enlarged_count;
+    report->largest_enlargement = fmax(report->largest_enlargement, d->largest_enlargement);
+    if (d->worst_condition > report->worst_condition) {
+        report->worst_condition = d->worst_condition;
+        memcpy(report->worst_position, d->worst_position, sizeof d->worst_position);
+    }
+    if (d->hidden_count > 0 && (report->hidden_count == 0 || d->hidden_distance < report->hidden_distance)) {
+        report->hidden_distance = d->hidden_distance;
+        memcpy(report->hidden_position, d->hidden_position, sizeof d->hidden_position);
+    }
+    report->hidden_count += d->hidden_count;
+}
+
+/* Puts a layer's array of `count` items behind the `used` items in *array, and releases it: the first one is
+ * taken as it is. */
+static void append(void *array, int64_t used, void **more, int64_t count, size_t size, sf_error *err) {
+    void *old;
+    memcpy(&old, array, sizeof old);
+    void *all = old ? realloc(old, (size_t)(used + count) * size) : *more;
+    if (!all) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a layer of %lld items", (long long)count);
+        return;
+    }
+    memcpy(array, &all, sizeof all);
+    if (old) {
+        memcpy((char *)all + (size_t)used * size, *more, (size_t)count * size);
+        free(*more);
+    }
+    *more = NULL;
+}
+
+/* The lists of a layer of `n` nodes, the first of which is number `first`: rows behind those of the layers
+ * before. */
+static void append_list(int64_t **ptr, int32_t **node, int64_t *nnz, int64_t **more_ptr, int32_t **more_node,
+                        int64_t first, int64_t n, sf_error *err) {
+    int64_t count = (*more_ptr)[n];
+    for (int64_t k = 0; k < count; k++)
+        (*more_node)[k] += (int32_t)first;
+    for (int64_t k = 0; k <= n; k++)
+        (*more_ptr)[k] += *nnz;
+    append(ptr, first, (void **)more_ptr, n + 1, sizeof **ptr, err);
+    append(node, *nnz, (void **)more_node, count, sizeof **node, err);
+    *nnz += count;
+}
+
+/* The domains and edges of a layer of `n` nodes, the first of which is number `first` of the model. */
+static void take_domains(sf_domains *d, sf_dual *dual, int64_t first, int64_t n, sf_model *m, sf_error *err) {
+    append(&m->volume, first, (void **)&d->volume, n, sizeof *m->volume, err);
+    append(&m->domain_b, m->domain_nnz, (void **)&d->b, d->ptr[n], 3 * sizeof *m->domain_b, err);
+    append_list(&m->domain_ptr, &m->domain_node, &m->domain_nnz, &d->ptr, &d->node, first, n, err);
+    append(&m->phi_value, m->phi_nnz, (void **)&d->phi_value, d->phi_ptr[n], sizeof *m->phi_value, err);
+    append_list(&m->phi_ptr, &m->phi_node, &m->phi_nnz, &d->phi_ptr, &d->phi_node, first, n, err);
+    append_list(&m->edge_ptr, &m->edge_node, &m->edge_nnz, &dual->edge_ptr, &dual->edge_node, first, n, err);
 }
 
 /* The surface that the missile may touch is the pad's upper side, and only that. */
@@ -92,42 +124,107 @@ static sf_status check_facing(const sf_case *c, const sf_mesh *mesh, const sf_du
     return SF_OK;
 }
 
-/* Spacing, supports, domains, masses, and contact_area [node_count], m2; the mesh is whole until take_mesh.
- */
-static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, double **contact_area,
-                             sf_build_report *report, sf_error *err) {
-    sf_dual dual = {0};
+static double volume_of(const sf_mesh *mesh) {
+    double sum = 0;
+    for (int64_t k = 0; k < mesh->cell_count; k++)
+        sum += sf_mesh_cell_volume(mesh, k);
+    return sum;
+}
+
+static void report_invariants(const sf_invariants *v, sf_invariants *worst) {
+    worst->unity = fmax(worst->unity, v->unity);
+    worst->linear = fmax(worst->linear, v->linear);
+    worst->volume = fmax(worst->volume, v->volume);
+    worst->telescope = fmax(worst->telescope, v->telescope);
+    worst->shape = fmax(worst->shape, v->shape);
+}
+
+/* Spacing, supports, domains and masses of a layer, whose nodes begin at number `first`; the dual's edges
+ * move. `volume`: m3, of the mesh. */
+static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dual, double volume,
+                             const sf_material *material, int64_t first, sf_model *m, sf_build_report *report,
+                             sf_error *err) {
     sf_domains domains = {0};
+    sf_invariants invariants;
     int64_t n = mesh->node_count;
+    double *spacing = m->spacing + first, *support = m->support + first;
+    sf_cloud_spacing(mesh, dual, spacing);
+    for (int64_t i = 0; i < n; i++)
+        support[i] = c->support_ratio * spacing[i];
+    if (sf_domains_build(mesh, dual, c->condition_limit, support, &domains, err) == SF_OK &&
+        sf_invariants_measure(mesh, dual, &domains, spacing, volume, &invariants, err) == SF_OK &&
+        sf_invariants_check(&invariants, err) == SF_OK) {
+        for (int64_t i = 0; i < n; i++)
+            m->mass[first + i] = sf_material_density(material) * domains.volume[i];
+        report_invariants(&invariants, &report->invariants);
+        report_domains(&domains, report);
+        take_domains(&domains, dual, first, n, m, err);
+    }
+    sf_domains_free(&domains);
+    return err->status;
+}
+
+/* Each layer as a mesh of its own. */
+static sf_status build_layers(const sf_case *c, const sf_mesh *mesh, const sf_layers *layers, sf_model *m,
+                              sf_build_report *report, sf_error *err) {
+    for (int k = 0; k < layers->count && err->status == SF_OK; k++) {
+        sf_mesh part;
+        sf_dual dual = {0};
+        if (sf_layers_part(mesh, layers, k, &part, err) == SF_OK &&
+            sf_dual_build(&part, &dual, err) == SF_OK &&
+            build_layer(c, &part, &dual, volume_of(&part), &c->layer[k], layers->first[k], m, report, err) ==
+                SF_OK)
+            memset(m->node_material + layers->first[k], k, (size_t)(layers->first[k + 1] - layers->first[k]));
+        sf_dual_free(&dual);
+        sf_mesh_free(&part);
+    }
+    return err->status;
+}
+
+static sf_status build_contact(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual,
+                               const sf_layers *layers, double *area, sf_error *err) {
+    const sf_node_set *contact = sf_mesh_find_set(mesh, c->contact_group);
+    if (contact && sf_layers_area(mesh, dual, layers, contact, area, err) == SF_OK)
+        check_facing(c, mesh, dual, contact, err);
+    return err->status;
+}
+
+/* Arrays over the nodes. */
+static sf_status alloc_cloud(sf_model *m, int64_t count, double **contact_area, sf_error *err) {
+    unsigned long n = (unsigned long)count;
+    m->spacing = sf_alloc(err, n, sizeof *m->spacing, "spacing");
+    m->support = sf_alloc(err, n, sizeof *m->support, "supports");
+    m->mass = sf_alloc(err, n, sizeof *m->mass, "masses");
+    m->node_material = sf_alloc(err, n, 1, "materials of the nodes");
+    *contact_area = sf_alloc(err, n, sizeof **contact_area, "areas");
+    return err->status;
+}
+
+/* Spacing, supports, domains, masses, and contact_area [node_count], m2. The mesh is whole for the checks,
+ * then parted, and ends in the model. */
+static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_layers *layers,
+                             double **contact_area, sf_build_report *report, sf_error *err) {
+    sf_dual dual = {0};
     if (sf_mesh_check(mesh, &report->mesh_volume, err) != SF_OK || sf_cloud_reorder(mesh, err) != SF_OK ||
         sf_dual_build(mesh, &dual, err) != SF_OK || sf_group_check(c, mesh, &dual, err) != SF_OK ||
-        sf_connectivity_check(mesh, &dual, err) != SF_OK)
+        sf_connectivity_check(mesh, &dual, err) != SF_OK ||
+        sf_layers_build(c, mesh, &dual, layers, err) != SF_OK)
         goto done;
     sf_cloud_hash(mesh, report->mesh_hash);
-    m->spacing = sf_alloc(err, (unsigned long)n, sizeof *m->spacing, "spacing");
-    m->support = sf_alloc(err, (unsigned long)n, sizeof *m->support, "supports");
-    m->mass = sf_alloc(err, (unsigned long)n, sizeof *m->mass, "masses");
-    *contact_area = sf_alloc(err, (unsigned long)n, sizeof **contact_area, "areas");
-    if (err->status != SF_OK)
+    if (alloc_cloud(m, layers->first[layers->count], contact_area, err) != SF_OK ||
+        build_contact(c, mesh, &dual, layers, *contact_area, err) != SF_OK)
         goto done;
-    sf_cloud_spacing(mesh, &dual, m->spacing);
-    const sf_node_set *contact = sf_mesh_find_set(mesh, c->contact_group);
-    if (contact && (sf_surface_area(mesh, &dual, contact, *contact_area, err) != SF_OK ||
-                    check_facing(c, mesh, &dual, contact, err) != SF_OK))
+    if (layers->count > 1) {
+        if (build_layers(c, mesh, layers, m, report, err) != SF_OK ||
+            sf_layers_split(mesh, &dual, layers, err) != SF_OK)
+            goto done;
+    } else if (build_layer(c, mesh, &dual, report->mesh_volume, c->layer ? c->layer : &c->material, 0, m,
+                           report, err) != SF_OK) {
         goto done;
-    for (int64_t i = 0; i < n; i++)
-        m->support[i] = c->support_ratio * m->spacing[i];
-    if (sf_domains_build(mesh, &dual, c->condition_limit, m->support, &domains, err) != SF_OK ||
-        sf_invariants_measure(mesh, &dual, &domains, m->spacing, report->mesh_volume, &report->invariants,
-                              err) != SF_OK ||
-        sf_invariants_check(&report->invariants, err) != SF_OK)
-        goto done;
-    for (int64_t i = 0; i < n; i++)
-        m->mass[i] = sf_material_density(&c->material) * domains.volume[i];
+    }
     take_mesh(mesh, m, report);
-    take_domains(&domains, &dual, m, report);
+    m->slit_fraction = (double)report->hidden_count / (double)m->node_count;
 done:
-    sf_domains_free(&domains);
     sf_dual_free(&dual);
     return err->status;
 }
@@ -210,11 +307,48 @@ static sf_status mark_sliding(const sf_case *c, const sf_mesh *mesh, const sf_mo
     return SF_OK;
 }
 
+/* Nodes of several layers at one place that are tied altogether move together: the heaviest of them is the
+ * contact point of all. */
+static int32_t contact_point(const sf_layers *layers, const sf_model *m, int32_t node) {
+    int32_t origin = layers->origin[node], best = node;
+    for (int64_t k = layers->copy_ptr[origin]; k < layers->copy_ptr[origin + 1]; k++) {
+        int32_t other = layers->copy[k];
+        if (layers->together[other] == layers->together[node] &&
+            (m->mass[other] > m->mass[best] || (m->mass[other] == m->mass[best] && other < best)))
+            best = other;
+    }
+    return best;
+}
+
+/* The points of the contact set: [*count] ascending nodes, owned by the caller. `area` [node_count] of the
+ * nodes becomes that of the points. */
+static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const sf_node_set *set,
+                               double *area, int64_t *count, sf_error *err) {
+    uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
+    int32_t *list = sf_alloc(err, (unsigned long)set->count, sizeof *list, "contact points");
+    *count = 0;
+    for (int64_t k = 0; point && k < set->count; k++) {
+        int32_t node = set->node[k], best = contact_point(layers, m, node);
+        point[best] = 1;
+        area[best] += best == node ? 0 : area[node];
+    }
+    for (int32_t i = 0; point && list && i < (int32_t)m->node_count; i++)
+        if (point[i])
+            list[(*count)++] = i;
+    free(point);
+    if (err->status == SF_OK)
+        return list;
+    free(list);
+    return NULL;
+}
+
 /* Groups to constrained nodes (with their components) and contact points. */
-static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const double *contact_area, sf_model *m,
-                            sf_build_report *report, sf_error *err) {
+static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_layers *layers,
+                            double *contact_area, sf_model *m, sf_build_report *report, sf_error *err) {
     uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
     uint8_t *base = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    int32_t *contact = NULL;
+    int64_t points = 0;
     if (err->status != SF_OK || mark_symmetry(c, mesh, m, mask, err) != SF_OK)
         goto done;
     for (int g = 0; g < c->fixed_count; g++) {
@@ -226,31 +360,32 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const double 
             base[set->node[k]] = 1;
         }
     }
-    if (mark_sliding(c, mesh, m, mask, base, err) != SF_OK)
+    if (mark_sliding(c, mesh, m, mask, base, err) != SF_OK ||
+        sf_layers_hold(layers, mask, base, m, err) != SF_OK)
         goto done;
     for (int64_t i = 0; i < m->node_count; i++)
         m->fixed_count += mask[i] != 0;
-    const sf_node_set *contact = need_set(mesh, "pad.contact", c->contact_group, err);
-    if (!contact)
+    const sf_node_set *set = need_set(mesh, "pad.contact", c->contact_group, err);
+    if (!set || !(contact = gather_contact(layers, m, set, contact_area, &points, err)))
         goto done;
-    m->contact_node = sf_alloc(err, (unsigned long)contact->count, sizeof *m->contact_node, "contact points");
-    m->contact_area = sf_alloc(err, (unsigned long)contact->count, sizeof *m->contact_area, "contact points");
+    m->contact_node = sf_alloc(err, (unsigned long)points, sizeof *m->contact_node, "contact points");
+    m->contact_area = sf_alloc(err, (unsigned long)points, sizeof *m->contact_area, "contact points");
     m->fixed_node = sf_alloc(err, (unsigned long)m->fixed_count, sizeof *m->fixed_node, "constraints");
     m->fixed_mask = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     m->fixed_base = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     if (err->status != SF_OK)
         goto done;
     /* A node that is held altogether cannot give way to the missile: it is no contact point. */
-    for (int64_t k = 0; k < contact->count; k++)
-        if (mask[contact->node[k]] != (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
-            m->contact_node[m->contact_count++] = contact->node[k];
+    for (int64_t k = 0; k < points; k++)
+        if (mask[contact[k]] != (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
+            m->contact_node[m->contact_count++] = contact[k];
     int64_t free_along = 0; /* can be pressed */
-    for (int64_t k = 0; k < contact->count; k++)
-        free_along += !(mask[contact->node[k]] & SF_FIX_Z);
+    for (int64_t k = 0; k < points; k++)
+        free_along += !(mask[contact[k]] & SF_FIX_Z);
     report->contact_held = free_along == 0;
     if (report->contact_held) {
-        memcpy(m->contact_node, contact->node, (size_t)contact->count * sizeof *contact->node);
-        m->contact_count = contact->count;
+        memcpy(m->contact_node, contact, (size_t)points * sizeof *contact);
+        m->contact_count = points;
     }
     for (int64_t k = 0; k < m->contact_count; k++)
         m->contact_area[k] = contact_area[m->contact_node[k]];
@@ -263,6 +398,7 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const double 
         m->fixed_base[used++] = base[i];
     }
 done:
+    free(contact);
     free(mask);
     free(base);
     return err->status;
@@ -322,7 +458,8 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
         return err->status;
     m->frame_time_count = c->frame_time_count;
     memcpy(m->frame_time, c->frame_time, (size_t)c->frame_time_count * sizeof *m->frame_time);
-    if (sf_model_take_material(m, &c->material, err) != SF_OK)
+    if (sf_model_take_materials(m, c->layer ? c->layer : &c->material, c->layer ? c->layer_count : 1, err) !=
+        SF_OK)
         return err->status;
     m->motion_count = c->motion_count;
     m->motion_time = c->motion_time;
@@ -441,8 +578,9 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     memset(m, 0, sizeof *m);
     memset(report, 0, sizeof *report);
     double *contact_area = NULL;
-    if (build_cloud(c, mesh, m, &contact_area, report, err) == SF_OK &&
-        build_sets(c, mesh, contact_area, m, report, err) == SF_OK &&
+    sf_layers layers = {0};
+    if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
+        build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, surface, m, err) == SF_OK &&
         take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
@@ -453,6 +591,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
             tell_slits(report, sink);
         }
     }
+    sf_layers_free(&layers);
     free(contact_area);
     if (err->status != SF_OK)
         sf_model_free(m);

@@ -7,14 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The pad of the open geometry. */
+static sf_status read_pad(sf_gmsh *session, const sf_case *c, sf_mesh *mesh, sf_error *err) {
+    const char *group[SF_CASE_MAX_LAYERS];
+    for (int k = 0; k < c->layer_count; k++)
+        group[k] = c->layer[k].name;
+    const sf_pad_volumes volumes = {c->layer_count, group, true, c->missile.path != NULL};
+    return c->layer_count > 0 ? sf_gmsh_read_layers(session, &volumes, c->length_unit, mesh, err)
+                              : sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err);
+}
+
 /* Pad mesh and missile surface, from one geometry or two. */
 static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
                                char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
     sf_gmsh *session = NULL;
     if (sf_gmsh_begin(&session, err) == SF_OK)
         sf_gmsh_limit(session, c->mesh_time_limit, sink);
-    if (session && sf_gmsh_load(session, &c->pad, err) == SF_OK &&
-        sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err) == SF_OK &&
+    if (session && sf_gmsh_load(session, &c->pad, err) == SF_OK && read_pad(session, c, mesh, err) == SF_OK &&
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK))
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
     free(c->geometry_files);

@@ -110,5 +110,7 @@ void sf_cloud_hash(const sf_mesh *mesh, char text[17]) {
     hash = sf_hash_bytes(hash, mesh->cell_type, (size_t)mesh->cell_count);
     hash = sf_hash_bytes(hash, mesh->cell_node,
                          (size_t)mesh->cell_ptr[mesh->cell_count] * sizeof *mesh->cell_node);
+    if (mesh->cell_layer)
+        hash = sf_hash_bytes(hash, mesh->cell_layer, (size_t)mesh->cell_count);
     snprintf(text, 17, "%016llx", (unsigned long long)hash);
 }

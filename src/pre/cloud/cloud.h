@@ -20,7 +20,7 @@ enum { SF_SPACING_NEIGHBOURS = 8 };
  * [node_count]. */
 void sf_cloud_spacing(const sf_mesh *mesh, const sf_dual *dual, double *spacing);
 
-/* FNV-1a (64 bit) of positions, cell types and cell vertices, as 16 hex digits and NUL. */
+/* FNV-1a (64 bit) of positions, cell types, vertices and layers, as 16 hex digits and NUL. */
 void sf_cloud_hash(const sf_mesh *mesh, char text[17]);
 
 #endif

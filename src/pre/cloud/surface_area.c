@@ -24,11 +24,13 @@ static bool is_inside(const sf_boundary_face *face, const uint8_t *member) {
     return inside;
 }
 
-sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, double *area,
-                          sf_error *err) {
+sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, int layer,
+                          double *area, sf_error *err) {
     uint8_t *member = mark_members(mesh, set, err);
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         const sf_boundary_face *face = &dual->face[f];
+        if (layer != SF_ANY_LAYER && mesh->cell_layer[face->cell] != layer)
+            continue;
         for (int k = 0; is_inside(face, member) && k < face->size; k++) {
             sf_facet_triangle part[2];
             double weight[2][4];

@@ -6,9 +6,12 @@
 
 #include "pre/cloud/dual.h"
 
-/* Adds to area [mesh->node_count], m2, the share of each node by the median dual, as the volumes do. */
-sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, double *area,
-                          sf_error *err);
+enum { SF_ANY_LAYER = -1 };
+
+/* Adds to area [mesh->node_count], m2, the share of each node by the median dual, as the volumes do; of the
+ * faces of one layer only, unless it is SF_ANY_LAYER. */
+sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, int layer,
+                          double *area, sf_error *err);
 
 typedef struct sf_surface_sides {
     double area;   /* m2 */

@@ -214,7 +214,7 @@ static int face_vertices(int gmsh_type) {
 /* Where the elements of one entity go. */
 typedef struct destination {
     sf_raw_mesh *raw;
-    bool chosen;   /* of cells */
+    int chosen;    /* of cells: 1 + place of the group, or 0 */
     int32_t group; /* of faces */
 } destination;
 
@@ -263,15 +263,23 @@ static sf_status read_nodes(const sf_gmsh *session, sf_raw_mesh *raw, sf_error *
     return err->status;
 }
 
-/* All cells of all volumes; those of `chosen` (may be NULL) are marked. */
-static sf_status read_cells(const sf_gmsh *session, const sf_geo_group *chosen, sf_raw_mesh *raw,
-                            sf_error *err) {
+/* 1 + place of the group that the volume belongs to; 0: of none. */
+static int chosen_of(const sf_geo_group *const *chosen, int count, int32_t entity) {
+    for (int k = 0; k < count; k++)
+        if (sf_geo_group_has(chosen[k], entity))
+            return k + 1;
+    return 0;
+}
+
+/* All cells of all volumes; those of the `count` groups chosen are marked. */
+static sf_status read_cells(const sf_gmsh *session, const sf_geo_group *const *chosen, int count,
+                            sf_raw_mesh *raw, sf_error *err) {
     const sf_geo_data *data = &session->open.data;
     for (size_t k = 0; k < data->block_count && err->status == SF_OK; k++) {
         const sf_geo_block *block = &data->block[k];
         if (block->dimension != 3)
             continue;
-        const destination to = {.raw = raw, .chosen = chosen && sf_geo_group_has(chosen, block->entity)};
+        const destination to = {.raw = raw, .chosen = chosen_of(chosen, count, block->entity)};
         add_elements(session, &to, block, err);
     }
     return err->status;
@@ -289,6 +297,70 @@ static sf_status check_cells(const sf_gmsh *session, const sf_geo_group *chosen,
         return SF_FAIL(err, SF_ERR_INPUT, "%s: the volume group \"%s\" is empty", session->file,
                        chosen->name);
     return SF_OK;
+}
+
+/* Marks the nodes of the chosen cells, by place; owned by the caller. */
+static uint8_t *mark_chosen(const sf_raw_mesh *raw, const sf_tag_index *index, sf_error *err) {
+    uint8_t *mark = sf_alloc(err, raw->node_count, 1, "nodes of the layers");
+    for (size_t k = 0; mark && k < raw->cell_count; k++)
+        for (int a = 0; raw->cell_chosen[k] && a < SF_RAW_CELL; a++) {
+            size_t tag = raw->cell_node[SF_RAW_CELL * k + (size_t)a];
+            size_t place = tag ? sf_raw_mesh_find(raw, index, tag) : SIZE_MAX;
+            if (place != SIZE_MAX)
+                mark[place] = 1;
+        }
+    return mark;
+}
+
+/* Some place (geometry's unit) of an element of the block that has a face's worth of marked nodes, or, with
+ * `any`, of its first element; NULL: none. */
+static const double *find_touch(const sf_raw_mesh *raw, const sf_tag_index *index, const uint8_t *mark,
+                                const sf_geo_block *block, bool any) {
+    int vertices = 0;
+    cell_code(block->type, &vertices);
+    for (size_t k = 0; vertices > 0 && k + (size_t)vertices <= block->length; k += (size_t)vertices) {
+        const double *at = NULL;
+        int shared = any ? 3 : 0;
+        for (int a = 0; a < vertices; a++) {
+            size_t place = sf_raw_mesh_find(raw, index, block->node[k + (size_t)a]);
+            if (place == SIZE_MAX || (!any && !mark[place]))
+                continue;
+            at = &raw->xyz[3 * place];
+            shared++;
+        }
+        if (shared >= 3 && at)
+            return at;
+    }
+    return NULL;
+}
+
+/* No volume without a layer may belong to the pad. */
+static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const *chosen,
+                               const sf_pad_volumes *volumes, double unit, const sf_raw_mesh *raw,
+                               sf_error *err) {
+    const sf_geo_data *data = &session->open.data;
+    sf_tag_index *index = sf_raw_mesh_index(raw, err);
+    uint8_t *mark = index ? mark_chosen(raw, index, err) : NULL;
+    for (size_t k = 0; mark && k < data->block_count && err->status == SF_OK; k++) {
+        const sf_geo_block *block = &data->block[k];
+        if (block->dimension != 3 || chosen_of(chosen, volumes->count, block->entity))
+            continue;
+        const double *at = find_touch(raw, index, mark, block, volumes->alone);
+        const char *name = "";
+        for (size_t g = 0; g < data->group_count; g++)
+            if (data->group[g].dimension == 3 && sf_geo_group_has(&data->group[g], block->entity))
+                name = data->group[g].name;
+        if (at)
+            SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s: volume %d%s%s%s, at (%.4g, %.4g, %.4g) mm, has no material: the case has no group of "
+                "this name in materials",
+                session->file, block->entity, *name ? " of the group \"" : " (of no named group)", name,
+                *name ? "\"" : "", 1e3 * unit * at[0], 1e3 * unit * at[1], 1e3 * unit * at[2]);
+    }
+    free(mark);
+    free(index);
+    return err->status;
 }
 
 static sf_status read_faces(const sf_gmsh *session, const sf_geo_group *g, sf_raw_mesh *raw, sf_error *err) {
@@ -313,22 +385,43 @@ static sf_status read_faces(const sf_gmsh *session, const sf_geo_group *g, sf_ra
     return err->status;
 }
 
+/* The pad's volume groups, and their cells. */
+static sf_status read_volumes(const sf_gmsh *session, const sf_pad_volumes *volumes, double unit,
+                              const sf_geo_group **chosen, sf_raw_mesh *raw, sf_error *err) {
+    int count = volumes->count;
+    for (int k = 0; k < count; k++)
+        if (find_group(session, 3, volumes->group[k], &chosen[k], err) != SF_OK)
+            return err->status;
+    if (check_groups(session, 3, err) != SF_OK || check_groups(session, 2, err) != SF_OK ||
+        read_nodes(session, raw, err) != SF_OK || read_cells(session, chosen, count, raw, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < count; k++)
+        if (check_cells(session, chosen[k], err) != SF_OK)
+            return err->status;
+    return volumes->layers ? check_volumes(session, chosen, volumes, unit, raw, err) : SF_OK;
+}
+
 sf_status sf_gmsh_read_mesh(sf_gmsh *session, const char *pad_group, double unit, sf_mesh *mesh,
                             sf_error *err) {
+    return sf_gmsh_read_layers(session, &(sf_pad_volumes){1, &pad_group, false, false}, unit, mesh, err);
+}
+
+sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, double unit, sf_mesh *mesh,
+                              sf_error *err) {
     const sf_geo_data *data = &session->open.data;
     sf_raw_mesh raw = {0};
-    const sf_geo_group *pad = NULL;
     memset(mesh, 0, sizeof *mesh);
-    if (find_group(session, 3, pad_group, &pad, err) != SF_OK || check_groups(session, 3, err) != SF_OK ||
-        check_groups(session, 2, err) != SF_OK || read_nodes(session, &raw, err) != SF_OK ||
-        read_cells(session, pad, &raw, err) != SF_OK || check_cells(session, pad, err) != SF_OK)
+    const sf_geo_group **chosen =
+        sf_alloc(err, (unsigned long)volumes->count, sizeof *chosen, "the pad's volumes");
+    if (!chosen || read_volumes(session, volumes, unit, chosen, &raw, err) != SF_OK)
         goto done;
     for (size_t g = 0; g < data->group_count; g++)
         if (data->group[g].dimension == 2 && *data->group[g].name &&
             read_faces(session, &data->group[g], &raw, err) != SF_OK)
             goto done;
-    sf_mesh_assemble(&raw, unit, mesh, err);
+    sf_mesh_assemble(&raw, volumes->count, unit, mesh, err);
 done:
+    free(chosen);
     sf_raw_mesh_free(&raw);
     return err->status;
 }
@@ -340,7 +433,7 @@ sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, doub
     memset(surface, 0, sizeof *surface);
     if (find_group(session, 2, surface_group, &found, err) == SF_OK &&
         check_groups(session, 2, err) == SF_OK && read_nodes(session, &raw, err) == SF_OK &&
-        read_cells(session, NULL, &raw, err) == SF_OK && read_faces(session, found, &raw, err) == SF_OK)
+        read_cells(session, NULL, 0, &raw, err) == SF_OK && read_faces(session, found, &raw, err) == SF_OK)
         sf_surface_assemble(&raw, unit, surface, err);
     sf_raw_mesh_free(&raw);
     return err->status;

@@ -9,6 +9,7 @@
 #include "case/case.h"
 #include "core/sink.h"
 #include "pre/mesh/mesh.h"
+#include <stdbool.h>
 
 typedef struct sf_gmsh sf_gmsh;
 
@@ -28,6 +29,19 @@ sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *
  * group, a cell type other than linear tetrahedron, pyramid, prism, hexahedron are refused. */
 sf_status sf_gmsh_read_mesh(sf_gmsh *session, const char *pad_group, double unit, sf_mesh *mesh,
                             sf_error *err);
+
+/* The volumes of a pad, for sf_gmsh_read_layers. */
+typedef struct sf_pad_volumes {
+    int count;
+    const char *const *group; /* [count] volume groups, one for each layer */
+    bool layers;              /* no volume without one */
+    bool alone;               /* the geometry holds nothing but the pad */
+} sf_pad_volumes;
+
+/* The same of a pad of layers, with sf_mesh.cell_layer. Refuses a volume without a layer: one that shares
+ * faces with the pad, or any if the pad is alone. */
+sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, double unit, sf_mesh *mesh,
+                              sf_error *err);
 
 /* The triangles (quadrangles are split) of the surface group, turned outwards. */
 sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,

@@ -9,6 +9,7 @@ void sf_mesh_free(sf_mesh *mesh) {
     free(mesh->cell_type);
     free(mesh->cell_ptr);
     free(mesh->cell_node);
+    free(mesh->cell_layer);
     for (int s = 0; s < mesh->set_count; s++) {
         free(mesh->set[s].name);
         free(mesh->set[s].node);

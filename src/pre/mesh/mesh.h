@@ -21,9 +21,10 @@ typedef struct sf_mesh {
     int64_t node_count;
     double *position; /* [node_count][3] m */
     int64_t cell_count;
-    uint8_t *cell_type; /* [cell_count] SF_CELL_* */
-    int64_t *cell_ptr;  /* [cell_count + 1] */
-    int32_t *cell_node; /* [..] VTK vertex order, positive volume */
+    uint8_t *cell_type;  /* [cell_count] SF_CELL_* */
+    int64_t *cell_ptr;   /* [cell_count + 1] */
+    int32_t *cell_node;  /* [..] VTK vertex order, positive volume */
+    uint8_t *cell_layer; /* [cell_count] place of its volume group among those asked for; NULL: one group */
     int set_count;
     sf_node_set *set;     /* [set_count] every physical surface group whose nodes belong to the pad */
     int64_t orphan_count; /* nodes of the geometry that no cell of any volume uses (counted, not kept) */

@@ -31,7 +31,7 @@ static bool grow(void *array, size_t capacity, size_t size) {
     return block != NULL;
 }
 
-sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, bool chosen, const size_t *node, int count,
+sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, int chosen, const size_t *node, int count,
                                sf_error *err) {
     if (raw->cell_count == raw->cell_capacity) {
         size_t capacity = raw->cell_capacity ? 2 * raw->cell_capacity : 4096;
@@ -43,7 +43,7 @@ sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, bool chosen, const si
     }
     size_t k = raw->cell_count++;
     raw->cell_type[k] = (uint8_t)type;
-    raw->cell_chosen[k] = chosen;
+    raw->cell_chosen[k] = (uint8_t)chosen;
     for (int a = 0; a < SF_RAW_CELL; a++)
         raw->cell_node[SF_RAW_CELL * k + (size_t)a] = a < count ? node[a] : 0;
     return SF_OK;
@@ -125,16 +125,18 @@ static sf_status number_nodes(const sf_raw_mesh *raw, const sf_tag_index *index,
 }
 
 static sf_status copy_cells(const sf_raw_mesh *raw, const sf_tag_index *index, const int32_t *number,
-                            double unit, sf_mesh *mesh, sf_error *err) {
+                            int layers, double unit, sf_mesh *mesh, sf_error *err) {
     int64_t entries = 0;
     for (size_t k = 0; k < raw->cell_count; k++) {
-        mesh->cell_count += raw->cell_chosen[k];
+        mesh->cell_count += raw->cell_chosen[k] > 0;
         entries += raw->cell_chosen[k] ? cell_vertices(raw, k) : 0;
     }
     mesh->position = sf_alloc(err, 3 * (size_t)mesh->node_count, sizeof *mesh->position, "mesh positions");
     mesh->cell_type = sf_alloc(err, (size_t)mesh->cell_count, sizeof *mesh->cell_type, "cell types");
     mesh->cell_ptr = sf_alloc(err, (size_t)mesh->cell_count + 1, sizeof *mesh->cell_ptr, "cell list");
     mesh->cell_node = sf_alloc(err, (size_t)entries, sizeof *mesh->cell_node, "cell vertices");
+    if (layers > 1)
+        mesh->cell_layer = sf_alloc(err, (size_t)mesh->cell_count, 1, "layers of the cells");
     if (err->status != SF_OK)
         return err->status;
     for (size_t n = 0; n < raw->node_count; n++)
@@ -146,6 +148,8 @@ static sf_status copy_cells(const sf_raw_mesh *raw, const sf_tag_index *index, c
             continue;
         int count = cell_vertices(raw, k);
         mesh->cell_type[cell] = raw->cell_type[k];
+        if (layers > 1)
+            mesh->cell_layer[cell] = raw->cell_chosen[k] - 1;
         for (int a = 0; a < count; a++)
             mesh->cell_node[mesh->cell_ptr[cell] + a] =
                 number[sf_raw_mesh_find(raw, index, raw->cell_node[SF_RAW_CELL * k + (size_t)a])];
@@ -226,7 +230,7 @@ static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, c
     return err->status;
 }
 
-sf_status sf_mesh_assemble(const sf_raw_mesh *raw, double unit, sf_mesh *mesh, sf_error *err) {
+sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_mesh *mesh, sf_error *err) {
     memset(mesh, 0, sizeof *mesh);
     int32_t *number = NULL;
     sf_tag_index *index = NULL;
@@ -236,7 +240,7 @@ sf_status sf_mesh_assemble(const sf_raw_mesh *raw, double unit, sf_mesh *mesh, s
     index = sf_raw_mesh_index(raw, err);
     number = sf_alloc(err, raw->node_count, sizeof *number, "node numbers");
     if (err->status == SF_OK && number_nodes(raw, index, number, mesh, err) == SF_OK &&
-        copy_cells(raw, index, number, unit, mesh, err) == SF_OK)
+        copy_cells(raw, index, number, layers, unit, mesh, err) == SF_OK)
         build_sets(raw, index, number, mesh, err);
     if (err->status == SF_OK)
         sf_mesh_orient(mesh);

@@ -18,7 +18,7 @@ typedef struct sf_raw_mesh {
     double *xyz; /* [node_count][3] in the geometry's unit */
     size_t cell_count, cell_capacity;
     uint8_t *cell_type;   /* [cell_count] SF_CELL_* */
-    uint8_t *cell_chosen; /* [cell_count] 1: belongs to the group asked for */
+    uint8_t *cell_chosen; /* [cell_count] 0: of no group asked for; else 1 + place of its group among them */
     size_t *cell_node;    /* [cell_count][SF_RAW_CELL] tags, VTK order; unused ones 0 */
     size_t face_count, face_capacity;
     int32_t *face_group; /* [face_count] index of the surface group */
@@ -30,7 +30,7 @@ typedef struct sf_raw_mesh {
 
 void sf_raw_mesh_free(sf_raw_mesh *raw);
 /* Adds a cell or face with the `count` tags of `node`. */
-sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, bool chosen, const size_t *node, int count,
+sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, int chosen, const size_t *node, int count,
                                sf_error *err);
 sf_status sf_raw_mesh_add_face(sf_raw_mesh *raw, int32_t group, int32_t part, const size_t *node, int count,
                                sf_error *err);
@@ -49,8 +49,9 @@ size_t sf_raw_mesh_find(const sf_raw_mesh *raw, const sf_tag_index *index, size_
 int sf_raw_mesh_face_size(const sf_raw_mesh *raw, size_t face);
 
 /* The chosen cells with the nodes they use, in the order of `tag`, and for each group the nodes of its faces
- * that belong wholly to those cells (groups without such faces give no set). On failure `*mesh` is empty. */
-sf_status sf_mesh_assemble(const sf_raw_mesh *raw, double unit, sf_mesh *mesh, sf_error *err);
+ * that belong wholly to those cells (groups without such faces give no set). `layers`: groups asked for. On
+ * failure `*mesh` is empty. */
+sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_mesh *mesh, sf_error *err);
 
 /* All faces as triangles, turned away from the cells behind them; where there are no cells, away from the
  * centroid of all faces, part by part. A face between two cells is refused. On failure `*surface` is empty.

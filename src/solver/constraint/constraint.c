@@ -19,16 +19,26 @@ static bool has_row(uint8_t mask, uint8_t shared, int range) {
     return (mask & bit) != 0 && !(together && (shared & bit) != 0);
 }
 
+/* What is held, then what is tied: number k of the model, with the components in `mask`. */
+static sf_constraint_row row_of(const sf_model *m, int64_t k, uint8_t *mask) {
+    int64_t t = k - m->fixed_count;
+    *mask = t < 0 ? m->fixed_mask[k] : m->tie_mask[t];
+    return t < 0 ? (sf_constraint_row){m->fixed_node[k], -1, m->fixed_base[k]}
+                 : (sf_constraint_row){m->tie_node[t], m->tie_other[t], 0};
+}
+
 /* The components that most rows are to hold together: all, or the one that is held most often if no node is
  * held in all. */
 static uint8_t choose_shared(const sf_model *m) {
     int64_t held[3] = {0};
     int most = 0;
-    for (int64_t k = 0; k < m->fixed_count; k++) {
-        if (m->fixed_mask[k] == ALL)
+    for (int64_t k = 0; k < m->fixed_count + m->tie_count; k++) {
+        uint8_t mask;
+        row_of(m, k, &mask);
+        if (mask == ALL)
             return ALL;
         for (int r = 0; r < 3; r++)
-            held[r] += (m->fixed_mask[k] >> r) & 1;
+            held[r] += (mask >> r) & 1;
     }
     for (int r = 1; r < 3; r++)
         most = held[r] > held[most] ? r : most;
@@ -37,21 +47,23 @@ static uint8_t choose_shared(const sf_model *m) {
 
 /* The rows range by range, in the order of the model, and the ends of the ranges. */
 static sf_status list_rows(const sf_model *m, sf_constraint *c, sf_ldl_entries *a, sf_error *err) {
+    int64_t all = m->fixed_count + m->tie_count, row = 0;
+    uint8_t mask;
     a->shared = choose_shared(m);
     for (int range = 0; range < 4; range++) {
-        for (int64_t k = 0; k < m->fixed_count; k++)
-            c->rows += has_row(m->fixed_mask[k], a->shared, range);
+        for (int64_t k = 0; k < all; k++) {
+            row_of(m, k, &mask);
+            c->rows += has_row(mask, a->shared, range);
+        }
         a->part[range] = c->rows;
     }
-    c->node = sf_alloc(err, (unsigned long)c->rows, sizeof *c->node, "constraint nodes");
-    c->base = sf_alloc(err, (unsigned long)c->rows, 1, "constraint nodes");
-    int64_t row = 0;
+    c->row = sf_alloc(err, (unsigned long)c->rows, sizeof *c->row, "constraint nodes");
     for (int range = 0; range < 4 && err->status == SF_OK; range++)
-        for (int64_t k = 0; k < m->fixed_count; k++)
-            if (has_row(m->fixed_mask[k], a->shared, range)) {
-                c->node[row] = m->fixed_node[k];
-                c->base[row++] = m->fixed_base[k];
-            }
+        for (int64_t k = 0; k < all; k++) {
+            const sf_constraint_row held = row_of(m, k, &mask);
+            if (has_row(mask, a->shared, range))
+                c->row[row++] = held;
+        }
     return err->status;
 }
 
@@ -100,11 +112,26 @@ static void free_lists(sf_constraint *c) {
     c->touched_count = 0;
 }
 
+/* Entries of phi at a node; none at node -1. */
+static int64_t phi_count(const sf_model *m, int32_t node) {
+    return node < 0 ? 0 : m->phi_ptr[node + 1] - m->phi_ptr[node];
+}
+
+/* Puts them behind the entries of G so far, with a sign; returns how many there are then. */
+static int64_t put_phi(const sf_model *m, sf_constraint *c, int32_t node, int sign, int64_t entries) {
+    int64_t count = phi_count(m, node);
+    for (int64_t k = 0; k < count; k++) {
+        c->row_place[entries + k] = m->phi_node[m->phi_ptr[node] + k];
+        c->row_phi[entries + k] = sign * m->phi_value[m->phi_ptr[node] + k];
+    }
+    return entries + count;
+}
+
 /* The lists of G, from the rows' nodes. */
 static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err) {
     int64_t entries = 0;
     for (int64_t r = 0; r < c->rows; r++)
-        entries += m->phi_ptr[c->node[r] + 1] - m->phi_ptr[c->node[r]];
+        entries += phi_count(m, c->row[r].node) + phi_count(m, c->row[r].other);
     unsigned long all = (unsigned long)entries, rows = (unsigned long)c->rows;
     int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "constraint lists");
     c->row_ptr = sf_alloc(err, rows + 1, sizeof *c->row_ptr, "constraint lists");
@@ -114,10 +141,8 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
     c->node_phi = sf_alloc(err, all, sizeof *c->node_phi, "constraint lists");
     entries = 0;
     for (int64_t r = 0; r < c->rows && err->status == SF_OK; r++) {
-        for (int64_t k = m->phi_ptr[c->node[r]]; k < m->phi_ptr[c->node[r] + 1]; k++, entries++) {
-            c->row_place[entries] = m->phi_node[k];
-            c->row_phi[entries] = m->phi_value[k];
-        }
+        entries = put_phi(m, c, c->row[r].node, 1, entries);
+        entries = put_phi(m, c, c->row[r].other, -1, entries);
         c->row_ptr[r + 1] = entries;
     }
     if (err->status == SF_OK && list_touched(m, c, place, err) == SF_OK) {
@@ -157,17 +182,11 @@ static sf_status gram_entries(const sf_model *m, const sf_constraint *c, sf_ldl_
 
 /* The rows in the order of the elimination. */
 static sf_status order_rows(sf_constraint *c, sf_error *err) {
-    unsigned long rows = (unsigned long)c->rows;
-    int32_t *node = sf_alloc(err, rows, sizeof *node, "constraint nodes");
-    uint8_t *base = sf_alloc(err, rows, 1, "constraint nodes");
-    for (int64_t r = 0; r < c->rows && err->status == SF_OK; r++) {
-        node[r] = c->node[c->factor.order[r]];
-        base[r] = c->base[c->factor.order[r]];
-    }
-    free(c->node);
-    free(c->base);
-    c->node = node;
-    c->base = base;
+    sf_constraint_row *row = sf_alloc(err, (unsigned long)c->rows, sizeof *row, "constraint nodes");
+    for (int64_t r = 0; r < c->rows && err->status == SF_OK; r++)
+        row[r] = c->row[c->factor.order[r]];
+    free(c->row);
+    c->row = row;
     return err->status;
 }
 
@@ -202,8 +221,7 @@ sf_status sf_constraint_build(const sf_model *m, sf_constraint *c, sf_error *err
 void sf_constraint_free(sf_constraint *c) {
     free_lists(c);
     sf_ldl_free(&c->factor);
-    free(c->node);
-    free(c->base);
+    free(c->row);
     free(c->mobility);
     free(c->field);
     free(c->lambda);
@@ -256,12 +274,12 @@ static void solve(const sf_constraint *c) {
         sf_ldl_backward(&c->factor, b, c->lambda);
 }
 
-/* Resultants of the reactions. */
+/* Resultants of the reactions; ties have none. */
 static void add_resultants(const sf_constraint *c, sf_constraint_step *step) {
     sf_vec all = {0}, base = {0};
     for (int64_t r = 0; r < c->rows; r++) {
-        all -= c->lambda[r];
-        base -= c->lambda[r] * c->base[r];
+        all -= c->row[r].other < 0 ? c->lambda[r] : (sf_vec){0};
+        base -= c->lambda[r] * c->row[r].base;
     }
     for (int r = 0; r < 3; r++) {
         step->all[r] = all[r];

@@ -2,7 +2,8 @@
 /* Essential boundary conditions on u_h by the transformation method, as an exact projection (Chen, Pan, Wu,
  * Liu 1996; theory, section "Constraints"): with G the rows phi(X_c) of the held nodes, (G M^-1 G^T) lambda =
  * G a* + (G v) / dt, a = a* - M^-1 G^T lambda. The matrix is factored once (solver/constraint/ldl.h). A row
- * of G stands for a node held in all components, or for one component of a node that is held in some. */
+ * of G stands for a node held in all components, or for one component of a node that is held in some. Ties
+ * between layers are rows too: phi(X_c) of one cloud less that of the other. */
 #ifndef SF_SOLVER_CONSTRAINT_CONSTRAINT_H
 #define SF_SOLVER_CONSTRAINT_CONSTRAINT_H
 
@@ -10,10 +11,16 @@
 #include "core/model.h"
 #include "solver/constraint/ldl.h"
 
+/* What a row of G holds. */
+typedef struct sf_constraint_row {
+    int32_t node;  /* held node */
+    int32_t other; /* the node of another layer that it is tied to; -1: it is held at zero */
+    uint8_t base;  /* counts for the base reaction */
+} sf_constraint_row;
+
 typedef struct sf_constraint {
     int64_t rows;
-    int32_t *node; /* [rows] held node, in the order of the elimination */
-    uint8_t *base; /* [rows] counts for the base reaction */
+    sf_constraint_row *row; /* [rows] in the order of the elimination */
 
     /* G by row, over the nodes that it touches, and by touched node. */
     int64_t touched_count;
@@ -42,7 +49,7 @@ typedef struct sf_constraint_step {
     double dt;           /* s, between the half steps */
     double *reaction;    /* [n][3] N, out: G^T lambda; the acceleration is (force - reaction) / mass */
     double base[3];      /* N, out: force of the base on the pad */
-    double all[3];       /* N, out: force of all constraints on the pad */
+    double all[3];       /* N, out: force of all constraints on the pad; ties are forces between its layers */
 } sf_constraint_step;
 
 void sf_constraint_project(const sf_constraint *constraint, sf_constraint_step *step);

@@ -32,7 +32,7 @@ extern const sf_law sf_low_density_foam;
 
 /* A material of this card, which it borrows: not for sf_material_free. */
 static inline sf_material sf_foam_material(const sf_foam_card *card) {
-    return (sf_material){&sf_low_density_foam, (void *)(uintptr_t)card};
+    return (sf_material){.law = &sf_low_density_foam, .card = (void *)(uintptr_t)card};
 }
 
 sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err);

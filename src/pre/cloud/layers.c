@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/cloud/layers.h"
+
+#include "core/mat3.h"
+#include "pre/cloud/surface_area.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
+
+static const double ALONG_AXIS = 1e-6; /* of a normal: the part across the axis */
+
+static int layer_of(const sf_mesh *mesh, int64_t cell) {
+    return mesh->cell_layer ? mesh->cell_layer[cell] : 0;
+}
+
+/* ---- nodes ---- */
+
+/* The layers whose cells use a node, as a row of marks. */
+static uint8_t *mark_layers(const sf_mesh *mesh, int count, sf_error *err) {
+    uint8_t *used = sf_alloc(err, (unsigned long)mesh->node_count * (unsigned long)count, 1, "layers");
+    for (int64_t k = 0; used && k < mesh->cell_count; k++)
+        for (int64_t v = mesh->cell_ptr[k]; v < mesh->cell_ptr[k + 1]; v++)
+            used[(int64_t)mesh->cell_node[v] * count + layer_of(mesh, k)] = 1;
+    return used;
+}
+
+static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layers *l, sf_error *err) {
+    unsigned long n = (unsigned long)mesh->node_count;
+    l->first = sf_alloc(err, (unsigned long)l->count + 1, sizeof *l->first, "layers");
+    l->copy_ptr = sf_alloc(err, n + 1, sizeof *l->copy_ptr, "layers");
+    for (int64_t k = 0; err->status == SF_OK && k < mesh->node_count * l->count; k++)
+        l->first[k % l->count + 1] += used[k];
+    for (int k = 0; err->status == SF_OK && k < l->count; k++)
+        l->first[k + 1] += l->first[k];
+    unsigned long all = err->status == SF_OK ? (unsigned long)l->first[l->count] : 0;
+    if (all > INT32_MAX)
+        return SF_FAIL(err, SF_ERR_INPUT, "the layers have %lu nodes; at most %d are supported", all,
+                       INT32_MAX);
+    l->origin = sf_alloc(err, all, sizeof *l->origin, "layers");
+    l->copy = sf_alloc(err, all, sizeof *l->copy, "layers");
+    int64_t *next = sf_alloc(err, (unsigned long)l->count, sizeof *next, "layers"), copies = 0;
+    if (err->status == SF_OK)
+        memcpy(next, l->first, (size_t)l->count * sizeof *next);
+    for (int64_t i = 0; err->status == SF_OK && i < mesh->node_count; i++) {
+        for (int k = 0; k < l->count; k++)
+            if (used[i * l->count + k]) {
+                l->origin[next[k]] = (int32_t)i;
+                l->copy[copies++] = (int32_t)next[k]++;
+            }
+        l->copy_ptr[i + 1] = copies;
+    }
+    free(next);
+    return err->status;
+}
+
+/* The node of a layer at a node of the whole mesh, which it has. */
+static int32_t copy_of(const sf_layers *l, int32_t node, int layer) {
+    int64_t k = l->copy_ptr[node];
+    while (l->copy[k] < l->first[layer])
+        k++;
+    return l->copy[k];
+}
+
+/* ---- interfaces ---- */
+
+/* Pairs of layers: whether they slide, and whether they touch. */
+typedef struct pair_table {
+    int count;
+    uint8_t slides[SF_CASE_MAX_LAYERS][SF_CASE_MAX_LAYERS], touch[SF_CASE_MAX_LAYERS][SF_CASE_MAX_LAYERS];
+} pair_table;
+
+static void list_pairs(const sf_case *c, int count, pair_table *pairs) {
+    *pairs = (pair_table){.count = count};
+    for (int k = 0; k < c->interface_count; k++) {
+        const int *layer = c->interface_layer[k];
+        pairs->slides[layer[0]][layer[1]] = pairs->slides[layer[1]][layer[0]] = 1;
+    }
+}
+
+static sf_status check_pairs(const sf_case *c, const pair_table *pairs, sf_error *err) {
+    for (int k = 0; k < c->interface_count; k++) {
+        const int *layer = c->interface_layer[k];
+        if (!pairs->touch[layer[0]][layer[1]])
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "pad.sliding_interfaces: the layers \"%s\" and \"%s\" do not touch: they share no "
+                           "face of the mesh",
+                           c->layer[layer[0]].name, c->layer[layer[1]].name);
+    }
+    return SF_OK;
+}
+
+/* The component along the normal of a face; 0 if it is not normal to an axis. */
+static uint8_t normal_component(const sf_mesh *mesh, const sf_inner_face *face) {
+    const int32_t *node = &face->node[face->node[0] < 0];
+    const double *p = &mesh->position[3 * (int64_t)node[0]];
+    double u[3], v[3], n[3];
+    for (int k = 0; k < 3; k++) {
+        u[k] = mesh->position[3 * (int64_t)node[1] + k] - p[k];
+        v[k] = mesh->position[3 * (int64_t)node[2] + k] - p[k];
+    }
+    sf_cross3(u, v, n);
+    double length = sqrt(sf_dot3(n, n));
+    for (int k = 0; k < 3; k++)
+        if (hypot(n[(k + 1) % 3], n[(k + 2) % 3]) <= ALONG_AXIS * length)
+            return (uint8_t)(1 << k);
+    return 0;
+}
+
+static int by_nodes(const void *a, const void *b) {
+    const sf_layer_tie *p = a, *q = b;
+    if (p->node != q->node)
+        return p->node < q->node ? -1 : 1;
+    return (p->other > q->other) - (p->other < q->other);
+}
+
+/* The ties of one face between two layers. */
+static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_face *face, pair_table *pairs,
+                          sf_layers *l, sf_error *err) {
+    int a = layer_of(mesh, face->cell[0]), b = layer_of(mesh, face->cell[1]);
+    int low = a < b ? a : b, high = a < b ? b : a;
+    uint8_t mask = pairs->slides[low][high] ? normal_component(mesh, face) : ALL;
+    if (mask == 0) {
+        const double *x = &mesh->position[3 * (int64_t)face->node[3]];
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "pad.sliding_interfaces: the interface of \"%s\" and \"%s\" at (%.4g, %.4g, %.4g) mm is "
+            "not normal to x, y or z: an interface that slides must be",
+            c->layer[low].name, c->layer[high].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+    }
+    pairs->touch[a][b] = pairs->touch[b][a] = 1;
+    for (int k = face->node[0] < 0; k < 4; k++)
+        l->tie[l->tie_count++] =
+            (sf_layer_tie){copy_of(l, face->node[k], low), copy_of(l, face->node[k], high), mask};
+    return SF_OK;
+}
+
+/* One tie for each two nodes. */
+static void merge_ties(sf_layers *l) {
+    int64_t kept = 0;
+    if (l->tie_count > 0)
+        qsort(l->tie, (size_t)l->tie_count, sizeof *l->tie, by_nodes);
+    for (int64_t k = 0; k < l->tie_count; k++)
+        if (kept > 0 && by_nodes(&l->tie[kept - 1], &l->tie[k]) == 0)
+            l->tie[kept - 1].mask |= l->tie[k].mask;
+        else
+            l->tie[kept++] = l->tie[k];
+    l->tie_count = kept;
+}
+
+static sf_status find_ties(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual, sf_layers *l,
+                           sf_error *err) {
+    pair_table pairs;
+    int64_t faces = 0;
+    list_pairs(c, l->count, &pairs);
+    for (int64_t f = 0; f < dual->inner_count; f++)
+        faces += layer_of(mesh, dual->inner[f].cell[0]) != layer_of(mesh, dual->inner[f].cell[1]);
+    l->tie = sf_alloc(err, 4 * (unsigned long)faces, sizeof *l->tie, "ties between layers");
+    for (int64_t f = 0; err->status == SF_OK && f < dual->inner_count; f++)
+        if (layer_of(mesh, dual->inner[f].cell[0]) != layer_of(mesh, dual->inner[f].cell[1]))
+            tie_face(c, mesh, &dual->inner[f], &pairs, l, err);
+    if (err->status != SF_OK)
+        return err->status;
+    merge_ties(l);
+    return check_pairs(c, &pairs, err);
+}
+
+/* The node that stands for those joined to `node` so far. */
+static int32_t leader(int32_t *parent, int32_t node) {
+    while (parent[node] != node)
+        node = parent[node] = parent[parent[node]];
+    return node;
+}
+
+/* [n] every node alone; owned by the caller. */
+static int32_t *nodes_alone(int64_t n, sf_error *err) {
+    int32_t *parent = sf_alloc(err, (unsigned long)n, sizeof *parent, "ties between layers");
+    for (int32_t i = 0; parent && i < (int32_t)n; i++)
+        parent[i] = i;
+    return parent;
+}
+
+static void find_together(sf_layers *l) {
+    for (int64_t k = 0; k < l->tie_count; k++)
+        if (l->tie[k].mask == ALL)
+            l->together[leader(l->together, l->tie[k].other)] = leader(l->together, l->tie[k].node);
+    for (int32_t i = 0; i < (int32_t)l->first[l->count]; i++)
+        l->together[i] = leader(l->together, i);
+}
+
+sf_status sf_layers_build(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual, sf_layers *l,
+                          sf_error *err) {
+    *l = (sf_layers){.count = c->layer_count > 0 ? c->layer_count : 1};
+    uint8_t *used = mark_layers(mesh, l->count, err);
+    if (used && number_nodes(mesh, used, l, err) == SF_OK)
+        find_ties(c, mesh, dual, l, err);
+    if (err->status == SF_OK && (l->together = nodes_alone(l->first[l->count], err)))
+        find_together(l);
+    free(used);
+    if (err->status != SF_OK)
+        sf_layers_free(l);
+    return err->status;
+}
+
+void sf_layers_free(sf_layers *l) {
+    free(l->first);
+    free(l->origin);
+    free(l->copy_ptr);
+    free(l->copy);
+    free(l->tie);
+    free(l->together);
+    *l = (sf_layers){0};
+}
+
+/* ---- parts of the mesh ---- */
+
+sf_status sf_layers_part(const sf_mesh *mesh, const sf_layers *l, int layer, sf_mesh *part, sf_error *err) {
+    int64_t entries = 0, nodes = l->first[layer + 1] - l->first[layer];
+    *part = (sf_mesh){.node_count = nodes};
+    for (int64_t k = 0; k < mesh->cell_count; k++)
+        if (layer_of(mesh, k) == layer) {
+            part->cell_count++;
+            entries += mesh->cell_ptr[k + 1] - mesh->cell_ptr[k];
+        }
+    unsigned long cells = (unsigned long)part->cell_count;
+    part->position = sf_alloc(err, 3 * (unsigned long)nodes, sizeof *part->position, "a layer");
+    part->cell_type = sf_alloc(err, cells, sizeof *part->cell_type, "a layer");
+    part->cell_ptr = sf_alloc(err, cells + 1, sizeof *part->cell_ptr, "a layer");
+    part->cell_node = sf_alloc(err, (unsigned long)entries, sizeof *part->cell_node, "a layer");
+    int64_t cell = 0, used = 0;
+    for (int64_t i = 0; err->status == SF_OK && i < nodes; i++)
+        memcpy(&part->position[3 * i], &mesh->position[3 * (int64_t)l->origin[l->first[layer] + i]],
+               3 * sizeof *part->position);
+    for (int64_t k = 0; err->status == SF_OK && k < mesh->cell_count; k++) {
+        if (layer_of(mesh, k) != layer)
+            continue;
+        part->cell_type[cell] = mesh->cell_type[k];
+        for (int64_t v = mesh->cell_ptr[k]; v < mesh->cell_ptr[k + 1]; v++)
+            part->cell_node[used++] = (int32_t)(copy_of(l, mesh->cell_node[v], layer) - l->first[layer]);
+        part->cell_ptr[++cell] = used;
+    }
+    if (err->status != SF_OK)
+        sf_mesh_free(part);
+    return err->status;
+}
+
+sf_status sf_layers_area(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l, const sf_node_set *set,
+                         double *area, sf_error *err) {
+    double *own = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *own, "areas");
+    for (int layer = 0; own && layer < l->count && err->status == SF_OK; layer++) {
+        memset(own, 0, (size_t)mesh->node_count * sizeof *own);
+        if (sf_surface_area(mesh, dual, set, l->count > 1 ? layer : SF_ANY_LAYER, own, err) == SF_OK)
+            for (int64_t i = l->first[layer]; i < l->first[layer + 1]; i++)
+                area[i] += own[l->origin[i]];
+    }
+    free(own);
+    return err->status;
+}
+
+/* Marks the nodes of the parted mesh that belong to a set: at each of its nodes, those of the layers with a
+ * face of the surface in it; where there is no such face, all. */
+static sf_status mark_copies(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
+                             const sf_node_set *set, uint8_t *mark, sf_error *err) {
+    uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "a node set");
+    for (int64_t k = 0; member && k < set->count; k++)
+        member[set->node[k]] = 1;
+    for (int64_t f = 0; member && f < dual->face_count; f++) {
+        const sf_boundary_face *face = &dual->face[f];
+        bool inside = true;
+        for (int k = 0; k < face->size; k++)
+            inside = inside && member[face->node[k]];
+        for (int k = 0; inside && k < face->size; k++)
+            mark[copy_of(l, face->node[k], layer_of(mesh, face->cell))] = 1;
+    }
+    for (int64_t k = 0; member && k < set->count; k++) {
+        int64_t first = l->copy_ptr[set->node[k]], last = l->copy_ptr[set->node[k] + 1], marked = 0;
+        for (int64_t i = first; i < last; i++)
+            marked += mark[l->copy[i]];
+        for (int64_t i = first; marked == 0 && i < last; i++)
+            mark[l->copy[i]] = 1;
+    }
+    free(member);
+    return err->status;
+}
+
+static sf_status split_set(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l, sf_node_set *set,
+                           sf_error *err) {
+    int64_t n = l->first[l->count], count = 0;
+    uint8_t *mark = sf_alloc(err, (unsigned long)n, 1, "a node set");
+    if (mark)
+        mark_copies(mesh, dual, l, set, mark, err);
+    for (int64_t i = 0; mark && i < n; i++)
+        count += mark[i];
+    int32_t *node = sf_alloc(err, (unsigned long)count, sizeof *node, "a node set");
+    if (err->status == SF_OK) {
+        free(set->node);
+        free(set->face);
+        set->node = node;
+        set->face = NULL;
+        set->count = set->face_count = 0;
+        for (int64_t i = 0; i < n; i++)
+            if (mark[i])
+                set->node[set->count++] = (int32_t)i;
+    }
+    free(mark);
+    return err->status;
+}
+
+sf_status sf_layers_split(sf_mesh *mesh, const sf_dual *dual, const sf_layers *l, sf_error *err) {
+    int64_t n = l->first[l->count];
+    if (l->count == 1)
+        return SF_OK;
+    for (int s = 0; s < mesh->set_count && err->status == SF_OK; s++)
+        split_set(mesh, dual, l, &mesh->set[s], err);
+    double *position = sf_alloc(err, 3 * (unsigned long)n, sizeof *position, "positions");
+    if (err->status != SF_OK)
+        return err->status;
+    for (int64_t i = 0; i < n; i++)
+        memcpy(&position[3 * i], &mesh->position[3 * (int64_t)l->origin[i]], 3 * sizeof *position);
+    for (int64_t k = 0; k < mesh->cell_count; k++)
+        for (int64_t v = mesh->cell_ptr[k]; v < mesh->cell_ptr[k + 1]; v++)
+            mesh->cell_node[v] = copy_of(l, mesh->cell_node[v], layer_of(mesh, k));
+    free(mesh->position);
+    mesh->position = position;
+    mesh->node_count = n;
+    return SF_OK;
+}
+
+/* ---- ties ---- */
+
+/* A tie carries what is held on one side to the other, until nothing changes. */
+static void spread_held(const sf_layers *l, uint8_t *mask, uint8_t *base) {
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int64_t k = 0; k < l->tie_count; k++) {
+            const sf_layer_tie *t = &l->tie[k];
+            uint8_t differ = (mask[t->node] ^ mask[t->other]) & t->mask;
+            if (!differ)
+                continue;
+            base[t->node] = base[t->other] = base[t->node] | base[t->other];
+            mask[t->node] |= differ;
+            mask[t->other] |= differ;
+            changed = true;
+        }
+    }
+}
+
+/* The components of a tie that are not held and do not follow from earlier ties. */
+static uint8_t join(const sf_layer_tie *t, uint8_t held, int32_t *const parent[3]) {
+    uint8_t mask = 0;
+    for (int c = 0; c < 3; c++) {
+        if (!(t->mask & ~held & 1 << c))
+            continue;
+        int32_t a = leader(parent[c], t->node), b = leader(parent[c], t->other);
+        if (a != b)
+            mask |= (uint8_t)(1 << c);
+        parent[c][b] = a;
+    }
+    return mask;
+}
+
+sf_status sf_layers_hold(const sf_layers *l, uint8_t *mask, uint8_t *base, sf_model *m, sf_error *err) {
+    unsigned long ties = (unsigned long)l->tie_count;
+    int32_t *parent[3] = {NULL, NULL, NULL};
+    if (l->tie_count == 0)
+        return SF_OK;
+    spread_held(l, mask, base);
+    for (int c = 0; c < 3; c++)
+        parent[c] = nodes_alone(l->first[l->count], err);
+    m->tie_node = sf_alloc(err, ties, sizeof *m->tie_node, "ties between layers");
+    m->tie_other = sf_alloc(err, ties, sizeof *m->tie_other, "ties between layers");
+    m->tie_mask = sf_alloc(err, ties, 1, "ties between layers");
+    for (int64_t k = 0; k < l->tie_count && err->status == SF_OK; k++) {
+        const sf_layer_tie *t = &l->tie[k];
+        uint8_t open = join(t, mask[t->node], parent);
+        if (!open)
+            continue;
+        m->tie_node[m->tie_count] = t->node;
+        m->tie_other[m->tie_count] = t->other;
+        m->tie_mask[m->tie_count++] = open;
+    }
+    for (int c = 0; c < 3; c++)
+        free(parent[c]);
+    return err->status;
+}
