@@ -23,6 +23,14 @@ static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     return err->status;
 }
 
+/* Does the line begin with materials.NAME.curve or .curves? */
+static bool is_layer_curve(const char *line) {
+    size_t length = strcspn(line, " \n");
+    const char *dot = memrchr(line, '.', length);
+    return strncmp(line, "materials.", 10) == 0 && dot > line + 9 &&
+           (strncmp(dot, ".curve ", 7) == 0 || strncmp(dot, ".curves ", 8) == 0);
+}
+
 /* The case's list of values without the names of files, whose contents count, and what cannot change a drop.
  */
 static uint64_t hash_values(uint64_t hash, const char *values) {
@@ -32,6 +40,7 @@ static uint64_t hash_values(uint64_t hash, const char *values) {
         size_t length = strcspn(values, "\n"), skipped = 0;
         for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
             skipped += strncmp(values, files[k], strlen(files[k])) == 0;
+        skipped += is_layer_curve(values);
         if (!skipped)
             hash = sf_hash_bytes(hash, values, length);
         values += length + (values[length] == '\n');
@@ -42,7 +51,10 @@ static uint64_t hash_values(uint64_t hash, const char *values) {
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
     size_t motion = sf_case_motion_bytes(c);
     *hash = hash_values(SF_HASH_START, c->parameters);
-    *hash = sf_material_hash(*hash, &c->material);
+    if (c->layer_count == 0)
+        *hash = sf_material_hash(*hash, &c->material);
+    for (int k = 0; k < c->layer_count; k++)
+        *hash = sf_material_hash(*hash, &c->layer[k]);
     *hash = sf_hash_bytes(*hash, c->motion_time, motion);
     *hash = sf_hash_bytes(*hash, c->motion_displacement, motion);
     if (hash_file(hash, c->pad.path, err) != SF_OK ||

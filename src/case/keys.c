@@ -3,6 +3,7 @@
 
 #include "core/motion.h"
 #include <assert.h>
+#include <stdio.h>
 #include <string.h>
 
 #define AT(member) .offset = offsetof(sf_case, member)
@@ -30,7 +31,7 @@ static const sf_key keys[] = {
     {"geometry", "time_limit", SF_KEY_QUANTITY, "\"600 s\"", AT(mesh_time_limit),
      "processor time that gmsh may take for each geometry", .quantity = SF_TIME, .low = 1.0, .high = 1e7},
     /* pad */
-    {"pad", "group", SF_KEY_NAME, "\"pad\"", AT(pad_group), "physical volume of the pad"},
+    {"pad", "group", SF_KEY_NAME, "\"pad\"", AT(pad_group), "physical volume of a pad of one material"},
     {"pad", "contact", SF_KEY_NAME, "\"top\"", AT(contact_group), "physical surface that the missile may touch"},
     {"pad", "fixed", SF_KEY_NAMES, "[\"base\"]", AT(fixed_group),
      "physical surfaces glued to the anvil", .count_offset = offsetof(sf_case, fixed_count)},
@@ -40,6 +41,9 @@ static const sf_key keys[] = {
     {"pad", "symmetry", SF_KEY_NAMES, "[\"symmetry_x\", \"symmetry_y\"]", AT(symmetry_group),
      "physical surfaces that are symmetry planes; those of the default may be absent from the geometry",
      .count_offset = offsetof(sf_case, symmetry_count)},
+    {"pad", "sliding_interfaces", SF_KEY_NAMES, "[]", AT(interface_name),
+     "pairs of layers that slide on each other, [\"NAME/NAME\"]: only the displacement normal to their interface is the same; all others are tied",
+     .count_offset = offsetof(sf_case, interface_count)},
     {"pad", "mesh_error_limit", SF_KEY_NUMBER, "0.1", AT(mesh_error_limit),
      "expected relative error of a_max from the spacing above which the case is refused; a larger value allows a coarser mesh",
      .high = 1e6},
@@ -127,6 +131,36 @@ void sf_case_list_keys(const sf_law *law, sf_key_list *out) {
             out->key[out->count++] = key_of(&law->parameter[p]);
         }
     }
+}
+
+void sf_case_material_path(const char *group, const char *path, char *out, size_t size) {
+    static const char name[] = "material";
+    bool below = strncmp(path, name, sizeof name - 1) == 0;
+    snprintf(out, size, "%s%s", below ? group : "", below ? path + sizeof name - 1 : path);
+}
+
+/* The list's own copy of the name of a layer's group. */
+static const char *layer_group(sf_key_list *list, const char *group, const char *path) {
+    char name[SF_KEY_GROUP_SIZE];
+    int k = 0;
+    sf_case_material_path(group, path, name, sizeof name);
+    while (k < SF_KEY_LAYER_GROUPS - 1 && *list->layer_group[k] && strcmp(list->layer_group[k], name) != 0)
+        k++;
+    memcpy(list->layer_group[k], name, sizeof name);
+    return list->layer_group[k];
+}
+
+void sf_case_list_layer_keys(const sf_law *law, const char *group, sf_key_list *out) {
+    size_t kept = 0;
+    memset(out->layer_group, 0, sizeof out->layer_group);
+    sf_case_list_keys(law, out);
+    for (size_t k = 0; k < out->count; k++)
+        if (out->key[k].in_card || out->key[k].kind == SF_KEY_LAW) {
+            out->key[kept] = out->key[k];
+            out->key[kept].group = layer_group(out, group, out->key[k].group);
+            kept++;
+        }
+    out->count = kept;
 }
 
 const sf_key *sf_case_find_key(const sf_key_list *list, const char *group, const char *name) {

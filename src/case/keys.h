@@ -51,13 +51,21 @@ typedef struct sf_key {
 
 enum { SF_KEY_MAX = 128 };
 
+enum { SF_KEY_GROUP_SIZE = 160, SF_KEY_LAYER_GROUPS = 8 };
+
 typedef struct sf_key_list {
     sf_key key[SF_KEY_MAX];
     size_t count;
+    char layer_group[SF_KEY_LAYER_GROUPS][SF_KEY_GROUP_SIZE]; /* names that keys of a layer point to */
 } sf_key_list;
 
 /* The keys of a case with this law. */
 void sf_case_list_keys(const sf_law *law, sf_key_list *list);
+/* Only the keys of a material with this law, whose group is `group` in place of "material". The list must
+ * stay where it is. */
+void sf_case_list_layer_keys(const sf_law *law, const char *group, sf_key_list *list);
+/* "material" or what lies below it, in the group that stands in its place. */
+void sf_case_material_path(const char *group, const char *path, char *out, size_t size);
 /* The row of group.name; NULL if there is none. */
 const sf_key *sf_case_find_key(const sf_key_list *list, const char *group, const char *name);
 /* True if `group` is, or begins, the group of some key. */

@@ -69,8 +69,8 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     char where[SF_CASE_WHERE_SIZE];
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: material: the name of a curve's CSV file is expected",
-                       sf_case_where(reader, setting, where));
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: the name of a curve's CSV file is expected",
+                       sf_case_where(reader, setting, where), reader->material_group);
     char *path = sf_case_resolve(reader, setting, text, err);
     if (!path)
         return err->status;
@@ -87,7 +87,7 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
         if (curve.extended)
             sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
                          path, curve.strain[1]);
-        status = add_curve(sf_material_curves(&reader->out->material), rate, &curve, err);
+        status = add_curve(sf_material_curves(reader->material), rate, &curve, err);
     }
     sf_case_curve_free(&curve);
     free(path);
@@ -97,32 +97,30 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
 /* One { rate = "..."; file = "..."; } of material.curves. */
 static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    const sf_law_curves *card = sf_material_curves(&reader->out->material);
+    const sf_law_curves *card = sf_material_curves(reader->material);
     const config_setting_t *rate =
         config_setting_is_group(entry) ? config_setting_get_member(entry, "rate") : NULL;
     const config_setting_t *file =
         config_setting_is_group(entry) ? config_setting_get_member(entry, "file") : NULL;
     if (!rate || !file || config_setting_length(entry) != 2)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: material.curves: each entry must be { rate = \"0.0017 1/s\"; file = \"name.csv\"; }",
-            sf_case_where(reader, entry, where));
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: %s.curves: each entry must be { rate = \"0.0017 1/s\"; file = \"name.csv\"; }",
+                       sf_case_where(reader, entry, where), reader->material_group);
     const char *text = config_setting_get_string(rate);
     sf_error inner = SF_ERROR_INIT;
     double value = 0.0;
     if (!text)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: material.curves: the rate must be a text such as \"0.0017 1/s\"",
-                       sf_case_where(reader, rate, where));
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: the rate must be a text such as \"0.0017 1/s\"",
+                       sf_case_where(reader, rate, where), reader->material_group);
     if (sf_units_parse(reader->units, text, SF_RATE, &value, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: material.curves: %s", sf_case_where(reader, rate, where),
-                       inner.text);
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %s", sf_case_where(reader, rate, where),
+                       reader->material_group, inner.text);
     double last = card->curve_count > 0 ? card->curve_rate[card->curve_count - 1] : 0.0;
     if (!(value > last))
         return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: material.curves: the rate %g s-1 is not above %g s-1 before it; rates must be "
+                       "%s: %s.curves: the rate %g s-1 is not above %g s-1 before it; rates must be "
                        "positive and ascend",
-                       sf_case_where(reader, rate, where), value, last);
+                       sf_case_where(reader, rate, where), reader->material_group, value, last);
     return read_file(reader, file, value, err);
 }
 
@@ -134,10 +132,9 @@ static void describe(const sf_law_curves *card, char *detail, size_t size) {
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    if (sf_material_curves(&reader->out->material)->curve_count > 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: material has both curve and curves; only one of them may be given",
-                       sf_case_where(reader, setting, where));
+    if (sf_material_curves(reader->material)->curve_count > 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has both curve and curves; only one of them may be given",
+                       sf_case_where(reader, setting, where), reader->material_group);
     if (strcmp(config_setting_name(setting), "curve") == 0) {
         if (read_file(reader, setting, 0.0, err) != SF_OK)
             return err->status;
@@ -145,16 +142,16 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
         if (!config_setting_is_list(setting) || config_setting_length(setting) == 0)
             return SF_FAIL(
                 err, SF_ERR_INPUT,
-                "%s: material.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
-                sf_case_where(reader, setting, where));
+                "%s: %s.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
+                sf_case_where(reader, setting, where), reader->material_group);
         if (config_setting_length(setting) > MOST_CURVES)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: material.curves: %d curves; at most %d are read",
-                           sf_case_where(reader, setting, where), config_setting_length(setting),
-                           MOST_CURVES);
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %d curves; at most %d are read",
+                           sf_case_where(reader, setting, where), reader->material_group,
+                           config_setting_length(setting), MOST_CURVES);
         for (int i = 0; i < config_setting_length(setting); i++)
             if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), err) != SF_OK)
                 return err->status;
     }
-    describe(sf_material_curves(&reader->out->material), detail, size);
+    describe(sf_material_curves(reader->material), detail, size);
     return SF_OK;
 }

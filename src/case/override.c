@@ -109,15 +109,18 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
     sf_case_source lines = {0};
     char *whole = sf_case_load_text(path, 0, NULL, &lines, err);
     if (whole) {
-        config_setting_t *root = config_root_setting(config);
         const copy_source source = {.source = &lines};
+        const char *dot = strchr(name, '.'), *member = dot ? dot + 1 : name;
+        config_setting_t *root = config_root_setting(config);
+        config_setting_t *parent = dot ? enter_group(root, "materials", text) : root;
         if (!config_read_string(&scratch, whole)) {
             int line = 0;
             const char *file = sf_case_source_find(&lines, config_error_line(&scratch), &line);
             SF_FAIL(err, SF_ERR_INPUT, "--set %s: %s:%d: %s", text, file, line, config_error_text(&scratch));
         } else {
-            config_setting_remove(root, name);
-            config_setting_t *group = config_setting_add(root, name, CONFIG_TYPE_GROUP);
+            if (parent)
+                config_setting_remove(parent, member);
+            config_setting_t *group = parent ? config_setting_add(parent, member, CONFIG_TYPE_GROUP) : NULL;
             bool done = group && mark(group, text, 0);
             for (int i = 0; done && i < config_setting_length(scratch.root); i++) {
                 const config_setting_t *item = config_setting_get_elem(scratch.root, (unsigned)i);

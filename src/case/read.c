@@ -48,6 +48,8 @@ static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, 
     else if (u->count > 1)
         snprintf(more, sizeof more, "; unknown too: %s", u->others);
     sf_case_where(reader, u->first, where);
+    if (strcmp(u->group, "") == 0)
+        strncat(names, ", materials", sizeof names - strlen(names) - 1);
     if (*u->group)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown key \"%.80s\" in group %s%s%s; its keys are %s", where,
                        name, u->group, meant, more, names);
@@ -63,7 +65,7 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
         const char *name = config_setting_name(item);
         char inner[SF_CASE_GROUP_SIZE], where[SF_CASE_WHERE_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
-        if (sf_case_find_key(&reader->keys, group, name))
+        if (sf_case_find_key(&reader->keys, group, name) || item == reader->layers)
             continue;
         if (length >= (int)sizeof inner || !sf_case_is_group(&reader->keys, inner))
             add_unknown(u, item, group);
@@ -76,9 +78,11 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
     return SF_OK;
 }
 
-static sf_status check_names(const sf_case_reader *reader, sf_error *err) {
+/* Of everything in `setting`, the group called `group`; "" for the file. */
+static sf_status check_names(const sf_case_reader *reader, const config_setting_t *setting, const char *group,
+                             sf_error *err) {
     unknown u = {0};
-    SF_TRY(find_unknown(reader, config_root_setting(&reader->config), "", &u, err));
+    SF_TRY(find_unknown(reader, setting, group, &u, err));
     return u.count > 0 ? refuse_unknown(reader, &u, err) : SF_OK;
 }
 
@@ -118,17 +122,24 @@ static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_erro
     return status;
 }
 
+static sf_status read_layers(sf_case_reader *reader, sf_error *err);
+
 static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
     for (size_t k = 0; k < reader->keys.count; k++) {
         const sf_key *key = &reader->keys.key[k];
         const config_setting_t *group = config_lookup(&reader->config, key->group);
         const config_setting_t *setting = group ? config_setting_get_member(group, key->name) : NULL;
         char detail[128] = "-";
-        if (reader->material_only && !key->in_card && key->kind != SF_KEY_LAW)
+        bool of_material = key->in_card || key->kind == SF_KEY_LAW;
+        if (reader->material_only && !of_material)
+            continue;
+        if (reader->layers && key->kind == SF_KEY_LAW)
+            SF_TRY(read_layers(reader, err));
+        if (reader->layers && of_material)
             continue;
         reader->given[k] = setting != NULL;
         if (key->kind == SF_KEY_LAW)
-            snprintf(detail, sizeof detail, "%s", reader->out->material.law->name);
+            snprintf(detail, sizeof detail, "%s", reader->material->law->name);
         if (setting) {
             if (sf_case_read_value(reader, key, setting, detail, sizeof detail, err) != SF_OK)
                 return err->status;
@@ -151,8 +162,9 @@ static bool key_is_given(const void *reader, const char *group, const char *key)
 /* What the law itself refuses when the solver builds it: it concerns the curves. */
 static sf_status check_law(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    const sf_material *m = &reader->out->material;
+    const sf_material *m = reader->material;
     const char *place = "material", *file = NULL;
+    char path[SF_CASE_GROUP_SIZE];
     sf_material_law law;
     sf_error inner = SF_ERROR_INIT;
     if (sf_material_law_build(m, &law, &inner) == SF_OK) {
@@ -161,21 +173,24 @@ static sf_status check_law(const sf_case_reader *reader, sf_error *err) {
     }
     if (m->law->curves != SIZE_MAX)
         place = sf_case_is_given(reader, "material", "curve") ? "material.curve" : "material.curves";
-    config_lookup_string(&reader->config, place, &file);
-    return SF_FAIL(err, inner.status, "%s: %s: %s%s%s", sf_case_where_is(reader, place, where), place,
+    sf_case_material_path(reader->material_group, place, path, sizeof path);
+    config_lookup_string(&reader->config, path, &file);
+    return SF_FAIL(err, inner.status, "%s: %s: %s%s%s", sf_case_where_is(reader, place, where), path,
                    file ? file : "", file ? ": " : "", inner.text);
 }
 
 /* The law's rules. */
 static sf_status check_material(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    const sf_material *m = &reader->out->material;
+    char text[sizeof((sf_error *)NULL)->text];
+    const sf_material *m = reader->material;
     const sf_given given = {key_is_given, reader};
     const char *place = "material";
     sf_error inner = SF_ERROR_INIT;
     if (!m->law->check_keys || m->law->check_keys(m->card, &given, &place, &inner) == SF_OK)
         return check_law(reader, err);
-    return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), inner.text);
+    sf_case_material_path(reader->material_group, inner.text, text, sizeof text);
+    return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), text);
 }
 
 static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
@@ -239,11 +254,61 @@ static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
+/* The layer with this name of `length` characters; -1: none. */
+static int find_layer(const sf_case *c, const char *name, size_t length) {
+    for (int k = 0; k < c->layer_count; k++)
+        if (strlen(c->layer[k].name) == length && strncmp(c->layer[k].name, name, length) == 0)
+            return k;
+    return -1;
+}
+
+/* Two different layers, "NAME/NAME". */
+static sf_status find_interface(const sf_case_reader *reader, const char *name, int layer[2], sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const char *slash = strchr(name, '/');
+    layer[0] = slash ? find_layer(reader->out, name, (size_t)(slash - name)) : -1;
+    layer[1] = slash ? find_layer(reader->out, slash + 1, strlen(slash + 1)) : -1;
+    if (layer[0] >= 0 && layer[1] >= 0 && layer[0] != layer[1])
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: pad.sliding_interfaces: \"%s\" does not name two layers of materials, for example "
+                   "\"cover/core\"",
+                   sf_case_where_is(reader, "pad.sliding_interfaces", where), name);
+}
+
+/* Rules on the layers; their names, for sentences, as the pad's group. */
+static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    sf_case *c = reader->out;
+    if (!reader->layers && c->interface_count > 0)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: pad.sliding_interfaces: the pad has one material; layers are the groups of "
+                       "materials",
+                       sf_case_where_is(reader, "pad.sliding_interfaces", where));
+    if (reader->layers && sf_case_is_given(reader, "pad", "group"))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: pad.group: the groups of materials name the pad's volumes; only one of the two may "
+            "be given",
+            sf_case_where_is(reader, "pad.group", where));
+    for (int k = 0; k < c->interface_count; k++)
+        if (find_interface(reader, c->interface_name[k], c->interface_layer[k], err) != SF_OK)
+            return err->status;
+    for (int k = 0; k < c->layer_count; k++) {
+        size_t used = k ? strlen(c->pad_group) : 0;
+        snprintf(c->pad_group + used, sizeof c->pad_group - used, "%s%s", k ? "\", \"" : "",
+                 c->layer[k].name);
+    }
+    return SF_OK;
+}
+
 /* Rules that join several keys, on the values as they are given. */
 static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
-    if (check_material(reader, err) != SF_OK)
+    if (!reader->layers && check_material(reader, err) != SF_OK)
+        return err->status;
+    if (check_layers(reader, err) != SF_OK)
         return err->status;
     if (!c->missile.path && c->missile.parameter_count > 0)
         return SF_FAIL(
@@ -304,7 +369,9 @@ static sf_status check_complete(const sf_case_reader *reader, sf_error *err) {
 
 /* The law, on which the other keys of the material depend, and its card. */
 static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
-    const config_setting_t *setting = config_lookup(&reader->config, "material.law");
+    char path[SF_CASE_GROUP_SIZE];
+    snprintf(path, sizeof path, "%s.law", reader->material_group);
+    const config_setting_t *setting = config_lookup(&reader->config, path);
     const char *name = setting ? config_setting_get_string(setting) : NULL;
     const sf_law *law = setting ? (name ? sf_law_find(name) : NULL) : sf_law_get(0);
     if (!law) {
@@ -313,11 +380,75 @@ static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
         for (int k = 0; sf_law_get(k) && used < sizeof known; k++)
             used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", k ? ", " : "",
                                      sf_law_get(k)->name);
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: material.law: \"%.80s\" is none of: %s",
-                       sf_case_where(reader, setting, where), name ? name : "", known);
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: \"%.80s\" is none of: %s",
+                       sf_case_where(reader, setting, where), path, name ? name : "", known);
     }
-    sf_case_list_keys(law, &reader->keys);
-    return sf_material_create(law, &reader->out->material, err);
+    if (reader->material_only && strcmp(reader->material_group, "material") != 0)
+        sf_case_list_layer_keys(law, reader->material_group, &reader->keys);
+    else
+        sf_case_list_keys(law, &reader->keys);
+    return reader->layers ? SF_OK : sf_material_create(law, reader->material, err);
+}
+
+/* The material of one layer, by the same keys as those of `material`. */
+static sf_status read_layer(const sf_case_reader *reader, const config_setting_t *setting,
+                            sf_material *material, sf_error *err) {
+    sf_case_reader *own = sf_alloc(err, 1, sizeof *own, "a layer's material");
+    if (!own)
+        return err->status;
+    *own = *reader;
+    own->layers = NULL;
+    own->material_only = true;
+    own->material = material;
+    snprintf(own->material_group, sizeof own->material_group, "materials.%s", config_setting_name(setting));
+    if (choose_law(own, err) == SF_OK && check_names(own, setting, own->material_group, err) == SF_OK &&
+        read_keys(own, err) == SF_OK && check_material(own, err) == SF_OK)
+        snprintf(material->name, sizeof material->name, "%s", config_setting_name(setting));
+    free(own);
+    return err->status;
+}
+
+static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    sf_case *c = reader->out;
+    int count = config_setting_length(reader->layers);
+    c->layer = sf_alloc(err, (unsigned long)count, sizeof *c->layer, "materials");
+    for (int k = 0; k < count && err->status == SF_OK; k++) {
+        const config_setting_t *setting = config_setting_get_elem(reader->layers, (unsigned)k);
+        const char *name = config_setting_name(setting);
+        if (!config_setting_is_group(setting))
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: materials.%.80s must be a group, the material of the volume of this name: "
+                           "materials = { NAME = { density = ...; }; }",
+                           sf_case_where(reader, setting, where), name);
+        if (strlen(name) >= SF_MATERIAL_NAME_SIZE)
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: materials: the name \"%.80s\" is longer than %d characters",
+                           sf_case_where(reader, setting, where), name, SF_MATERIAL_NAME_SIZE - 1);
+        c->layer_count++;
+        read_layer(reader, setting, &c->layer[k], err);
+    }
+    return err->status;
+}
+
+/* The group `materials`, if there is one. */
+static sf_status find_layers(sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const config_setting_t *found = config_lookup(&reader->config, "materials");
+    int count = found && config_setting_is_group(found) ? config_setting_length(found) : 0;
+    reader->layers = found;
+    if (found && config_lookup(&reader->config, "material"))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: the case has both material and materials: the first is for a pad of one material, "
+            "the second for one of layers",
+            sf_case_where(reader, found, where));
+    if (found && (count < 1 || count > SF_CASE_MAX_LAYERS))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: materials must be a group with the materials of 1 to %d layers by the names of "
+                       "their volumes: materials = { NAME = { density = ...; }; }",
+                       sf_case_where(reader, found, where), SF_CASE_MAX_LAYERS);
+    return SF_OK;
 }
 
 static sf_status parse_text(sf_case_reader *reader, int count, const char *const *overrides, sf_error *err) {
@@ -330,15 +461,16 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
     for (int i = 0; i < count; i++)
         if (sf_case_override(config, overrides[i], err) != SF_OK)
             return err->status;
-    if (choose_law(reader, err) != SF_OK)
+    if (find_layers(reader, err) != SF_OK || choose_law(reader, err) != SF_OK)
         return err->status;
-    return check_names(reader, err);
+    return check_names(reader, config_root_setting(config), "", err);
 }
 
 sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                        sf_case *out, sf_error *err) {
     memset(out, 0, sizeof *out);
-    sf_case_reader reader = {.path = path, .out = out, .sink = sink};
+    sf_case_reader reader = {
+        .path = path, .out = out, .sink = sink, .material = &out->material, .material_group = "material"};
     size_t listing_size = 0;
     config_init(&reader.config);
     config_set_destructor(&reader.config, free); /* of the hooks */
@@ -372,7 +504,11 @@ sf_status sf_case_check_material(const char *path, sf_error *err) {
     char *override = NULL;
     size_t size = 0;
     sf_case scratch = {0};
-    sf_case_reader reader = {.path = path, .out = &scratch, .material_only = true};
+    sf_case_reader reader = {.path = path,
+                             .out = &scratch,
+                             .material = &scratch.material,
+                             .material_group = "material",
+                             .material_only = true};
     config_init(&reader.config);
     config_set_destructor(&reader.config, free);
     reader.listing = open_memstream(&scratch.parameters, &size);
@@ -380,7 +516,8 @@ sf_status sf_case_check_material(const char *path, sf_error *err) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material %s", path);
     else if (sf_units_open(&reader.units, err) == SF_OK &&
              sf_case_override(&reader.config, override, err) == SF_OK && choose_law(&reader, err) == SF_OK &&
-             check_names(&reader, err) == SF_OK && read_keys(&reader, err) == SF_OK)
+             check_names(&reader, config_root_setting(&reader.config), "", err) == SF_OK &&
+             read_keys(&reader, err) == SF_OK)
         check_material(&reader, err);
     if (reader.listing)
         fclose(reader.listing);

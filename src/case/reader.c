@@ -40,12 +40,14 @@ char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *sett
 }
 
 bool sf_case_is_given(const sf_case_reader *reader, const char *group, const char *name) {
-    return reader->given[sf_case_find_key(&reader->keys, group, name) - reader->keys.key];
+    char path[SF_CASE_GROUP_SIZE];
+    sf_case_material_path(reader->material_group, group, path, sizeof path);
+    return reader->given[sf_case_find_key(&reader->keys, path, name) - reader->keys.key];
 }
 
 const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out) {
     char text[SF_CASE_GROUP_SIZE];
-    snprintf(text, sizeof text, "%s", path);
+    sf_case_material_path(reader->material_group, path, text, sizeof text);
     const config_setting_t *setting = config_lookup(&reader->config, text);
     for (char *dot = strrchr(text, '.'); !setting && dot; dot = strrchr(text, '.')) {
         *dot = '\0';

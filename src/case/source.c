@@ -23,6 +23,8 @@ char *sf_case_folder_of(const char *path, sf_error *err) {
 const char *sf_case_override_file(const char *text) {
     const char *equals = strchr(text, '=');
     const char *dot = strchr(text, '.');
+    if (dot && strncmp(text, "materials.", 10) == 0) /* a layer */
+        dot = strchr(dot + 1, '.');
     return equals && equals[1] == '@' && (!dot || dot > equals) ? equals + 2 : NULL;
 }
 

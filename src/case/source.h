@@ -32,7 +32,8 @@ void sf_case_source_free(sf_case_source *source);
 /* The folder part of a path, "." if there is none; from malloc. */
 char *sf_case_folder_of(const char *path, sf_error *err);
 
-/* The file of a text "group=@file", NULL for "group.key=value". Relative to the working directory. */
+/* The file of a text "group=@file" or "materials.NAME=@file", NULL for "group.key=value". Relative to the
+ * working directory. */
 const char *sf_case_override_file(const char *text);
 
 #endif

@@ -84,7 +84,7 @@ static sf_status check_bounds(const sf_case_reader *reader, const sf_key *key,
 
 /* Where the key's value goes. */
 static void *place_of(const sf_case_reader *reader, const sf_key *key) {
-    return (key->in_card ? (char *)reader->out->material.card : (char *)reader->out) + key->offset;
+    return (key->in_card ? (char *)reader->material->card : (char *)reader->out) + key->offset;
 }
 
 static sf_status read_quantity(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOTIONS = 6 }; /* along x, y, z, about x, y, z */
+enum { MOTIONS = 6 }; /* of each layer: along x, y, z, about x, y, z */
 
 static const double FREE = 1e-9; /* of the mean square of what is held: a motion that moves no held node */
 static const double PART = 1e-6; /* of a motion: none */
@@ -26,7 +26,7 @@ static void find_box(const sf_model *m, double middle[3], double *size) {
     }
 }
 
-/* Displacement of the place r along axis c in each rigid motion. */
+/* Displacement of the place r along axis c in each rigid motion of one layer. */
 static void motion_row(const double r[3], int c, double row[MOTIONS]) {
     int next = (c + 1) % 3, last = (c + 2) % 3;
     memset(row, 0, MOTIONS * sizeof *row);
@@ -35,30 +35,54 @@ static void motion_row(const double r[3], int c, double row[MOTIONS]) {
     row[3 + last] = -r[next];
 }
 
-/* Sum of the squares of what the constraints forbid, as a matrix; its null space is free. */
-static void add_rows(const sf_model *m, gsl_matrix *sum, sf_hold *hold) {
-    double middle[3], size;
-    find_box(m, middle, &size);
-    for (int64_t k = 0; k < m->fixed_count; k++)
-        for (int c = 0; c < 3; c++) {
-            double r[3], row[MOTIONS];
-            if (!(m->fixed_mask[k] & 1 << c))
+/* Adds the square of what is forbidden: the displacement of one node, less that of another (-1: none) at the
+ * same place, along axis c. */
+static void add_row(const sf_model *m, const double r[3], int c, int32_t node, int32_t other,
+                    gsl_matrix *sum) {
+    double row[MOTIONS], weight = 1 / fmax(1, (double)m->fixed_count);
+    const int32_t nodes[2] = {node, other};
+    motion_row(r, c, row);
+    for (int p = 0; p < 2; p++)
+        for (int q = 0; q < 2; q++) {
+            if (nodes[p] < 0 || nodes[q] < 0)
                 continue;
-            hold->rows[c]++;
-            for (int i = 0; i < 3; i++)
-                r[i] = (m->position[3 * (int64_t)m->fixed_node[k] + i] - middle[i]) / size;
-            motion_row(r, c, row);
+            size_t first = MOTIONS * (size_t)m->node_material[nodes[p]],
+                   second = MOTIONS * (size_t)m->node_material[nodes[q]];
             for (size_t a = 0; a < MOTIONS; a++)
                 for (size_t b = 0; b < MOTIONS; b++)
-                    *gsl_matrix_ptr(sum, a, b) += row[a] * row[b] / (double)m->fixed_count;
+                    *gsl_matrix_ptr(sum, first + a, second + b) +=
+                        (p == q ? 1 : -1) * row[a] * row[b] * weight;
         }
 }
 
-static void name_motion(const gsl_matrix *vector, size_t k, sf_hold *hold) {
+/* Sum of the squares of what constraints and ties forbid, as a matrix; its null space is free. */
+static void add_rows(const sf_model *m, gsl_matrix *sum, sf_hold *hold) {
+    double middle[3], size;
+    find_box(m, middle, &size);
+    for (int64_t k = 0; k < m->fixed_count + m->tie_count; k++) {
+        int64_t t = k - m->fixed_count;
+        int32_t node = t < 0 ? m->fixed_node[k] : m->tie_node[t], other = t < 0 ? -1 : m->tie_other[t];
+        uint8_t mask = t < 0 ? m->fixed_mask[k] : m->tie_mask[t];
+        double r[3];
+        for (int i = 0; i < 3; i++)
+            r[i] = (m->position[3 * (int64_t)node + i] - middle[i]) / size;
+        for (int c = 0; c < 3; c++) {
+            if (!(mask & 1 << c))
+                continue;
+            hold->rows[c] += t < 0;
+            add_row(m, r, c, node, other, sum);
+        }
+    }
+}
+
+static void name_motion(const gsl_matrix *vector, size_t k, size_t layer, sf_hold *hold) {
     double part[MOTIONS];
     for (size_t a = 0; a < MOTIONS; a++)
-        part[a] = fabs(gsl_matrix_get(vector, a, k));
-    hold->lifts = hold->lifts || part[2] > PART || part[3] > PART || part[4] > PART;
+        part[a] = fabs(gsl_matrix_get(vector, MOTIONS * layer + a, k));
+    if (!hold->lifts && (part[2] > PART || part[3] > PART || part[4] > PART)) {
+        hold->lifts = true;
+        hold->lifted = (int64_t)layer;
+    }
     hold->slides[0] = hold->slides[0] || part[0] > PART;
     hold->slides[1] = hold->slides[1] || part[1] > PART;
     hold->turns = hold->turns || part[5] > PART;
@@ -82,17 +106,18 @@ static void find_underside(const sf_model *m, sf_hold *hold) {
 
 sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
     *hold = (sf_hold){0};
-    gsl_matrix *sum = gsl_matrix_calloc(MOTIONS, MOTIONS), *vector = gsl_matrix_alloc(MOTIONS, MOTIONS);
-    gsl_vector *value = gsl_vector_alloc(MOTIONS);
-    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(MOTIONS);
+    size_t layers = (size_t)m->node_material[m->node_count - 1] + 1, size = MOTIONS * layers;
+    gsl_matrix *sum = gsl_matrix_calloc(size, size), *vector = gsl_matrix_alloc(size, size);
+    gsl_vector *value = gsl_vector_alloc(size);
+    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(size);
     if (!sum || !vector || !value || !work) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the rigid motions of the pad");
     } else {
         add_rows(m, sum, hold);
         gsl_eigen_symmv(sum, value, vector, work);
-        for (size_t k = 0; k < MOTIONS; k++)
-            if (!(gsl_vector_get(value, k) > FREE))
-                name_motion(vector, k, hold);
+        for (size_t k = 0; k < size; k++)
+            for (size_t layer = 0; layer < layers && !(gsl_vector_get(value, k) > FREE); layer++)
+                name_motion(vector, k, layer, hold);
         find_underside(m, hold);
     }
     gsl_matrix_free(sum);
@@ -102,9 +127,15 @@ sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
     return err->status;
 }
 
-sf_status sf_hold_check(const sf_hold *hold, sf_error *err) {
+sf_status sf_hold_check(const sf_hold *hold, const sf_model *m, sf_error *err) {
     if (!hold->lifts)
         return SF_OK;
+    if (m->material_count > 1 && hold->rows[2] > 0)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the layer \"%s\" from being lifted or "
+            "tilted: what holds it along z lies at a point or on a line, or is nothing",
+            m->material[hold->lifted].name);
     if (hold->rows[2] == 0)
         return SF_FAIL(
             err, SF_ERR_INPUT,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What holds the pad? Its rigid motions that base, anvil and symmetry planes leave free. */
+/* What holds the pad? Its rigid motions, and those of its layers against each other, that base, anvil,
+ * symmetry planes and ties leave free. */
 #ifndef SF_PRE_HOLD_H
 #define SF_PRE_HOLD_H
 
@@ -10,6 +11,7 @@
 typedef struct sf_hold {
     int64_t rows[3];      /* nodes held along x, y and z */
     bool lifts;           /* some rigid motion with a vertical part is free */
+    int64_t lifted;       /* the layer that it moves most */
     bool slides[2];       /* along x, y */
     bool turns;           /* about a vertical axis */
     double underside;     /* share of the nodes of the pad's underside that are held along z */
@@ -19,8 +21,8 @@ typedef struct sf_hold {
 /* Needs positions and constraints of the model. */
 sf_status sf_hold_find(const sf_model *model, sf_hold *hold, sf_error *err);
 
-/* SF_ERR_INPUT if the pad can be moved vertically or tilted without being deformed. */
-sf_status sf_hold_check(const sf_hold *hold, sf_error *err);
+/* SF_ERR_INPUT if the pad or a layer can be moved vertically or tilted without being deformed. */
+sf_status sf_hold_check(const sf_hold *hold, const sf_model *model, sf_error *err);
 /* Tells `sink` of an underside that is mostly free, and of a missile that pushes the pad along a free motion.
  */
 void sf_hold_warn(const sf_hold *hold, const sf_model *model, const sf_sink *sink);

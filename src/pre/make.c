@@ -43,7 +43,7 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
     memset(model, 0, sizeof *model);
     if (read_geometry(c, &mesh, &surface, libraries, sink, err) == SF_OK &&
         sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
-        if (sf_hold_check(&report->hold, err) == SF_OK && report->contact_held)
+        if (sf_hold_check(&report->hold, model, err) == SF_OK && report->contact_held)
             SF_FAIL(err, SF_ERR_INPUT,
                     "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or pad.sliding",
                     c->contact_group);
