@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/model.h"
 
+#include "core/mat3.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,6 +97,27 @@ static const sf_model_field fields[] = {
     SCALAR(missile.sphere_centre[2], F64, "/missile/sphere_centre_z", "m", "centre at t = 0, z"),
     SCALAR(missile.sphere_radius, F64, "/missile/sphere_radius", "m", "radius"),
     SCALAR(missile.sphere_cap_cosine, F64, "/missile/sphere_cap_cosine", "1", "cosine that bounds the cap"),
+    OPTIONAL_SCALAR(missile.freedom, I64, "/missile/freedom", "1", "0 guided along its direction, 1 free"),
+    OPTIONAL_SCALAR(missile.centre[0], F64, "/missile/centre_x", "m",
+                    "centre of mass at t = 0, x; of a free missile"),
+    OPTIONAL_SCALAR(missile.centre[1], F64, "/missile/centre_y", "m", "centre of mass at t = 0, y"),
+    OPTIONAL_SCALAR(missile.centre[2], F64, "/missile/centre_z", "m", "centre of mass at t = 0, z"),
+    OPTIONAL_SCALAR(missile.inertia[0], F64, "/missile/inertia_xx", "kg m2",
+                    "tensor of inertia about the centre of mass"),
+    OPTIONAL_SCALAR(missile.inertia[1], F64, "/missile/inertia_yy", "kg m2", "tensor of inertia"),
+    OPTIONAL_SCALAR(missile.inertia[2], F64, "/missile/inertia_zz", "kg m2", "tensor of inertia"),
+    OPTIONAL_SCALAR(missile.inertia[3], F64, "/missile/inertia_xy", "kg m2",
+                    "tensor of inertia, - integral of x y dm"),
+    OPTIONAL_SCALAR(missile.inertia[4], F64, "/missile/inertia_yz", "kg m2",
+                    "tensor of inertia, - integral of y z dm"),
+    OPTIONAL_SCALAR(missile.inertia[5], F64, "/missile/inertia_xz", "kg m2",
+                    "tensor of inertia, - integral of x z dm"),
+    OPTIONAL_SCALAR(missile.angular_velocity[0], F64, "/missile/angular_velocity_x", "rad s-1",
+                    "at t = 0, x"),
+    OPTIONAL_SCALAR(missile.angular_velocity[1], F64, "/missile/angular_velocity_y", "rad s-1",
+                    "at t = 0, y"),
+    OPTIONAL_SCALAR(missile.angular_velocity[2], F64, "/missile/angular_velocity_z", "rad s-1",
+                    "at t = 0, z"),
     SCALAR(run.end_time, F64, "/run/end_time", "s", "end of the simulated time"),
     SCALAR(run.step_safety, F64, "/run/step_safety", "1", "fraction of the stability limit"),
     SCALAR(run.step_limit, F64, "/run/step_limit", "s", "largest time step"),
@@ -118,6 +141,19 @@ double sf_model_whole(const sf_model *model) {
 
 bool sf_missile_is_driven(const sf_model *model) {
     return model->motion_count > 0;
+}
+
+bool sf_missile_turns(const sf_model *model) {
+    return model->missile.freedom == SF_MISSILE_FREE;
+}
+
+bool sf_missile_inertia_is_possible(const double inertia[6], double principal[3]) {
+    static const double SLACK = 1e-9; /* a thin plate's moments are equal to the sum */
+    const double negative[6] = {-inertia[0], -inertia[1], -inertia[2], -inertia[3], -inertia[4], -inertia[5]};
+    principal[2] = sf_sym3_largest(inertia);
+    principal[0] = -sf_sym3_largest(negative);
+    principal[1] = inertia[0] + inertia[1] + inertia[2] - principal[0] - principal[2];
+    return principal[0] > 1e-9 * principal[2] && principal[2] <= (1 + SLACK) * (principal[0] + principal[1]);
 }
 
 double sf_missile_card_depth(const sf_missile_card *card, double displacement) {

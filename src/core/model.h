@@ -30,6 +30,9 @@ enum {
     SF_SHAPE_SURFACE = 1
 }; /* contact with an exact sphere cap, or with the triangles */
 
+/* Degrees of freedom of a missile that is not driven: along its direction, or six. */
+enum { SF_MISSILE_GUIDED = 0, SF_MISSILE_FREE = 1 };
+
 enum { SF_MATERIAL_MAX = 256 };
 /* Frames at equal intervals in one run. */
 enum { SF_MOST_FRAMES = 100000 };
@@ -38,7 +41,7 @@ enum { SF_MOST_FRAMES = 100000 };
 typedef struct sf_missile_card {
     double mass;             /* kg, of the whole missile, whatever the symmetry; 0 with a prescribed motion */
     double speed;            /* m s-1, at first contact; 0 with a prescribed motion */
-    double direction[3];     /* -, unit vector of motion; the one translational degree of freedom */
+    double direction[3];     /* -, unit vector of motion at t = 0; of a guided missile for good */
     double friction;         /* -, Coulomb coefficient against the pad */
     double gravity;          /* m s-2, acts along -z on the missile; 0 with a prescribed motion */
     double gap;              /* m, distance still to travel along `direction` at t = 0 */
@@ -49,6 +52,11 @@ typedef struct sf_missile_card {
     double sphere_radius;    /* m */
     double sphere_cap_cosine; /* -, smallest cosine between `direction` and a point of the cap, seen from the
                                  centre */
+    int64_t freedom;          /* SF_MISSILE_GUIDED or SF_MISSILE_FREE; 0 in all that follows if guided */
+    double centre[3];         /* m, centre of mass at t = 0 */
+    double inertia[6]; /* kg m2, about it, of the whole missile; (xx, yy, zz, xy, yz, xz) of the tensor,
+                          core/mat3.h, in the geometry's axes at t = 0 */
+    double angular_velocity[3]; /* rad s-1, at t = 0 */
 } sf_missile_card;
 
 typedef struct sf_run_options {
@@ -145,8 +153,13 @@ typedef struct sf_model {
  * exact. */
 double sf_model_whole(const sf_model *model);
 
-/* Has the missile a prescribed motion (core/motion.h)? Else it is free. */
+/* Has the missile a prescribed motion (core/motion.h)? Else the drop decides. */
 bool sf_missile_is_driven(const sf_model *model);
+/* Has it six degrees of freedom? */
+bool sf_missile_turns(const sf_model *model);
+/* Can a body have this tensor of inertia: are its principal moments positive, and none larger than the sum of
+ * the other two? `principal` [3] (kg m2), ascending. */
+bool sf_missile_inertia_is_possible(const double inertia[6], double principal[3]);
 /* The indentation, in this one place: depth (m) of the missile's lowest point below the plane of the
  * undeformed pad's top, from which the thickness is measured, after the missile's displacement (m) along its
  * direction; negative above the plane. */

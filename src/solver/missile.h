@@ -3,9 +3,11 @@
  * Contact, ledger, history, frames and run use these functions, with the point concerned, and do not depend
  * on its degrees of freedom.
  *
- * At present there is one: a translation along a fixed unit vector, the direction of the missile card. A
- * free missile is pulled by gravity and braked by the pad. A driven missile (sf_missile_is_driven,
- * core/motion.h) follows its prescribed motion: it has zero mobility (infinite mass).
+ * A guided missile has one: a translation along a fixed unit vector, the direction of the missile card. It is
+ * pulled by gravity and braked by the pad. A driven missile (sf_missile_is_driven, core/motion.h) follows its
+ * prescribed motion along it: it has zero mobility (infinite mass). A missile that turns
+ * (sf_missile_turns, docs/adr/0018) has six: its centre of mass moves in space, and it rotates about it
+ * (solver/rigid.h).
  *
  * Forces, masses, energies and momenta are those of the modelled part, 1/2 or 1/4 of the missile under
  * symmetry; sf_model_whole is the factor to the whole. Points and vectors are in the geometry's frame. A
@@ -28,7 +30,19 @@
     X(double, force, [3], "N", "of the pad on the missile")                                                            \
     X(double, friction, , "N", "its tangential part against the direction")                                            \
     X(double, contact_time, , "s", "first contact; NaN before")                                                        \
-    X(double, release_time, , "s", "last time with contact; NaN before")
+    X(double, release_time, , "s", "last time with contact; NaN before")                                               \
+    X(double, torque, [3], "N m", "of the pad on the missile, about its centre")                                       \
+    X(double, translation, [3], "m", "of the centre since t = 0; like the next ones of a missile that turns")          \
+    X(double, translation_old, [3], "m", "one step ago")                                                               \
+    X(double, rate, [3], "m s-1", "velocity of the centre at the half step, as `velocity`")                            \
+    X(double, rate_now, [3], "m s-1", "at `time`")                                                                     \
+    X(double, pull, [3], "m s-2", "acceleration of the centre")                                                        \
+    X(double, quaternion, [4], "1", "orientation, core/rotation.h; 1, 0, 0, 0 at t = 0")                               \
+    X(double, turn, [3], "1", "its change in the last step, sf_rotation_advance")                                      \
+    X(double, spin, [3], "kg m2 s-1", "angular momentum about the centre at the half step")                            \
+    X(double, spin_now, [3], "kg m2 s-1", "at `time`")                                                                 \
+    X(double, radius, , "m", "largest distance of its surface from the centre")                                        \
+    X(double, lowest, , "m", "height z of its lowest point at t = 0")
 /* clang-format on */
 
 typedef struct sf_missile {
@@ -43,15 +57,25 @@ void sf_missile_begin(const sf_model *model, sf_missile *missile);
 /* Unit vector [3] of its motion, owned by the model. */
 const double *sf_missile_direction(const sf_model *model);
 
-/* Translation (m) since t = 0. */
+/* Translation (m) since t = 0, of the centre. */
 void sf_missile_translation(const sf_model *model, const sf_missile *missile, double out[3]);
+/* What instruments in the missile see, at the present time, after sf_missile_kick. */
+typedef struct sf_missile_view {
+    double translation[3];          /* m */
+    double quaternion[4];           /* orientation, core/rotation.h */
+    double velocity[3];             /* m s-1, of the centre */
+    double specific_force[3];       /* m s-2: force of the pad, and of the guide, over the mass */
+    double angular_velocity[3];     /* rad s-1 */
+    double angular_acceleration[3]; /* rad s-2 */
+} sf_missile_view;
+sf_missile_view sf_missile_look(const sf_model *model, const sf_missile *missile);
 /* Velocity (m s-1), at the present time, of the missile's material point at x. */
 void sf_missile_velocity_at(const sf_model *model, const sf_missile *missile, const double x[3],
                             double out[3]);
 /* Displacement (m), in the last step, of the missile's material point at x. */
 void sf_missile_motion_at(const sf_model *model, const sf_missile *missile, const double x[3], double out[3]);
 /* Bound (m s-1) on the speed of all its points at the half step. */
-double sf_missile_fastest(const sf_missile *missile);
+double sf_missile_fastest(const sf_model *model, const sf_missile *missile);
 /* sf_missile_surface_near and sf_missile_surface_gap at the present pose; x and normal in the geometry's
  * frame. */
 bool sf_missile_near(const sf_model *model, const sf_missile *missile, const sf_missile_surface *surface,
@@ -67,6 +91,12 @@ typedef struct sf_missile_response {
     double mobility;         /* kg-1; 0 of a driven missile */
     double travel;           /* m, along, in the next step without contact */
     double load;             /* N, along, of the missile on the pad */
+    /* of a missile that turns, in place of travel and load */
+    bool turns;
+    double centre[3];           /* m, now */
+    double step[3], turn[3];    /* of centre and orientation in the next step without contact */
+    double angular[6];          /* kg-1 m-2, sf_rigid_mobility */
+    double force[3], moment[3]; /* N and N m about `centre`, of the missile on the pad */
 } sf_missile_response;
 
 /* The response without contact forces, in the step from `time` to time + dt (s); dt_old (s): of the step
@@ -89,6 +119,9 @@ void sf_missile_reload(sf_missile_response *response, const double x[3], const d
 void sf_missile_recoil(const sf_missile_response *response, const double x[3], double out[3]);
 /* Acceleration along the unit vector n, of the point at x, for each newton along n there (kg-1). */
 double sf_missile_mobility(const sf_missile_response *response, const double x[3], const double n[3]);
+/* What friction takes for that mobility in every direction across the normal: a bound; 0 unless it turns,
+ * whose guide holds it. */
+double sf_missile_looseness(const sf_missile_response *response, const double x[3]);
 
 /* ---- forces and the step ---- */
 
@@ -116,6 +149,13 @@ double sf_missile_along(const sf_model *model, const double vector[3]);
 double sf_missile_momentum(const sf_model *model, const sf_missile *missile);
 /* Kinetic energy (J) at the present time, after sf_missile_kick; dt_v (s): the distance of the half steps. */
 double sf_missile_kinetic(const sf_model *model, const sf_missile *missile, double dt_v);
+/* What the balance of momentum in space counts of the missile (solver/ledger.h): momentum (kg m s-1) and
+ * angular momentum about the origin (kg m2 s-1) at the half step, 0 unless it turns. */
+void sf_missile_momenta(const sf_model *model, const sf_missile *missile, double linear[3],
+                        double angular[3]);
+/* And what acts there from outside through the missile, force (N) and moment about the origin (N m): the
+ * weight of a missile that turns; any other is outside itself, with its force on the pad. */
+void sf_missile_outside(const sf_model *model, const sf_missile *missile, double force[3], double moment[3]);
 /* Work (J) of gravity since t = 0. */
 double sf_missile_gravity_work(const sf_model *model, const sf_missile *missile);
 /* Work (J), in the last step, of a force (N) at the missile's material point at x. */
@@ -128,9 +168,10 @@ double sf_missile_free_fall(const sf_model *model);
 double sf_missile_reading(const sf_model *model, const sf_missile *missile);
 /* Force of the pad (N) against the direction. */
 double sf_missile_contact_force(const sf_model *model, const sf_missile *missile);
-/* Depth (m) of the first touching point below the undeformed top; negative before contact. */
+/* Depth (m) of its lowest point below the undeformed top; negative before contact. */
 double sf_missile_depth(const sf_model *model, const sf_missile *missile);
-/* Is it free, and on its way away from the pad? */
+/* Is it not driven, and on its way away from the pad? If it turns: its centre rises, and either all of its
+ * points do or it is clear of the pad however it turns. */
 bool sf_missile_is_leaving(const sf_model *model, const sf_missile *missile);
 
 #endif

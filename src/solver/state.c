@@ -73,6 +73,7 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
 static void start_free(const sf_model *m, sf_state *s) {
     s->ledger.reference = sf_missile_kinetic(m, &s->missile, 0);
     s->ledger.momentum_reference = sf_missile_momentum(m, &s->missile);
+    sf_missile_momenta(m, &s->missile, s->ledger.impulse_linear, s->ledger.impulse_angular);
 }
 
 /* A driven missile brings no energy. Until it has done more work, its errors refer to the pad at the motion's
@@ -136,7 +137,8 @@ static bool all_finite(const double *value, int64_t count) {
 bool sf_state_is_finite(const sf_model *m, const sf_state *s) {
     return all_finite(s->d, 3 * m->node_count) && all_finite(s->v, 3 * m->node_count) &&
            all_finite(s->force, 3 * m->node_count) && all_finite(s->stress, 9 * m->node_count) &&
-           all_finite(&s->missile.displacement, 1) && all_finite(s->missile.force, 3);
+           all_finite(&s->missile.displacement, 1) && all_finite(s->missile.force, 3) &&
+           all_finite(s->missile.spin, 3) && all_finite(s->missile.quaternion, 4);
 }
 
 void sf_state_free(sf_state *s) {

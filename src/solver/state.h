@@ -20,6 +20,8 @@ typedef struct sf_partial {
     double stored, hysteresis, viscous; /* J; viscous: of this step */
     double kinetic;                     /* J, 1/2 m v(n-1/2) . v(n+1/2) */
     double momentum[3];                 /* kg m s-1 */
+    double angular[3];                  /* kg m2 s-1, angular momentum about the origin */
+    double moment[3];                   /* N m, of the constraint reactions about the origin */
     double fastest;                     /* m2 s-2, largest v . v */
     double stabilisation;               /* J, potential */
     double stabilisation_drift;         /* J, change of the potential by the change of its stiffness */
@@ -52,7 +54,11 @@ typedef struct sf_partial {
     X(double, largest_error, , "1", "largest |error| so far")                                                          \
     X(double, momentum_reference, , "kg m s-1", "along the missile's direction, to which the momentum error refers")   \
     X(double, impulse, , "N s", "of gravity and constraints, and of a driven missile, along it")                       \
-    X(double, momentum_error, , "1", "over momentum_reference")
+    X(double, momentum_error, , "1", "over momentum_reference")                                                        \
+    X(double, impulse_linear, [3], "N s", "of all that is outside, in space, with the momentum at t = 0")              \
+    X(double, impulse_angular, [3], "N m s", "likewise of moments about the origin")                                   \
+    X(double, vector_error, , "1", "of the momentum in space, over momentum_reference")                                \
+    X(double, angular_error, , "1", "of the angular momentum, over momentum_reference x thickness")
 
 /* All others. */
 #define SF_STATE_NUMBERS(X)                                                                                            \

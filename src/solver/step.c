@@ -2,6 +2,7 @@
 #include "solver/step.h"
 
 #include "core/lanes.h"
+#include "core/mat3.h"
 #include "core/threads.h"
 #include "solver/contact/contact.h"
 #include "solver/field/domain_stress.h"
@@ -113,12 +114,26 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
                    (long long)node, x[0], x[1], x[2], speed);
 }
 
-/* v += dt_v (force - reaction) / m, with the kinetic energy at the present time, and momentum and largest
- * speed after it. */
+/* Angular momentum and moment of the reaction of node i about the origin. */
+static void add_moments(const sf_model *m, const sf_state *s, int64_t i, double angular[3],
+                        double moment[3]) {
+    double x[3], of_v[3], of_reaction[3];
+    for (int c = 0; c < 3; c++)
+        x[c] = m->position[3 * i + c] + s->d[3 * i + c];
+    sf_cross3(x, &s->v[3 * i], of_v);
+    sf_cross3(x, &s->reaction[3 * i], of_reaction);
+    for (int c = 0; c < 3; c++) {
+        angular[c] += m->mass[i] * of_v[c];
+        moment[c] -= of_reaction[c];
+    }
+}
+
+/* v += dt_v (force - reaction) / m, with the kinetic energy at the present time, and momentum, angular
+ * momentum and largest speed after it. */
 static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
 #pragma omp parallel for if (m->node_count > SF_FEW_NODES) default(none) shared(m, s, dt_v) schedule(static)
     for (int64_t chunk = 0; chunk < s->chunk_count; chunk++) {
-        double kinetic = 0, momentum[3] = {0}, fastest = 0;
+        double kinetic = 0, momentum[3] = {0}, angular[3] = {0}, moment[3] = {0}, fastest = 0;
         for (int64_t i = chunk * SF_CHUNK; i < (chunk + 1) * SF_CHUNK && i < m->node_count; i++) {
             double mass = m->mass[i], factor = dt_v / mass, square = 0;
             for (int c = 0; c < 3; c++) {
@@ -130,11 +145,24 @@ static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
                 square += v * v;
             }
             fastest = sf_larger(square, fastest);
+            add_moments(m, s, i, angular, moment);
         }
         s->partial[chunk].kinetic = kinetic;
         s->partial[chunk].fastest = fastest;
         memcpy(s->partial[chunk].momentum, momentum, sizeof momentum);
+        memcpy(s->partial[chunk].angular, angular, sizeof angular);
+        memcpy(s->partial[chunk].moment, moment, sizeof moment);
     }
+}
+
+/* Force and moment of all constraints on the pad; after accelerate. */
+static sf_wrench wrench_of_constraints(const sf_state *s, const sf_constraint_step *held) {
+    sf_wrench w = {{0}, {0}};
+    memcpy(w.force, held->all, sizeof w.force);
+    for (int64_t k = 0; k < s->chunk_count; k++)
+        for (int c = 0; c < 3; c++)
+            w.moment[c] += s->partial[k].moment[c];
+    return w;
 }
 
 sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
@@ -167,7 +195,8 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
 
     accelerate(m, s, dt_v); /* v at the next half step */
     sf_missile_kick(m, &s->missile, s->time, s->dt, s->dt_old);
-    sf_ledger_close(m, s, held.all, dt_v);
+    const sf_wrench outside = wrench_of_constraints(s, &held);
+    sf_ledger_close(m, s, &outside, dt_v);
     sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)
         return err->status;

@@ -23,7 +23,7 @@ static const double NEAR = 2;
 /* Subtracts the last step's travel from the skin of the Verlet list. When the rest is too small, lists all
  * points and returns true. */
 static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
-    double speed = op->gram.spread * s->fastest + sf_missile_fastest(&s->missile);
+    double speed = op->gram.spread * s->fastest + sf_missile_fastest(m, &s->missile);
     s->contact_room -= s->dt_old * speed;
     if (s->step > 0 && s->contact_room > fmax(0.5 * NEAR * op->gram.spacing, 2 * s->dt * speed))
         return false;
@@ -173,7 +173,8 @@ static double relax_point(const sf_model *m, const sf_contact_gram *gram, sf_sta
         sf_missile_free_motion(&w->missile, x, away);
         for (int r = 0; r < 3; r++)
             slip[r] = s->contact_step[3 * c + r] - away[r] + moved[r];
-        double across = sf_dot3(slip, n), stuck = w->shift * gram->diagonal[c];
+        double across = sf_dot3(slip, n),
+               stuck = w->shift * (gram->diagonal[c] + sf_missile_looseness(&w->missile, x));
         for (int r = 0; r < 3; r++) {
             tangential[r] = old[r] - p_old * n[r] - (slip[r] - across * n[r]) / stuck;
             size += tangential[r] * tangential[r];
