@@ -40,14 +40,23 @@ void foam_reset(sf_law_batch *batch) {
     }
 }
 
-void foam_step(const sf_foam *foam, double dt, const double f[9], sf_law_batch *batch) {
+void point_law_step(const point_law *law, double dt, const double f[9], sf_law_batch *batch) {
     double old[9];
     foam_get(batch->f, 0, old);
     for (int lane = 0; lane < SF_LANES; lane++) {
         foam_set(batch->f_old, lane, old);
         foam_set(batch->f, lane, f);
     }
-    sf_foam_update(foam, dt, batch);
+    law->update(law->numbers, dt, batch);
+}
+
+static point_law law_of(const sf_foam *foam) {
+    return (point_law){sf_low_density_foam.update, foam, foam->maxwell, false};
+}
+
+void foam_step(const sf_foam *foam, double dt, const double f[9], sf_law_batch *batch) {
+    const point_law law = law_of(foam);
+    point_law_step(&law, dt, f, batch);
 }
 
 foam_point foam_elastic(const sf_foam *foam, const double f[9], double peak) {
@@ -64,19 +73,24 @@ foam_point foam_elastic(const sf_foam *foam, const double f[9], double peak) {
     return point;
 }
 
-void foam_tangent(const sf_foam *foam, double dt, const sf_law_batch *batch, double tangent[81]) {
+void point_law_tangent(const point_law *law, double dt, const sf_law_batch *batch, double tangent[81]) {
     const double h = 1e-6;
     for (int column = 0; column < 9; column++) {
         double p[2][9];
         for (int side = 0; side < 2; side++) {
             sf_law_batch moved = *batch;
             moved.f[column][0] += side ? h : -h;
-            sf_foam_update(foam, dt, &moved);
+            law->update(law->numbers, dt, &moved);
             foam_get(moved.p, 0, p[side]);
         }
         for (int row = 0; row < 9; row++)
             tangent[9 * row + column] = (p[1][row] - p[0][row]) / (2 * h);
     }
+}
+
+void foam_tangent(const sf_foam *foam, double dt, const sf_law_batch *batch, double tangent[81]) {
+    const point_law law = law_of(foam);
+    point_law_tangent(&law, dt, batch, tangent);
 }
 
 void foam_assert_bounds(const sf_law_batch *batch, const double tangent[81]) {
@@ -94,15 +108,15 @@ void foam_assert_bounds(const sf_law_batch *batch, const double tangent[81]) {
         fail_msg("the tangent exceeds the bound by direction by %.9g Pa of %.9g Pa", excess, bound);
 }
 
-void foam_assert_tangent_bounds(const sf_foam *foam, uint64_t *seed, double dt) {
+void point_law_assert_bounds(const point_law *law, uint64_t *seed, double low, double high, double dt) {
     sf_law_batch batch;
     double f[9], old[9], tangent[81];
-    point_deformation(seed, 0.2, 1.2, old);
+    point_deformation(seed, low, high, old);
     foam_reset(&batch);
-    foam_step(foam, 0, old, &batch);
+    point_law_step(law, 0, old, &batch);
     for (int lane = 0; lane < SF_LANES; lane++) {
         for (int k = 0; k < 6; k++)
-            batch.history[SF_FOAM_MAXWELL + k][lane] = foam->maxwell * point_random(seed, -0.1, 0.1);
+            batch.history[SF_FOAM_MAXWELL + k][lane] = law->maxwell * point_random(seed, -0.1, 0.1);
         batch.history[SF_FOAM_RATE][lane] = point_random(seed, 0, 120);
     }
     for (int k = 0; k < 9; k++)
@@ -111,8 +125,15 @@ void foam_assert_tangent_bounds(const sf_foam *foam, uint64_t *seed, double dt) 
     foam_set(batch.f, 0, f);
     if (point_random(seed, 0, 1) < 0.5)
         batch.history[SF_FOAM_PEAK][0] *= 2;
+    else if (law->away)
+        batch.history[SF_FOAM_PEAK][0] = 0;
     sf_law_batch after = batch;
-    foam_tangent(foam, dt, &batch, tangent);
-    sf_foam_update(foam, dt, &after);
+    point_law_tangent(law, dt, &batch, tangent);
+    law->update(law->numbers, dt, &after);
     foam_assert_bounds(&after, tangent);
+}
+
+void foam_assert_tangent_bounds(const sf_foam *foam, uint64_t *seed, double dt) {
+    const point_law law = law_of(foam);
+    point_law_assert_bounds(&law, seed, 0.2, 1.2, dt);
 }

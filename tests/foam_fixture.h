@@ -27,6 +27,18 @@ foam_point foam_elastic(const sf_foam *foam, const double f[9], double peak);
 /* diag(stretch, 1, 1) */
 void foam_uniaxial(double stretch, double f[9]);
 
+/* A law at points: `update` of sf_law with its numbers. */
+typedef struct point_law {
+    void (*update)(const void *numbers, double dt, sf_law_batch *batch);
+    const void *numbers;
+    double maxwell; /* Pa, its scale for random stresses of the Maxwell branch */
+    bool away;      /* keep random W away from its largest: where ALPHA < 1 has no tangent */
+} point_law;
+void point_law_step(const point_law *law, double dt, const double f[9], sf_law_batch *batch);
+void point_law_tangent(const point_law *law, double dt, const sf_law_batch *batch, double tangent[81]);
+/* As foam_assert_tangent_bounds, from stretches between `low` and `high`. */
+void point_law_assert_bounds(const point_law *law, uint64_t *seed, double low, double high, double dt);
+
 /* dP/dF [9][9] at batch->f by central differences, over a step `dt` from batch->f_old with the batch's
  * history. */
 void foam_tangent(const sf_foam *foam, double dt, const sf_law_batch *batch, double tangent[81]);

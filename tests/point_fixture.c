@@ -19,6 +19,7 @@ void point_card_init(point_card *card) {
         .modulus = 0.4e6,
         .hysteresis_hu = 1,
         .hysteresis_shape = 1,
+        .hysteresis_alpha = 1,
         .tension_cutoff = 1e30,
         .densification_limit = 1,
         .rate_filter_time = 1e-4,

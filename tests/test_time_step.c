@@ -4,6 +4,7 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
+#include "solver/material/hyperfoam.h"
 #include "solver/step.h"
 #include "solver/time_step.h"
 #include <math.h>
@@ -139,8 +140,25 @@ static double tangent_eigenvalue(fixture *f) {
     return value;
 }
 
+/* Hyperfoam of the stiffness of the EVA, with nu = 0.25. */
+static void make_hyperfoam(sf_case *c) {
+    sf_error err = SF_ERROR_INIT;
+    sf_material_free(&c->material);
+    assert_int_equal(sf_material_create(&sf_hyperfoam_law, &c->material, &err), SF_OK);
+    *(sf_hyperfoam_card *)c->material.card = (sf_hyperfoam_card){
+        .density = 35,
+        .hysteresis_hu = 1,
+        .hysteresis_shape = 1,
+        .hysteresis_alpha = 1,
+        .maxwell_rate = 5000,
+        .rate_reference = 0.01,
+        .rate_filter_time = 1e-4,
+        .stable_to = 0.9,
+        .term = {{.mu = 1.5e5, .alpha = 8, .nu = 0.25}, {.mu = 4e4, .alpha = -1.5, .beta = 0.2}}};
+}
+
 /* A small free block of elastic foam, its missile out of reach; 64 nodes. */
-static void start_block(fixture *f, bool linear, double stabilisation) {
+static void start_block_of(fixture *f, bool linear, bool hyper, double stabilisation) {
     const fixture_block block = {.cells = {3, 3, 3}, .spacing = 0.01, .jitter = 0.25, .surface_jitter = 0.2};
     sf_case c;
     sf_mesh mesh;
@@ -151,6 +169,8 @@ static void start_block(fixture *f, bool linear, double stabilisation) {
         fixture_make_linear(&c);
     else
         fixture_make_elastic(&c);
+    if (hyper)
+        make_hyperfoam(&c);
     c.missile_card.gap = 100;
     c.run.stabilisation = stabilisation;
     c.run.step_limit = 1;
@@ -158,6 +178,10 @@ static void start_block(fixture *f, bool linear, double stabilisation) {
     fixture_plate(0.5, 0.015, 0.015, &surface);
     fixture_build(&c, &mesh, &surface, f);
     fixture_start(f);
+}
+
+static void start_block(fixture *f, bool linear, double stabilisation) {
+    start_block_of(f, linear, false, stabilisation);
 }
 
 static void deform(fixture *f, const double gradient[9]) {
@@ -259,6 +283,38 @@ static void chosen_step_is_stable_for_the_full_tangent(void **state) {
     }
 }
 
+/* The same for the hyperfoam, whose principal directions are coupled. */
+static void chosen_step_is_stable_for_the_hyperfoam(void **state) {
+    (void)state;
+    static const struct {
+        double hu, alpha;
+        const double *before, *now;
+    } cases[] = {{1, 1, REST, REST},
+                 {1, 1, REST, SQUEEZED},
+                 {1, 1, REST, SHEARED},
+                 {1, 1, REST, CRUSHED},
+                 {0.01, 1, SQUEEZED, EASED},
+                 {0.01, 1, CRUSHED, SQUEEZED},
+                 {0.1, 0.3, CRUSHED, SQUEEZED},
+                 {0.1, 1, SHEARED, SQUEEZED}};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        fixture f;
+        start_block_of(&f, false, true, 0.1);
+        sf_hyperfoam_card *card = f.model.material[0].card;
+        card->hysteresis_hu = cases[k].hu;
+        card->hysteresis_alpha = cases[k].alpha;
+        fixture_start(&f);
+        deform(&f, cases[k].before);
+        deform(&f, cases[k].now);
+        double exact = tangent_eigenvalue(&f);
+        sf_time_step_choose(&f.model, &f.operators, &f.state);
+        double share = f.state.dt * sqrt(exact) / 2;
+        if (!(share <= f.model.run.step_safety && share > 0.4))
+            fail_msg("case %zu: the step is %.3f of the limit", k, share);
+        fixture_free(&f);
+    }
+}
+
 /* Leap-frog of the free block from a small random displacement; the largest coefficient of the last tenth
  * over the first one's. */
 static double free_vibration(fixture *f, double dt, int steps) {
@@ -325,6 +381,51 @@ static void solver_conserves_the_energy_of_a_free_vibration(void **state) {
     fixture_free(&f);
 }
 
+/* A free block with a little DAMP is thrown together along z, with some noise: many reversals. The largest
+ * energy over that of the first step. */
+static double largest_energy(bool hyper, double alpha) {
+    fixture f;
+    uint64_t seed = 2;
+    double first = 0, largest = 0;
+    start_block_of(&f, false, hyper, 0.1);
+    f.model.run.step_safety = 0.95;
+    f.model.missile.gravity = 0;
+    f.model.run.energy_limit = 1e9; /* the ledger starts with a pad at rest */
+    sf_foam_shared *card = f.model.material[0].card;
+    card->hysteresis_hu = 0.05;
+    card->hysteresis_alpha = alpha;
+    card->damp = 0.1;
+    fixture_start(&f);
+    sf_state *s = &f.state;
+    for (int64_t q = 0; q < 3 * f.model.node_count; q++)
+        s->v[q] = 0.1 * fixture_random(&seed) - (q % 3 == 2 ? 300 * f.model.position[q] : 0);
+    for (int step = 0; step < 600; step++) {
+        fixture_step(&f);
+        const sf_ledger *l = &s->ledger;
+        double energy = l->kinetic_pad + l->stored + l->hysteresis + l->viscous + l->stabilisation;
+        if (step == 1)
+            first = energy;
+        if (step > 0)
+            largest = larger(largest, energy / first);
+        sf_step_advance(&f.model, s);
+    }
+    assert_true(s->ledger.hysteresis > 0.05 * first);
+    fixture_free(&f);
+    return largest;
+}
+
+/* ALPHA < 1 has no bounded tangent at a reversal, where the bound is a mean (theory, "Hysteresis"). That
+ * makes no energy beyond what a reversal with ALPHA = 1 makes. */
+static void reversals_with_alpha_below_one_make_no_energy(void **state) {
+    (void)state;
+    for (int hyper = 0; hyper < 2; hyper++) {
+        double usual = largest_energy(hyper, 1);
+        assert_true(usual < 1.05);
+        assert_true(largest_energy(hyper, 0.5) < usual + 0.01);
+        assert_true(largest_energy(hyper, 0.15) < usual + 0.02);
+    }
+}
+
 static void step_shrinks_at_once_and_grows_slowly(void **state) {
     (void)state;
     fixture f;
@@ -352,8 +453,10 @@ int main(void) {
         cmocka_unit_test(first_estimate_with_its_margin_covers_a_crowded_spectrum),
         cmocka_unit_test(partition_bound_is_never_below_the_exact_frequency),
         cmocka_unit_test(chosen_step_is_stable_for_the_full_tangent),
+        cmocka_unit_test(chosen_step_is_stable_for_the_hyperfoam),
         cmocka_unit_test(free_vibration_is_stable_up_to_the_exact_limit_only),
         cmocka_unit_test(solver_conserves_the_energy_of_a_free_vibration),
+        cmocka_unit_test(reversals_with_alpha_below_one_make_no_energy),
         cmocka_unit_test(step_shrinks_at_once_and_grows_slowly),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -261,6 +261,7 @@ static void plate_study(sf_study *s) {
                           .modulus = 0.4136e6,
                           .hysteresis_hu = 0.01,
                           .hysteresis_shape = 1,
+                          .hysteresis_alpha = 1,
                           .maxwell_rate = 5000};
     sf_foam_card heavy = light;
     heavy.density = 35;

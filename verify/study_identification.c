@@ -55,6 +55,7 @@ static void fill_card(const truth *t, sf_foam_card *card) {
                            .modulus = t->stiffness,
                            .hysteresis_hu = t->hu,
                            .hysteresis_shape = t->shape,
+                           .hysteresis_alpha = 1,
                            .maxwell_modulus = t->ed,
                            .maxwell_rate = t->ed > 0 ? t->beta : 5000,
                            .tension_cutoff = 1e30,

@@ -237,6 +237,7 @@ static double in_tension(const sf_foam_card *card, place *p, double *memory) {
 static const double ONE = 1, STILL = 0;
 static const sf_foam_card ELASTIC = {.hysteresis_hu = 1,
                                      .hysteresis_shape = 1,
+                                     .hysteresis_alpha = 1,
                                      .maxwell_rate = 5000,
                                      .rate_filter_time = 1e-4,
                                      .tension_cutoff = 1e30};

@@ -80,10 +80,10 @@ typedef struct sf_law {
     size_t card_size;
     const sf_parameter *parameter;
     int parameter_count;
-    size_t density;      /* offset of the double: kg m-3, undeformed */
-    size_t rest_modulus; /* Pa: the least stiffness of the stabilisation */
-    size_t length;       /* m, a fixed length of damping, 0: each node's spacing; SIZE_MAX: no such member */
-    size_t curves;       /* of sf_law_curves; SIZE_MAX: none */
+    size_t density; /* offset of the double: kg m-3, undeformed */
+    size_t length;  /* m, a fixed length of damping, 0: each node's spacing; SIZE_MAX: no such member */
+    size_t curves;  /* of sf_law_curves; SIZE_MAX: none */
+    double (*rest_modulus)(const void *card); /* Pa: the least stiffness of the stabilisation */
     /* Rules beyond the bounds of each parameter; SF_ERR_MODEL. NULL: none. */
     sf_status (*check)(const void *card, sf_error *err);
     /* Rules that join keys of a case; the sentence begins with a key, `*place` is the one (or its group)

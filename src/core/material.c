@@ -45,7 +45,7 @@ double sf_material_informed(const sf_material *material) {
 }
 
 double sf_material_rest_modulus(const sf_material *material) {
-    return member(material, material->law->rest_modulus);
+    return material->law->rest_modulus(material->card);
 }
 
 double sf_material_length(const sf_material *material, double spacing) {

@@ -268,7 +268,7 @@ static double predict_unloading(const sf_compression_model *model, const gsl_vec
     evaluate(model, n->coefficient[0], n, t->largest_strain, model->peak_row[d->test[i]][0],
              model->peak_row[d->test[i]][1], &peak);
     double ratio = fmax(1e-12, fmin(1, o.energy / peak.energy)), power = pow(ratio, shape);
-    double factor = sf_foam_unloading(hu, shape, ratio), bend = (1 - hu) * shape * power * o.stress;
+    double factor = sf_unloading_factor(hu, shape, 1, ratio), bend = (1 - hu) * shape * power * o.stress;
     if (gradient) {
         double by_energy = bend / fmax(o.energy, 1e-12 * peak.energy), by_peak = -bend / peak.energy;
         add_coefficients(model, n, 0, o.stress_by, factor, gradient);

@@ -3,6 +3,7 @@
  * update of a batch is in foam.c. */
 #include "core/foam_card.h"
 #include "solver/material/foam.h"
+#include "solver/material/foam_parameters.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,15 +13,6 @@ static const double NO_CUTOFF = 1e30; /* Pa */
 
 /* ---- parameters ---- */
 
-static bool has_length(const void *card) {
-    return ((const sf_foam_card *)card)->damp_length > 0;
-}
-static bool has_maxwell(const void *card) {
-    return ((const sf_foam_card *)card)->maxwell_modulus > 0;
-}
-static bool has_kelvin(const void *card) {
-    return ((const sf_foam_card *)card)->kelvin_viscosity > 0;
-}
 static bool has_cutoff(const void *card) {
     return ((const sf_foam_card *)card)->tension_cutoff != NO_CUTOFF;
 }
@@ -31,49 +23,25 @@ static bool has_limit(const void *card) {
     return ((const sf_foam_card *)card)->densification_limit < 1;
 }
 
-static bool has_informed(const void *card) {
-    return ((const sf_foam_card *)card)->informed_strain > 0;
-}
-
 #define AT(member) .offset = offsetof(sf_foam_card, member)
-#define POSITIVE .low = 0.0, .low_open = true
-#define IN(name, size) .unit = name, .unit_size = size
 /* clang-format off */
 static const sf_parameter parameters[] = {
-    {"material", "density", SF_PARAMETER_QUANTITY, NULL, AT(density),
-     "of the undeformed foam", .quantity = SF_DENSITY, .low = 1e-3, .high = 1e5, IN("kg/m3", 1)},
+    SF_FOAM_DENSITY,
     {"material", "E", SF_PARAMETER_QUANTITY, NULL, AT(modulus),
      "modulus in tension, and the least stiffness of the stabilisation", .quantity = SF_PRESSURE, .low = 1.0, .high = 1e12,
-     IN("MPa", 1e6)},
+     SF_FOAM_IN("MPa", 1e6)},
     {"material", "curve", SF_PARAMETER_CURVE, "", AT(curves),
      "compression curve, a CSV file (see below); relative to the file that names it"},
     {"material", "curves", SF_PARAMETER_CURVES, "", AT(curves),
      "instead of `curve`: curves at several strain rates, ascending: ( { rate = \"0.0017 1/s\"; file = \"slow.csv\"; }, ... )"},
-    {"material", "HU", SF_PARAMETER_NUMBER, "1.0", AT(hysteresis_hu),
-     "hysteretic unloading factor; 1 = no hysteresis", .low = 1e-6, .high = 1.0},
-    {"material", "SHAPE", SF_PARAMETER_NUMBER, "1.0", AT(hysteresis_shape),
-     "shape of unloading", .low = 1e-3, .high = 100.0},
-    {"material", "DAMP", SF_PARAMETER_NUMBER, "0.0", AT(damp),
-     "viscous coefficient: stress DAMP x density x wave speed x length x strain rate", .high = 10.0},
-    {"material", "damp_length", SF_PARAMETER_QUANTITY, "\"spacing\"", AT(damp_length),
-     "the length in DAMP: \"spacing\" (of each node) or a fixed length", .quantity = SF_LENGTH, POSITIVE, .high = 1e3,
-     .words = "spacing", .word_value = 0.0, IN("mm", 1e-3), .acts = has_length},
-    {"material", "ED", SF_PARAMETER_QUANTITY, "\"0 Pa\"", AT(maxwell_modulus),
-     "modulus of the Maxwell branch; 0 = none", .quantity = SF_PRESSURE, .high = 1e12, IN("MPa", 1e6), .acts = has_maxwell},
-    {"material", "BETA1", SF_PARAMETER_QUANTITY, "\"5000 1/s\"", AT(maxwell_rate),
-     "decay rate of the Maxwell branch; must be given when ED is", .quantity = SF_RATE, .low = 1e-6, .high = 1e12,
-     IN("1/s", 1), .acts = has_maxwell},
-    {"material", "eta", SF_PARAMETER_QUANTITY, "\"0 Pa s\"", AT(kelvin_viscosity),
-     "Kelvin viscosity; bounds the time step", .quantity = SF_VISCOSITY, .high = 1e9, IN("Pa s", 1), .acts = has_kelvin},
+    SF_FOAM_PARAMETERS,
     {"material", "tension_cutoff", SF_PARAMETER_QUANTITY, "\"none\"", AT(tension_cutoff),
-     "largest tensile nominal stress, or \"none\"", .quantity = SF_PRESSURE, POSITIVE, .high = 1e12,
-     .words = "none", .word_value = NO_CUTOFF, IN("kPa", 1e3), .acts = has_cutoff},
+     "largest tensile nominal stress, or \"none\"", .quantity = SF_PRESSURE, SF_FOAM_POSITIVE, .high = 1e12,
+     .words = "none", .word_value = NO_CUTOFF, SF_FOAM_IN("kPa", 1e3), .acts = has_cutoff},
     {"material", "rate_filter_time", SF_PARAMETER_QUANTITY, "\"0.1 ms\"", AT(rate_filter_time),
      "time constant of the strain rate that chooses among `curves`", .quantity = SF_TIME, .low = 1e-9, .high = 1e3,
-     IN("ms", 1e-3), .acts = has_rates},
-    {"material", "informed_strain", SF_PARAMETER_NUMBER, "0.0", AT(informed_strain),
-     "largest compressive strain about which the material's data say something; 0 = where the table or its use ends; "
-     "beyond it softfall-post marks a run", .high = 0.999, .acts = has_informed},
+     SF_FOAM_IN("ms", 1e-3), .acts = has_rates},
+    SF_FOAM_INFORMED,
     {"material.densification", "rule", SF_PARAMETER_CHOICE, "\"H1\"", AT(densification_rule),
      "law beyond the table: H1: A + B/(1 - strain)^n; H2: A + B/(limit - strain)^m; value and slope continuous",
      .words = "H1|H2"},
@@ -134,12 +102,7 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
         return refuse(
             err, place, "material",
             "material.curve is missing: the compression curve's CSV file (or curves: several of them)");
-    if (given->is(given->reader, "material", "ED") && foam->maxwell_modulus > 0.0 &&
-        !given->is(given->reader, "material", "BETA1"))
-        return refuse(
-            err, place, "material.ED",
-            "material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for example BETA1 "
-            "= \"5000 1/s\"");
+    SF_TRY(sf_foam_check_shared_keys(&foam->shared, given, place, err));
     return check_densification(foam, given, place, err);
 }
 
@@ -154,6 +117,10 @@ static double data_end(const void *card) {
 static double informed_strain(const void *card) {
     double informed = ((const sf_foam_card *)card)->informed_strain;
     return informed > 0 ? informed : data_end(card);
+}
+
+static double rest_modulus(const void *card) {
+    return ((const sf_foam_card *)card)->modulus;
 }
 
 /* The largest initial tangent of all curves plus the Maxwell branch. */
@@ -173,7 +140,7 @@ static void rest_bounds(const void *card, double length, double *tangent, double
 static const sf_history_variable history[] = {
     {"peak", "J m-3", SF_FOAM_PEAK, 1, NULL},
     {"rate", "s-1", SF_FOAM_RATE, 1, has_rates},
-    {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, has_maxwell},
+    {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
 };
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {
@@ -213,9 +180,10 @@ const sf_law sf_low_density_foam = {
     .parameter = parameters,
     .parameter_count = sizeof parameters / sizeof parameters[0],
     .density = offsetof(sf_foam_card, density),
-    .rest_modulus = offsetof(sf_foam_card, modulus),
+    .rest_modulus = rest_modulus,
     .length = offsetof(sf_foam_card, damp_length),
     .curves = offsetof(sf_foam_card, curves),
+    .check = sf_foam_check_shared,
     .check_keys = check_keys,
     .data_end = data_end,
     .informed_strain = informed_strain,
