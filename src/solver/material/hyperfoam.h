@@ -50,7 +50,7 @@ extern const sf_law sf_hyperfoam_law;
 
 /* A material of this card, which it borrows: not for sf_material_free. */
 static inline sf_material sf_hyperfoam_material(const sf_hyperfoam_card *card) {
-    return (sf_material){&sf_hyperfoam_law, (void *)(uintptr_t)card};
+    return (sf_material){.law = &sf_hyperfoam_law, .card = (void *)(uintptr_t)card};
 }
 
 double sf_hyperfoam_beta(const sf_hyperfoam_term *term);
