@@ -104,7 +104,7 @@ static void good_case_is_in_si(void **state) {
               "  tension_cutoff = \"20 kPa\"; densification = { start = 0.7; exponent = 3.0; }; };\n"
               "missile: { mass = \"4600 g\"; velocity = \"16.2 km/h\"; direction = [0.0, 3.0, -4.0]; "
               "friction = 0.3;\n"
-              "  shape = \"surface\"; gap = \"2 mm\"; };\n"
+              "  shape = \"surface\"; gap = \"2 mm\"; position = [\"30 mm\", \"-1 in\"]; };\n"
               "pad: { group = \"foam\"; fixed = [\"base\", \"wall\"]; symmetry = []; };\n"
               "solver: { end_time = \"40 ms\"; step_limit = \"10 us\"; stop_after_rebound = false; };\n"
               "output: { frame_interval = \"0.5 ms\"; times = [\"12.2 ms\", \"300 us\"];\n"
@@ -128,6 +128,8 @@ static void good_case_is_in_si(void **state) {
                 fabs(c.missile_card.direction[2] + 0.8) < 1e-15);
     assert_true(c.missile_card.friction == 0.3 && c.missile_card.gravity == 9.80665);
     assert_true(fabs(c.missile_card.gap - 0.002) < 1e-16);
+    assert_true(c.position_given && fabs(c.missile_position[0] - 0.03) < 1e-16 &&
+                fabs(c.missile_position[1] + 0.0254) < 1e-16);
     assert_true(c.length_unit == 0.001);
     assert_int_equal(c.shape_rule, 2);
     assert_string_equal(c.pad_group, "foam");
@@ -314,7 +316,7 @@ static void unknown_names_are_refused_with_what_exists(void **state) {
     (void)state;
     assert_refused(GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\";\n velocty = \"4.5 m/s\"; };\n",
                    NULL, "case.cfg:5: unknown key \"velocty\" in group missile (did you mean \"velocity\"?)",
-                   "mass, velocity, motion, direction, friction", NULL);
+                   "mass, velocity, motion, direction, position, friction", NULL);
     assert_refused(
         GOOD "missle: { };\n", NULL,
         "case.cfg:5: unknown group \"missle\" (did you mean \"missile\"?); the groups are geometry, pad, "
@@ -397,6 +399,12 @@ static void values_out_of_bounds_are_refused(void **state) {
     assert_refused(GOOD, "missile.direction=[0, 0, 1]", "missile.direction: [0, 0, 1] does not point down",
                    NULL);
     assert_refused(GOOD, "missile.direction=[0, -1]", "expected three plain numbers", NULL);
+    assert_refused(GOOD, "missile.position=[\"0 mm\"]", "expected an array of two lengths, x and y", NULL);
+    assert_refused(GOOD, "missile.position=\"0 mm\"", "expected an array of two lengths, x and y", NULL);
+    assert_refused(GOOD, "missile.position=[1, 2]", "item 1 is a plain number; expected a length", NULL);
+    assert_refused(GOOD, "missile.position=[\"0 mm\", \"3 kg\"]", "\"3 kg\" is a mass; expected a length",
+                   NULL);
+    assert_refused(GOOD, "missile.position=[\"0 mm\", \"-2 km\"]", "-2000 m is out of bounds", NULL);
     assert_refused(GOOD, "material.densification.start=0.9",
                    "0.9 lies beyond the end of the compression table (0.8)", NULL);
     assert_refused(GOOD, "material.densification.limit=0.9", "0.9 belongs to rule H2", NULL);
@@ -477,8 +485,7 @@ static void long_whole_numbers_are_numbers(void **state) {
 
 static void files_that_are_not_there_are_refused(void **state) {
     (void)state;
-    assert_refused(GOOD, "geometry.file=none.geo", "geometry.file: \"none.geo\": ",
-                   NULL);
+    assert_refused(GOOD, "geometry.file=none.geo", "geometry.file: \"none.geo\": ", NULL);
     assert_refused(GOOD, "material.curve=none.csv", "none.csv cannot be read: No such file",
                    "(named at --set material.curve=none.csv)", NULL);
     assert_refused(GOOD, "material.curve=materials", "is not a plain file", NULL);

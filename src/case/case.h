@@ -64,6 +64,8 @@ typedef struct sf_case {
     char interface_name[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE]; /* "NAME/NAME" */
     int interface_layer[SF_CASE_MAX_GROUPS][2];                 /* their places in `layer` */
     sf_missile_card missile_card; /* sphere_* are left zero: they come from the geometry */
+    bool position_given;
+    double missile_position[2]; /* m, x and y of the impact point, if given */
     int64_t motion_count;         /* points of the missile's prescribed motion; 0 = it is free */
     double *motion_time;          /* [motion_count] s; owned until moved into a model, like the next */
     double *motion_displacement;  /* [motion_count] m, along the direction */

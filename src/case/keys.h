@@ -25,6 +25,7 @@ typedef enum sf_key_kind {
     SF_KEY_FIELDS,     /* list of `words`: int64_t, bit k for word k */
     SF_KEY_TIMES,      /* ["12 ms", "20 ms"]: double[SF_CASE_MAX_TIMES] ascending, s; int at count_offset */
     SF_KEY_VECTOR,     /* [0.0, 0.0, -1.0]: double[3] */
+    SF_KEY_PLACE,      /* ["10 mm", "0 mm"]: double[2], SI */
     SF_KEY_PATH,       /* "file": char *, relative to the file that holds the key; must be readable */
     SF_KEY_PARAMETERS, /* { side = 400.0; }: sf_geo_source */
     SF_KEY_LAW,        /* the name of a law: sf_case.material */

@@ -66,6 +66,7 @@ static void print_kind(FILE *file, const sf_key *key) {
         [SF_KEY_NAMES] = "array of names",
         [SF_KEY_TIMES] = "array of times",
         [SF_KEY_VECTOR] = "three numbers",
+        [SF_KEY_PLACE] = "array of two lengths",
         [SF_KEY_PATH] = "file",
         [SF_KEY_PARAMETERS] = "group of numbers",
         [SF_KEY_CURVE] = "file",

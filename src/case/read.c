@@ -332,6 +332,7 @@ static void complete(const sf_case_reader *reader, sf_case *c) {
         card->direction[i] /= length;
     if (c->motion_count > 0)
         card->gravity = 0.0;
+    c->position_given = sf_case_is_given(reader, "missile", "position");
     c->symmetry_given = sf_case_is_given(reader, "pad", "symmetry");
 }
 

@@ -310,6 +310,29 @@ static sf_status read_vector(sf_case_reader *reader, const sf_key *key, const co
     return SF_OK;
 }
 
+static sf_status read_place(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
+                            char *detail, size_t size, sf_error *err) {
+    double *value = (double *)((char *)reader->out + key->offset);
+    const char *unit = sf_quantity_unit(key->quantity);
+    if (!is_sequence(setting) || config_setting_length(setting) != 2)
+        return FAIL_AT(reader, key, setting, err,
+                       "expected an array of two lengths, x and y, for example [\"20 mm\", \"0 mm\"]");
+    for (int i = 0; i < 2; i++) {
+        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
+        const char *text = config_setting_get_string(item);
+        sf_error inner = SF_ERROR_INIT;
+        if (!text)
+            return FAIL_AT(reader, key, setting, err, "item %d is %s; expected a length such as \"20 mm\"",
+                           i + 1, type_phrase(item));
+        if (sf_units_parse(reader->units, text, key->quantity, &value[i], &inner) != SF_OK)
+            return FAIL_AT(reader, key, setting, err, "%s", inner.text);
+        if (check_bounds(reader, key, setting, value[i], unit, err) != SF_OK)
+            return err->status;
+    }
+    snprintf(detail, size, "%.12g %.12g %s", value[0], value[1], unit);
+    return SF_OK;
+}
+
 static sf_status read_path(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                            char *detail, size_t size, sf_error *err) {
     char **path = (char **)((char *)reader->out + key->offset);
@@ -385,6 +408,8 @@ sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const co
         return read_times(reader, key, setting, detail, size, err);
     case SF_KEY_VECTOR:
         return read_vector(reader, key, setting, detail, size, err);
+    case SF_KEY_PLACE:
+        return read_place(reader, key, setting, detail, size, err);
     case SF_KEY_PATH:
         return read_path(reader, key, setting, detail, size, err);
     case SF_KEY_PARAMETERS:

@@ -109,6 +109,7 @@ static void put_missile(const page *p) {
     }
     put_parameter(p, &table, "geometry.missile_file", "shape");
     put_parameter(p, &table, "geometry.missile_parameters", "its parameters");
+    put_parameter(p, &table, "missile.position", "impact point");
     put_parameter(p, &table, "missile.friction", "friction on the pad");
     sf_html_table_end(&table);
 }

@@ -12,6 +12,7 @@
 #include "pre/cloud/group_check.h"
 #include "pre/cloud/layers.h"
 #include "pre/cloud/surface_area.h"
+#include "pre/impact.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/mesh/surface_orient.h"
 #include <math.h>
@@ -406,23 +407,22 @@ done:
 
 /* Height (m) of the missile's lowest point above the pad's highest. */
 static double find_clearance(const sf_model *m) {
-    const sf_missile_card *card = &m->missile;
-    double low = INFINITY, high = -INFINITY;
-    for (int64_t k = 0; k < m->surface_node_count; k++)
-        low = fmin(low, m->surface_position[3 * k + 2]);
-    if (card->shape == SF_SHAPE_SPHERE && -card->direction[2] >= card->sphere_cap_cosine)
-        low = card->sphere_centre[2] - card->sphere_radius; /* where no node of the surface may be */
+    const sf_surface missile = {.node_count = m->surface_node_count, .position = m->surface_position};
+    double lowest[3], high = -INFINITY;
+    sf_impact_lowest(&missile, &m->missile, lowest);
     for (int64_t i = 0; i < m->node_count; i++)
         high = fmax(high, m->position[3 * i + 2]);
-    return low - high;
+    return lowest[2] - high;
 }
 
 /* Places the missile `gap` away from first contact and moves its surface into the model. */
-static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
+static sf_status build_missile(const sf_case *c, const sf_mesh *mesh, sf_surface *surface, sf_model *m,
+                               sf_error *err) {
     double distance = 0;
     m->missile = c->missile_card;
     if (sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
         sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
+        sf_impact_place(c, sf_mesh_find_set(mesh, c->contact_group), m, surface, &m->missile, err) != SF_OK ||
         sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
                             err) != SF_OK)
         return err->status;
@@ -581,7 +581,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     sf_layers layers = {0};
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
-        sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, surface, m, err) == SF_OK &&
+        sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, mesh, surface, m, err) == SF_OK &&
         take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&

@@ -2,6 +2,7 @@
 #include "pre/mesh_error.h"
 
 #include "pre/mesh/missile_shape.h"
+#include "pre/symmetry.h"
 #include <math.h>
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
@@ -19,17 +20,6 @@ static void add_point(zone_sums *s, const double x[3], const double origin[2], d
             s->second[a][b] += area * ((x[a] - origin[a]) * (x[b] - origin[b]) +
                                        (a == b ? spacing * spacing / 12 : 0)); /* of the node's own square */
     }
-}
-
-/* Is x or y = *place a symmetry plane? Its nodes are held along that axis, but not as part of the base. */
-static bool find_plane(const sf_model *m, int axis, double *place) {
-    for (int64_t k = 0; k < m->fixed_count; k++)
-        if (!m->fixed_base[k] && m->fixed_mask[k] & (1 << axis)) {
-            *place = m->position[3 * (int64_t)m->fixed_node[k] + axis];
-            return true;
-        }
-    *place = 0;
-    return false;
 }
 
 /* Moments about the planes, or else about the centroid, to the radii along the zone's principal axes: those
@@ -68,7 +58,7 @@ void sf_contact_zone_measure(const sf_model *m, sf_contact_zone *zone) {
                                 .triangle_count = m->surface_triangle_count,
                                 .triangle = m->surface_triangle};
     double centre[2], wide, deepest = m->missile.gap - DEPTH * m->thickness / m->missile.direction[2];
-    const bool plane[2] = {find_plane(m, 0, &centre[0]), find_plane(m, 1, &centre[1])};
+    const bool plane[2] = {sf_symmetry_plane(m, 0, &centre[0]), sf_symmetry_plane(m, 1, &centre[1])};
     zone_sums sums = {0};
     for (int64_t k = 0; k < m->contact_count; k++) {
         int64_t i = m->contact_node[k];

@@ -3,6 +3,7 @@
 
 #include "core/motion.h"
 #include "core/units.h"
+#include "pre/impact.h"
 #include <math.h>
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
@@ -57,7 +58,7 @@ static double volume_of(const sf_model *m, const sf_build_report *r, int64_t k) 
 }
 
 static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r) {
-    double mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
+    double impact[3], mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
     for (int64_t i = 0; i < m->node_count; i++)
         mass += m->mass[i];
     for (int64_t k = 0; k < m->material_count; k++)
@@ -75,6 +76,9 @@ static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r)
                 1e3 * m->missile.sphere_radius);
     else
         fprintf(out, "%-26s%lld triangles\n", "missile contact", (long long)m->surface_triangle_count);
+    sf_impact_point(m, impact);
+    fprintf(out, "%-26s(%.4g, %.4g) mm: there the missile's lowest point arrives\n", "impact point",
+            1e3 * impact[0] + 0.0, 1e3 * impact[1] + 0.0);
 }
 
 static void print_mesh_error(FILE *out, const sf_model *m, const sf_contact_zone *zone) {

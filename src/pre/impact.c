@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/impact.h"
+
+#include "pre/symmetry.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double LEVEL = 1e-6;    /* of the missile's extent: as low as its lowest node */
+static const double ON_PLANE = 1e-6; /* of the thickness */
+static const double INSIDE = 1e-9;   /* of a face */
+
+/* Is the bottom of the card's sphere a point of its cap? */
+static bool has_bottom(const sf_missile_card *card) {
+    return card->shape == SF_SHAPE_SPHERE && -card->direction[2] >= card->sphere_cap_cosine;
+}
+
+static void find_box(const sf_surface *s, double most, double low[3], double high[3]) {
+    for (int c = 0; c < 3; c++) {
+        low[c] = INFINITY;
+        high[c] = -INFINITY;
+    }
+    for (int64_t k = 0; k < s->node_count; k++)
+        for (int c = 0; c < 3 && s->position[3 * k + 2] <= most; c++) {
+            low[c] = fmin(low[c], s->position[3 * k + c]);
+            high[c] = fmax(high[c], s->position[3 * k + c]);
+        }
+}
+
+void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, double point[3]) {
+    double low[3], high[3], extent = 0;
+    find_box(surface, INFINITY, low, high);
+    for (int c = 0; c < 3; c++)
+        extent = fmax(extent, high[c] - low[c]);
+    find_box(surface, low[2] + LEVEL * extent, low, high);
+    for (int c = 0; c < 2; c++)
+        point[c] = has_bottom(card) ? card->sphere_centre[c] : 0.5 * (low[c] + high[c]);
+    point[2] = has_bottom(card) ? card->sphere_centre[2] - card->sphere_radius : low[2];
+}
+
+/* ---- is the place on the pad's top? ---- */
+
+static bool triangle_covers(const double *const corner[3], const double at[2]) {
+    double u[2], v[2], r[2];
+    for (int c = 0; c < 2; c++) {
+        u[c] = corner[1][c] - corner[0][c];
+        v[c] = corner[2][c] - corner[0][c];
+        r[c] = at[c] - corner[0][c];
+    }
+    double area = u[0] * v[1] - u[1] * v[0];
+    if (area == 0)
+        return false;
+    double s = (r[0] * v[1] - r[1] * v[0]) / area, t = (u[0] * r[1] - u[1] * r[0]) / area;
+    return s >= -INSIDE && t >= -INSIDE && s + t <= 1 + INSIDE;
+}
+
+/* A face's nodes are in no order of its rim: any three of a quadrangle are tried. */
+static bool is_covered(const sf_model *m, const sf_node_set *contact, const double at[2]) {
+    for (int64_t k = 0; k < contact->face_count; k++) {
+        const int32_t *node = &contact->face[4 * k];
+        for (int out = 0; out < (node[0] < 0 ? 1 : 4); out++) {
+            const double *corner[3];
+            for (int v = 0, used = 0; v < 4; v++)
+                if (v != out)
+                    corner[used++] = &m->position[3 * (int64_t)node[v]];
+            if (triangle_covers(corner, at))
+                return true;
+        }
+    }
+    return false;
+}
+
+static int by_value(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The largest angle (rad) at the place that holds no point of the whole top: beyond pi the place lies outside
+ * its convex outline. */
+static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, sf_error *err) {
+    double place[2], sign[2] = {1, 1};
+    const bool plane[2] = {sf_symmetry_plane(m, 0, &place[0]), sf_symmetry_plane(m, 1, &place[1])};
+    int64_t count = 0;
+    double *angle = sf_alloc(err, 4 * (unsigned long)m->contact_count, sizeof *angle, "impact point");
+    if (!angle)
+        return err->status;
+    for (int image = 0; image < 4; image++) {
+        if ((image & 1 && !plane[0]) || (image & 2 && !plane[1]))
+            continue;
+        for (int c = 0; c < 2; c++)
+            sign[c] = image >> c & 1 ? -1 : 1;
+        for (int64_t k = 0; k < m->contact_count; k++) {
+            const double *x = &m->position[3 * (int64_t)m->contact_node[k]];
+            angle[count++] = atan2(place[1] + sign[1] * (x[1] - place[1]) - at[1],
+                                   place[0] + sign[0] * (x[0] - place[0]) - at[0]);
+        }
+    }
+    qsort(angle, (size_t)count, sizeof *angle, by_value);
+    *gap = angle[0] + 2 * M_PI - angle[count - 1];
+    for (int64_t k = 1; k < count; k++)
+        *gap = fmax(*gap, angle[k] - angle[k - 1]);
+    free(angle);
+    return SF_OK;
+}
+
+/* ---- placing ---- */
+
+static sf_status check_planes(const sf_model *m, const double at[2], sf_error *err) {
+    for (int axis = 0; axis < 2; axis++) {
+        double place;
+        if (sf_symmetry_plane(m, axis, &place) && !(fabs(at[axis] - place) <= ON_PLANE * m->thickness))
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "missile.position: %c = %g mm lies off the symmetry plane %c = %g mm: an impact "
+                           "beside it needs a model without that plane",
+                           'x' + axis, 1e3 * at[axis], 'x' + axis, 1e3 * place);
+    }
+    return SF_OK;
+}
+
+/* On a face, or over a hole. */
+static sf_status check_inside(const sf_case *c, const sf_node_set *contact, const sf_model *m,
+                              sf_error *err) {
+    const double *at = c->missile_position;
+    double gap = 0;
+    if (is_covered(m, contact, at))
+        return SF_OK;
+    SF_TRY(widest_gap(m, at, &gap, err));
+    if (gap <= M_PI)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "missile.position: (%g, %g) mm lies outside the pad's top, the group \"%s\"", 1e3 * at[0],
+                   1e3 * at[1], c->contact_group);
+}
+
+/* Height (m) of the pad's highest point. */
+static double top_of(const sf_model *m) {
+    double top = -INFINITY;
+    for (int64_t i = 0; i < m->node_count; i++)
+        top = fmax(top, m->position[3 * i + 2]);
+    return top;
+}
+
+/* Where the point, moving along the direction, comes to the height of the pad's top. */
+static void follow(const sf_missile_card *card, double top, double point[3]) {
+    double travel = (top - point[2]) / card->direction[2];
+    for (int axis = 0; axis < 3; axis++)
+        point[axis] += travel * card->direction[axis];
+}
+
+sf_status sf_impact_place(const sf_case *c, const sf_node_set *contact, const sf_model *m,
+                          sf_surface *surface, sf_missile_card *card, sf_error *err) {
+    double point[3], place;
+    if (!c->position_given)
+        return SF_OK;
+    if (check_planes(m, c->missile_position, err) != SF_OK || check_inside(c, contact, m, err) != SF_OK)
+        return err->status;
+    sf_impact_lowest(surface, card, point);
+    follow(card, top_of(m), point);
+    for (int axis = 0; axis < 2; axis++) {
+        double shift = c->missile_position[axis] - point[axis];
+        if (sf_symmetry_plane(m, axis, &place))
+            continue;
+        card->sphere_centre[axis] += shift;
+        for (int64_t k = 0; k < surface->node_count; k++)
+            surface->position[3 * k + axis] += shift;
+    }
+    return SF_OK;
+}
+
+void sf_impact_point(const sf_model *m, double point[3]) {
+    const sf_surface missile = {.node_count = m->surface_node_count, .position = m->surface_position};
+    double place;
+    sf_impact_lowest(&missile, &m->missile, point);
+    follow(&m->missile, top_of(m), point);
+    for (int axis = 0; axis < 2; axis++)
+        if (sf_symmetry_plane(m, axis, &place))
+            point[axis] = place;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The impact point: where on the pad's top the missile's lowest point arrives. */
+#ifndef SF_PRE_IMPACT_H
+#define SF_PRE_IMPACT_H
+
+#include "case/case.h"
+#include "core/error.h"
+#include "core/model.h"
+#include "pre/mesh/mesh.h"
+
+/* The missile's lowest point (m): of its sphere, or of its surface's nodes; the middle of the box around them
+ * where several are lowest (a flat face, a line). */
+void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, double point[3]);
+
+/* Moves the surface, and the card's sphere, in x and y so that the lowest point, on its way along the
+ * direction, comes to missile.position at the height of the pad's highest point. Normal to a symmetry plane
+ * nothing moves. Does nothing without missile.position. The model has its cloud and its sets; `contact` is
+ * the contact group. SF_ERR_INPUT: the position lies off a symmetry plane, or outside the outline of the
+ * contact group (a hole is inside). */
+sf_status sf_impact_place(const sf_case *c, const sf_node_set *contact, const sf_model *model,
+                          sf_surface *surface, sf_missile_card *card, sf_error *err);
+
+/* The impact point (m) of a complete model, by the same rule; on its symmetry planes. */
+void sf_impact_point(const sf_model *model, double point[3]);
+
+#endif
