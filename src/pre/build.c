@@ -407,7 +407,10 @@ done:
 
 /* Height (m) of the missile's lowest point above the pad's highest. */
 static double find_clearance(const sf_model *m) {
-    const sf_surface missile = {.node_count = m->surface_node_count, .position = m->surface_position};
+    const sf_surface missile = {.node_count = m->surface_node_count,
+                                .position = m->surface_position,
+                                .triangle_count = m->surface_triangle_count,
+                                .triangle = m->surface_triangle};
     double lowest[3], high = -INFINITY;
     sf_impact_lowest(&missile, &m->missile, lowest);
     for (int64_t i = 0; i < m->node_count; i++)

@@ -3,6 +3,7 @@
 
 #include "core/good_run.h"
 #include "core/mat3.h"
+#include "core/solid.h"
 #include "pre/mesh/missile_shape.h"
 #include <math.h>
 #include <stdio.h>
@@ -295,6 +296,22 @@ static void tell_free_planes(const sf_case *c, const sf_mesh *mesh, const sf_sin
                          mesh->set[k].name);
 }
 
+/* ---- mass and size ---- */
+
+static const double DENSEST = 23e3; /* kg m-3, of a metal */
+
+static void tell_density(const sf_model *m, const sf_sink *sink) {
+    sf_solid solid;
+    sf_error open = SF_ERROR_INIT;
+    if (sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
+                         m->surface_triangle, &solid, &open) == SF_OK &&
+        m->missile.mass > DENSEST * solid.volume)
+        sf_sink_tell(sink, SF_WARNING,
+                     "missile.mass: %g kg in a body of %.4g cm3 is denser than any metal: is "
+                     "geometry.length_unit the geometry's unit?",
+                     m->missile.mass, 1e6 * solid.volume);
+}
+
 /* ---- spacing ---- */
 
 enum { REASON_SIZE = 256 };
@@ -330,6 +347,7 @@ void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, cons
                   const sf_sink *sink) {
     char reason[REASON_SIZE];
     tell_free_planes(c, mesh, sink);
+    tell_density(m, sink);
     if (!(m->expected_mesh_error >= sf_good_run_limits()->mesh))
         return;
     describe_spacing(m, zone, reason);

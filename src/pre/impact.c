@@ -26,15 +26,42 @@ static void find_box(const sf_surface *s, double most, double low[3], double hig
         }
 }
 
+/* Area centroid, in x and y, of the triangles that lie at the bottom; false: there is none. */
+static bool find_flat(const sf_surface *s, double most, double middle[2]) {
+    double sum = 0;
+    middle[0] = middle[1] = 0;
+    for (int64_t t = 0; t < s->triangle_count; t++) {
+        const double *x[3];
+        for (int v = 0; v < 3; v++)
+            x[v] = &s->position[3 * (int64_t)s->triangle[3 * t + v]];
+        if (x[0][2] > most || x[1][2] > most || x[2][2] > most)
+            continue;
+        double area =
+            fabs((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[2][0] - x[0][0]) * (x[1][1] - x[0][1]));
+        sum += area;
+        for (int c = 0; c < 2; c++)
+            middle[c] += area * (x[0][c] + x[1][c] + x[2][c]) / 3;
+    }
+    for (int c = 0; c < 2 && sum > 0; c++)
+        middle[c] /= sum;
+    return sum > 0;
+}
+
 void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, double point[3]) {
     double low[3], high[3], extent = 0;
     find_box(surface, INFINITY, low, high);
     for (int c = 0; c < 3; c++)
         extent = fmax(extent, high[c] - low[c]);
-    find_box(surface, low[2] + LEVEL * extent, low, high);
-    for (int c = 0; c < 2; c++)
-        point[c] = has_bottom(card) ? card->sphere_centre[c] : 0.5 * (low[c] + high[c]);
-    point[2] = has_bottom(card) ? card->sphere_centre[2] - card->sphere_radius : low[2];
+    point[2] = low[2];
+    if (has_bottom(card)) {
+        point[0] = card->sphere_centre[0];
+        point[1] = card->sphere_centre[1];
+        point[2] = card->sphere_centre[2] - card->sphere_radius;
+    } else if (!find_flat(surface, point[2] + LEVEL * extent, point)) {
+        find_box(surface, point[2] + LEVEL * extent, low, high);
+        for (int c = 0; c < 2; c++)
+            point[c] = 0.5 * (low[c] + high[c]);
+    }
 }
 
 /* ---- is the place on the pad's top? ---- */
@@ -167,7 +194,10 @@ sf_status sf_impact_place(const sf_case *c, const sf_node_set *contact, const sf
 }
 
 void sf_impact_point(const sf_model *m, double point[3]) {
-    const sf_surface missile = {.node_count = m->surface_node_count, .position = m->surface_position};
+    const sf_surface missile = {.node_count = m->surface_node_count,
+                                .position = m->surface_position,
+                                .triangle_count = m->surface_triangle_count,
+                                .triangle = m->surface_triangle};
     double place;
     sf_impact_lowest(&missile, &m->missile, point);
     follow(&m->missile, top_of(m), point);

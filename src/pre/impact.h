@@ -8,8 +8,8 @@
 #include "core/model.h"
 #include "pre/mesh/mesh.h"
 
-/* The missile's lowest point (m): of its sphere, or of its surface's nodes; the middle of the box around them
- * where several are lowest (a flat face, a line). */
+/* The missile's lowest point (m): of its sphere, or of its surface's nodes; where several are lowest the
+ * centroid of the flat faces there, or, without such faces, the middle of the box around these nodes. */
 void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, double point[3]);
 
 /* Moves the surface, and the card's sphere, in x and y so that the lowest point, on its way along the

@@ -2,6 +2,7 @@
 #include "pre/report.h"
 
 #include "core/motion.h"
+#include "core/solid.h"
 #include "core/units.h"
 #include "pre/impact.h"
 #include <math.h>
@@ -57,6 +58,26 @@ static double volume_of(const sf_model *m, const sf_build_report *r, int64_t k) 
     return volume;
 }
 
+/* Of a missile that is drawn whole and closed. */
+static void print_body(FILE *out, const sf_model *m) {
+    sf_solid solid;
+    sf_error open = SF_ERROR_INIT;
+    double lowest[3];
+    const sf_surface missile = {.node_count = m->surface_node_count,
+                                .position = m->surface_position,
+                                .triangle_count = m->surface_triangle_count,
+                                .triangle = m->surface_triangle};
+    if (sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
+                         m->surface_triangle, &solid, &open) != SF_OK)
+        return;
+    sf_impact_lowest(&missile, &m->missile, lowest);
+    fprintf(out, "%-26s%.4g cm3, its centroid %.4g mm above its lowest point", "missile body",
+            1e6 * solid.volume, 1e3 * (solid.centroid[2] - lowest[2]));
+    if (m->missile.mass > 0)
+        fprintf(out, "; if uniform %.4g kg/m3", m->missile.mass / solid.volume);
+    fputc('\n', out);
+}
+
 static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r) {
     double impact[3], mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
     for (int64_t i = 0; i < m->node_count; i++)
@@ -76,6 +97,7 @@ static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r)
                 1e3 * m->missile.sphere_radius);
     else
         fprintf(out, "%-26s%lld triangles\n", "missile contact", (long long)m->surface_triangle_count);
+    print_body(out, m);
     sf_impact_point(m, impact);
     fprintf(out, "%-26s(%.4g, %.4g) mm: there the missile's lowest point arrives\n", "impact point",
             1e3 * impact[0] + 0.0, 1e3 * impact[1] + 0.0);
