@@ -419,13 +419,12 @@ static double find_clearance(const sf_model *m) {
 }
 
 /* Places the missile `gap` away from first contact and moves its surface into the model. */
-static sf_status build_missile(const sf_case *c, const sf_mesh *mesh, sf_surface *surface, sf_model *m,
-                               sf_error *err) {
+static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
     double distance = 0;
     m->missile = c->missile_card;
     if (sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
         sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
-        sf_impact_place(c, sf_mesh_find_set(mesh, c->contact_group), m, surface, &m->missile, err) != SF_OK ||
+        sf_impact_place(c, m, surface, &m->missile, err) != SF_OK ||
         sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
                             err) != SF_OK)
         return err->status;
@@ -584,7 +583,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     sf_layers layers = {0};
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
-        sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, mesh, surface, m, err) == SF_OK &&
+        sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, surface, m, err) == SF_OK &&
         take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&

@@ -5,9 +5,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double LEVEL = 1e-6;    /* of the missile's extent: as low as its lowest node */
-static const double ON_PLANE = 1e-6; /* of the thickness */
-static const double INSIDE = 1e-9;   /* of a face */
+static const double LEVEL = 1e-6;           /* of the missile's extent: as low as its lowest node */
+static const double ON_PLANE = 1e-6;        /* of the thickness */
+static const double AT_NODE = 1e-9;         /* of the thickness */
+static const double STRAIGHT = M_PI + 1e-6; /* rad */
 
 /* Is the bottom of the card's sphere a point of its cap? */
 static bool has_bottom(const sf_missile_card *card) {
@@ -66,47 +67,18 @@ void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, do
 
 /* ---- is the place on the pad's top? ---- */
 
-static bool triangle_covers(const double *const corner[3], const double at[2]) {
-    double u[2], v[2], r[2];
-    for (int c = 0; c < 2; c++) {
-        u[c] = corner[1][c] - corner[0][c];
-        v[c] = corner[2][c] - corner[0][c];
-        r[c] = at[c] - corner[0][c];
-    }
-    double area = u[0] * v[1] - u[1] * v[0];
-    if (area == 0)
-        return false;
-    double s = (r[0] * v[1] - r[1] * v[0]) / area, t = (u[0] * r[1] - u[1] * r[0]) / area;
-    return s >= -INSIDE && t >= -INSIDE && s + t <= 1 + INSIDE;
-}
-
-/* A face's nodes are in no order of its rim: any three of a quadrangle are tried. */
-static bool is_covered(const sf_model *m, const sf_node_set *contact, const double at[2]) {
-    for (int64_t k = 0; k < contact->face_count; k++) {
-        const int32_t *node = &contact->face[4 * k];
-        for (int out = 0; out < (node[0] < 0 ? 1 : 4); out++) {
-            const double *corner[3];
-            for (int v = 0, used = 0; v < 4; v++)
-                if (v != out)
-                    corner[used++] = &m->position[3 * (int64_t)node[v]];
-            if (triangle_covers(corner, at))
-                return true;
-        }
-    }
-    return false;
-}
-
 static int by_value(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
-/* The largest angle (rad) at the place that holds no point of the whole top: beyond pi the place lies outside
- * its convex outline. */
+/* The largest angle (rad) at the place that holds no node of the whole top: beyond pi the place lies outside
+ * its convex outline. 0 at a node. */
 static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, sf_error *err) {
     double place[2], sign[2] = {1, 1};
     const bool plane[2] = {sf_symmetry_plane(m, 0, &place[0]), sf_symmetry_plane(m, 1, &place[1])};
     int64_t count = 0;
+    bool at_node = false;
     double *angle = sf_alloc(err, 4 * (unsigned long)m->contact_count, sizeof *angle, "impact point");
     if (!angle)
         return err->status;
@@ -117,14 +89,17 @@ static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, 
             sign[c] = image >> c & 1 ? -1 : 1;
         for (int64_t k = 0; k < m->contact_count; k++) {
             const double *x = &m->position[3 * (int64_t)m->contact_node[k]];
-            angle[count++] = atan2(place[1] + sign[1] * (x[1] - place[1]) - at[1],
-                                   place[0] + sign[0] * (x[0] - place[0]) - at[0]);
+            double dx = place[0] + sign[0] * (x[0] - place[0]) - at[0],
+                   dy = place[1] + sign[1] * (x[1] - place[1]) - at[1];
+            at_node = at_node || hypot(dx, dy) <= AT_NODE * m->thickness;
+            angle[count++] = atan2(dy, dx);
         }
     }
     qsort(angle, (size_t)count, sizeof *angle, by_value);
     *gap = angle[0] + 2 * M_PI - angle[count - 1];
     for (int64_t k = 1; k < count; k++)
         *gap = fmax(*gap, angle[k] - angle[k - 1]);
+    *gap = at_node ? 0 : *gap;
     free(angle);
     return SF_OK;
 }
@@ -143,15 +118,12 @@ static sf_status check_planes(const sf_model *m, const double at[2], sf_error *e
     return SF_OK;
 }
 
-/* On a face, or over a hole. */
-static sf_status check_inside(const sf_case *c, const sf_node_set *contact, const sf_model *m,
-                              sf_error *err) {
+/* Over the contact group, or a hole in it. */
+static sf_status check_inside(const sf_case *c, const sf_model *m, sf_error *err) {
     const double *at = c->missile_position;
     double gap = 0;
-    if (is_covered(m, contact, at))
-        return SF_OK;
     SF_TRY(widest_gap(m, at, &gap, err));
-    if (gap <= M_PI)
+    if (gap <= STRAIGHT)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,
                    "missile.position: (%g, %g) mm lies outside the pad's top, the group \"%s\"", 1e3 * at[0],
@@ -173,12 +145,12 @@ static void follow(const sf_missile_card *card, double top, double point[3]) {
         point[axis] += travel * card->direction[axis];
 }
 
-sf_status sf_impact_place(const sf_case *c, const sf_node_set *contact, const sf_model *m,
-                          sf_surface *surface, sf_missile_card *card, sf_error *err) {
+sf_status sf_impact_place(const sf_case *c, const sf_model *m, sf_surface *surface, sf_missile_card *card,
+                          sf_error *err) {
     double point[3], place;
     if (!c->position_given)
         return SF_OK;
-    if (check_planes(m, c->missile_position, err) != SF_OK || check_inside(c, contact, m, err) != SF_OK)
+    if (check_planes(m, c->missile_position, err) != SF_OK || check_inside(c, m, err) != SF_OK)
         return err->status;
     sf_impact_lowest(surface, card, point);
     follow(card, top_of(m), point);

@@ -17,8 +17,8 @@ void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, do
  * nothing moves. Does nothing without missile.position. The model has its cloud and its sets; `contact` is
  * the contact group. SF_ERR_INPUT: the position lies off a symmetry plane, or outside the outline of the
  * contact group (a hole is inside). */
-sf_status sf_impact_place(const sf_case *c, const sf_node_set *contact, const sf_model *model,
-                          sf_surface *surface, sf_missile_card *card, sf_error *err);
+sf_status sf_impact_place(const sf_case *c, const sf_model *model, sf_surface *surface, sf_missile_card *card,
+                          sf_error *err);
 
 /* The impact point (m) of a complete model, by the same rule; on its symmetry planes. */
 void sf_impact_point(const sf_model *model, double point[3]);
