@@ -32,6 +32,8 @@ typedef struct sf_geo_source {
     sf_geo_parameter parameter[SF_CASE_MAX_PARAMETERS];
 } sf_geo_source;
 
+enum { SF_BASE_GLUED, SF_BASE_SMOOTH, SF_BASE_RESTING }; /* pad.base, in the order of its words */
+
 typedef struct sf_case {
     char *path;       /* as given */
     char *text;       /* the case file with its includes in place, --set lines appended as comments; owned */
@@ -43,7 +45,10 @@ typedef struct sf_case {
     char *geometry_files;   /* what the geometries read (sf_gmsh_files), set when they are meshed; owned */
     char pad_group[SF_CASE_NAME_SIZE]; /* physical volume group of the pad; of layers, for sentences: all */
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */
-    int fixed_count;                       /* physical surface groups held in all components */
+    int base_rule;                         /* SF_BASE_*: how the fixed groups stand on the anvil */
+    sf_anvil_card anvil_card;              /* depth is left zero: it comes from the geometry */
+    double pad_gravity;                    /* m s-2, along -z, on a resting pad */
+    int fixed_count;                       /* physical surface groups of the base */
     char fixed_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     int sliding_count; /* plane physical surface groups held along their normal */
     char sliding_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];

@@ -302,6 +302,58 @@ static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
+static bool in_list(const char *name, int count, const char (*list)[SF_CASE_NAME_SIZE]) {
+    for (int g = 0; g < count; g++)
+        if (strcmp(list[g], name) == 0)
+            return true;
+    return false;
+}
+
+/* Friction and weight belong to a pad that rests. */
+static sf_status check_resting(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    static const char *const keys[] = {"friction", "gravity"};
+    for (int k = 0; k < 2 && c->base_rule != SF_BASE_RESTING; k++)
+        if (sf_case_is_given(reader, "pad", keys[k])) {
+            char key[32];
+            snprintf(key, sizeof key, "pad.%s", keys[k]);
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: %s: it acts on a resting pad only, and pad.base is not \"resting\"",
+                           sf_case_where_is(reader, key, where), key);
+        }
+    if (c->base_rule == SF_BASE_RESTING && !(c->pad_gravity > 0))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: pad.gravity: a resting pad without weight is not held by anything",
+                       sf_case_where_is(reader, "pad.gravity", where));
+    return SF_OK;
+}
+
+/* The base: surfaces that no other key holds or moves. */
+static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    if (c->fixed_count + c->sliding_count == 0)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
+                       sf_case_where_is(reader, "pad.fixed", where));
+    if (sf_case_is_given(reader, "pad", "base") && c->fixed_count == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.base: pad.fixed names no surface that it could apply to",
+                       sf_case_where_is(reader, "pad.base", where));
+    for (int g = 0; g < c->fixed_count && sf_case_is_given(reader, "pad", "base"); g++) {
+        const char *name = c->fixed_group[g],
+                   *other = strcmp(name, c->contact_group) == 0                   ? "contact"
+                            : in_list(name, c->sliding_count, c->sliding_group)   ? "sliding"
+                            : in_list(name, c->symmetry_count, c->symmetry_group) ? "symmetry"
+                                                                                  : NULL;
+        if (other)
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: pad.base: the surface group \"%s\" is in pad.fixed and in pad.%s",
+                           sf_case_where_is(reader, "pad.base", where), name, other);
+    }
+    return check_resting(reader, err);
+}
+
 /* Rules that join several keys, on the values as they are given. */
 static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
@@ -315,11 +367,7 @@ static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
             err, SF_ERR_INPUT,
             "%s: geometry.missile_parameters are given but no geometry.missile_file that they belong to",
             sf_case_where_is(reader, "geometry.missile_parameters", where));
-    if (c->fixed_count + c->sliding_count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
-                       sf_case_where_is(reader, "pad.fixed", where));
-    if (check_direction(reader, err) != SF_OK)
+    if (check_base(reader, err) != SF_OK || check_direction(reader, err) != SF_OK)
         return err->status;
     return sf_case_check_motion(reader, err);
 }

@@ -35,15 +35,18 @@
     X(energy_friction, "J", "energy_friction_J", 1, "lost in friction", "")                                            \
     X(energy_external, "J", "energy_external_J", 1,                                                                    \
       "work of gravity on the missile, or of its prescribed motion", "")                                               \
+    X(energy_weight, "J", "energy_weight_J", 1, "work of gravity on a resting pad", "0 of a pad that is held")           \
+    X(energy_anvil, "J", "energy_anvil_J", 1, "lost at the anvil by a resting pad", "part of energy_contact and energy_friction") \
     X(energy_error, "1", "energy_error_1", 1,                                                                          \
       "error of the energy balance, over the initial energy or the largest external work",                             \
-      "(sum of the energies above without external, minus external) / initial - 1; with a prescribed motion theory.md (33a)") \
+      "(kinetic + stored + hysteresis + viscous + stabilisation + contact + friction - external - weight) / initial - 1; with a prescribed motion theory.md (33a)") \
     X(momentum_error, "1", "momentum_error_1", 1,                                                                      \
       "momentum change minus impulses, over mass x speed or the impulse of contact",                                   \
       "the latter with a prescribed motion, so far")                                                                   \
     X(largest_compression, "1", "largest_compression_1", 1, "1 - smallest principal stretch of all domains", "")       \
     X(smallest_jacobian, "1", "smallest_jacobian_1", 1, "smallest det F", "of all domains")                            \
-    X(contact_nodes, "1", "contact_nodes_1", 1, "points in contact, modelled part", "")                                \
+    X(contact_nodes, "1", "contact_nodes_1", 1, "points in contact with the missile, modelled part", "")               \
+    X(anvil_nodes, "1", "anvil_nodes_1", 1, "points of a resting pad that the anvil presses, modelled part", "")        \
     X(contact_area, "m2", "contact_area_mm2", 1e6, "undeformed area of the surface that belongs to these points", "whole pad") \
     X(penetration, "m", "penetration_mm", 1e3, "deepest penetration of a point", "after the step")                     \
     X(constraint_residual, "m s-1", "constraint_residual_m_s", 1, "largest |G v|, measured every 16 steps", "")        \

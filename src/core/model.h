@@ -59,6 +59,12 @@ typedef struct sf_missile_card {
     double angular_velocity[3]; /* rad s-1, at t = 0 */
 } sf_missile_card;
 
+typedef struct sf_anvil_card {
+    double
+        depth; /* m, of the anvil's plane below the top of the undeformed pad, its highest point; 0: none */
+    double friction; /* -, Coulomb coefficient against a resting pad */
+} sf_anvil_card;
+
 typedef struct sf_run_options {
     double end_time;            /* s */
     double step_safety;         /* -, fraction of the stability limit */
@@ -122,6 +128,12 @@ typedef struct sf_model {
     int32_t *tie_other; /* [tie_count] the node tied to it, of a later layer */
     uint8_t *tie_mask;  /* [tie_count] SF_FIX_* bits: the components that are tied */
 
+    /* The underside of a resting pad, which the anvil can only press; none of a pad that is held. At t = 0
+     * the pad has settled: rest_load carries its weight. */
+    int64_t rest_count;
+    int32_t *rest_node; /* [rest_count] ascending, on one plane z = constant */
+    double *rest_load;  /* [rest_count] N, of the anvil on the pad at t = 0; their sum is the pad's weight */
+
     /* The missile's surface at t = 0, triangles turned outwards. */
     int64_t surface_node_count;
     int64_t surface_triangle_count;
@@ -145,6 +157,7 @@ typedef struct sf_model {
     int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */
     sf_material *material;      /* [material_count] owned */
     sf_missile_card missile;
+    sf_anvil_card anvil;
     sf_run_options run;
 } sf_model;
 
@@ -152,6 +165,19 @@ typedef struct sf_model {
  * modelled part is multiplied by for that of the whole, and divided by for the way back. A power of two:
  * exact. */
 double sf_model_whole(const sf_model *model);
+
+/* The points that can touch: those of the contact group, which the missile may press, and after them those of
+ * a resting pad's underside on the anvil. A node may be in both lists. */
+static inline int64_t sf_model_points(const sf_model *model) {
+    return model->contact_count + model->rest_count;
+}
+static inline bool sf_model_point_rests(const sf_model *model, int64_t point) {
+    return point >= model->contact_count;
+}
+static inline int64_t sf_model_point_node(const sf_model *model, int64_t point) {
+    return point < model->contact_count ? model->contact_node[point]
+                                        : model->rest_node[point - model->contact_count];
+}
 
 /* Has the missile a prescribed motion (core/motion.h)? Else the drop decides. */
 bool sf_missile_is_driven(const sf_model *model);

@@ -114,6 +114,8 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"missile shape", (double)m->missile.shape, 0, 1},
         {"missile sphere radius (m)", m->missile.sphere_radius, m->missile.shape ? 0 : 1e-9, 1e3},
         {"missile sphere cap cosine", m->missile.sphere_cap_cosine, -1 - 1e-9, 1 + 1e-9},
+        {"anvil depth (m)", m->anvil.depth, 0, 1e3},
+        {"anvil friction", m->anvil.friction, 0, 10},
         {"symmetry factor", (double)m->symmetry_factor, 1, 4},
         {"pad thickness (m)", m->thickness, 1e-6, 1e3},
         {"expected mesh error", m->expected_mesh_error, 0, 1e6},
@@ -166,6 +168,19 @@ static sf_status check_areas(const sf_model *m, sf_error *err) {
         if (!(m->contact_area[k] >= 0))
             return SF_FAIL(err, SF_ERR_MODEL, "the area of contact point %lld is %g m2", (long long)k,
                            m->contact_area[k]);
+    return SF_OK;
+}
+
+static sf_status check_loads(const sf_model *m, sf_error *err) {
+    double sum = 0;
+    for (int64_t k = 0; k < m->rest_count; k++) {
+        if (!(m->rest_load[k] >= 0))
+            return SF_FAIL(err, SF_ERR_MODEL, "the anvil's load on resting node %lld is %g N", (long long)k,
+                           m->rest_load[k]);
+        sum += m->rest_load[k];
+    }
+    if (m->rest_count > 0 && !(sum > 0))
+        return SF_FAIL(err, SF_ERR_MODEL, "the pad rests on the anvil without weight");
     return SF_OK;
 }
 
@@ -262,7 +277,9 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         check_edges(m, err) != SF_OK ||
         check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
         check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK ||
-        check_areas(m, err) != SF_OK || check_constraints(m, err) != SF_OK || check_ties(m, err) != SF_OK)
+        check_set("resting nodes", m->rest_count, m->rest_node, m->node_count, err) != SF_OK ||
+        check_loads(m, err) != SF_OK || check_areas(m, err) != SF_OK || check_constraints(m, err) != SF_OK ||
+        check_ties(m, err) != SF_OK)
         return err->status;
     return check_mesh(m, err);
 }

@@ -123,8 +123,13 @@ static void put_pad(const page *p) {
     put_parameter(p, &table, "geometry.file", "shape");
     put_parameter(p, &table, "geometry.parameters", "its parameters");
     put_parameter(p, &table, "geometry.length_unit", "their unit");
-    put_parameter(p, &table, "pad.fixed", "held surfaces");
+    put_parameter(p, &table, "pad.fixed", "surfaces of the base");
     put_parameter(p, &table, "pad.sliding", "sliding surfaces");
+    put_parameter(p, &table, "pad.base", "base");
+    if (r->history.anvil_nodes[0] > 0) {
+        put_parameter(p, &table, "pad.friction", "friction on the anvil");
+        put_parameter(p, &table, "pad.gravity", "gravity on the pad");
+    }
     sf_html_table_end(&table);
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/motion.h"
 #include "core/stability.h"
+#include "pre/base.h"
 #include "solver/material/law.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/connectivity.h"
@@ -13,6 +14,7 @@
 #include "pre/cloud/layers.h"
 #include "pre/cloud/surface_area.h"
 #include "pre/impact.h"
+#include "pre/groups.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/mesh/surface_orient.h"
 #include <math.h>
@@ -230,35 +232,6 @@ done:
     return err->status;
 }
 
-/* A set that the case names under `key`; the sentence lists the groups that exist. */
-static const sf_node_set *need_set(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {
-    const sf_node_set *set = sf_mesh_find_set(mesh, name);
-    if (set)
-        return set;
-    char known[512] = "";
-    size_t used = 0;
-    for (int k = 0; k < mesh->set_count && used < sizeof known; k++)
-        used +=
-            (size_t)snprintf(known + used, sizeof known - used, "%s\"%s\"", k ? ", " : "", mesh->set[k].name);
-    SF_FAIL(err, SF_ERR_INPUT, "%s names the surface group \"%s\", which the pad does not have; it has %s",
-            key, name, mesh->set_count ? known : "none");
-    return NULL;
-}
-
-/* The axis (0 x, 1 y, 2 z) that a planar set is normal to, or -1. */
-static int plane_axis(const sf_model *m, const sf_node_set *set) {
-    for (int axis = 0; axis < 3; axis++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t k = 0; k < set->count; k++) {
-            low = fmin(low, m->position[3 * (int64_t)set->node[k] + axis]);
-            high = fmax(high, m->position[3 * (int64_t)set->node[k] + axis]);
-        }
-        if (high - low <= 1e-9 * m->thickness)
-            return axis;
-    }
-    return -1;
-}
-
 static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *m, uint8_t *mask,
                                sf_error *err) {
     m->symmetry_factor = 1;
@@ -266,10 +239,10 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
     for (int g = 0; g < c->symmetry_count; g++) {
         if (!c->symmetry_given && !sf_mesh_find_set(mesh, c->symmetry_group[g]))
             continue;
-        const sf_node_set *set = need_set(mesh, "pad.symmetry", c->symmetry_group[g], err);
+        const sf_node_set *set = sf_group_need(mesh, "pad.symmetry", c->symmetry_group[g], err);
         if (!set)
             return err->status;
-        int axis = plane_axis(m, set);
+        int axis = sf_group_plane_axis(m, set);
         if (axis != 0 && axis != 1)
             return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is not a plane normal to x or y",
                            set->name);
@@ -285,25 +258,6 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
         m->symmetry_factor *= 2;
         for (int64_t k = 0; k < set->count; k++)
             mask[set->node[k]] |= (uint8_t)(1 << axis);
-    }
-    return SF_OK;
-}
-
-/* Surfaces on a smooth anvil: held along their normal. */
-static sf_status mark_sliding(const sf_case *c, const sf_mesh *mesh, const sf_model *m, uint8_t *mask,
-                              uint8_t *base, sf_error *err) {
-    for (int g = 0; g < c->sliding_count; g++) {
-        const sf_node_set *set = need_set(mesh, "pad.sliding", c->sliding_group[g], err);
-        if (!set)
-            return err->status;
-        int axis = plane_axis(m, set);
-        if (axis < 0)
-            return SF_FAIL(err, SF_ERR_INPUT, "the sliding group \"%s\" is not a plane normal to x, y or z",
-                           set->name);
-        for (int64_t k = 0; k < set->count; k++) {
-            mask[set->node[k]] |= (uint8_t)(1 << axis);
-            base[set->node[k]] = 1;
-        }
     }
     return SF_OK;
 }
@@ -343,30 +297,35 @@ static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const
     return NULL;
 }
 
+/* Likewise of the resting nodes, 1 in `rest`. */
+static sf_status gather_rest(const sf_layers *layers, const sf_model *m, uint8_t *rest, sf_error *err) {
+    uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "resting nodes");
+    for (int32_t i = 0; point && i < (int32_t)m->node_count; i++)
+        if (rest[i])
+            point[contact_point(layers, m, i)] = 1;
+    if (point)
+        memcpy(rest, point, (size_t)m->node_count);
+    free(point);
+    return err->status;
+}
+
 /* Groups to constrained nodes (with their components) and contact points. */
 static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_layers *layers,
                             double *contact_area, sf_model *m, sf_build_report *report, sf_error *err) {
     uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
     uint8_t *base = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    uint8_t *rest = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    const sf_base_marks marks = {mask, base, rest};
     int32_t *contact = NULL;
     int64_t points = 0;
     if (err->status != SF_OK || mark_symmetry(c, mesh, m, mask, err) != SF_OK)
         goto done;
-    for (int g = 0; g < c->fixed_count; g++) {
-        const sf_node_set *set = need_set(mesh, "pad.fixed", c->fixed_group[g], err);
-        if (!set)
-            goto done;
-        for (int64_t k = 0; k < set->count; k++) {
-            mask[set->node[k]] = SF_FIX_X | SF_FIX_Y | SF_FIX_Z;
-            base[set->node[k]] = 1;
-        }
-    }
-    if (mark_sliding(c, mesh, m, mask, base, err) != SF_OK ||
-        sf_layers_hold(layers, mask, base, m, err) != SF_OK)
+    if (sf_base_mark(c, mesh, m, &marks, err) != SF_OK || gather_rest(layers, m, rest, err) != SF_OK ||
+        sf_base_rest(c, &marks, m, err) != SF_OK || sf_layers_hold(layers, mask, base, m, err) != SF_OK)
         goto done;
     for (int64_t i = 0; i < m->node_count; i++)
         m->fixed_count += mask[i] != 0;
-    const sf_node_set *set = need_set(mesh, "pad.contact", c->contact_group, err);
+    const sf_node_set *set = sf_group_need(mesh, "pad.contact", c->contact_group, err);
     if (!set || !(contact = gather_contact(layers, m, set, contact_area, &points, err)))
         goto done;
     m->contact_node = sf_alloc(err, (unsigned long)points, sizeof *m->contact_node, "contact points");
@@ -402,6 +361,7 @@ done:
     free(contact);
     free(mask);
     free(base);
+    free(rest);
     return err->status;
 }
 
@@ -585,6 +545,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, surface, m, err) == SF_OK &&
         take_cards(c, m, err) == SF_OK) {
+        sf_base_place_anvil(c, &report->hold, m);
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
             measure_step(m, report, err) == SF_OK && check_first_step(m, report->first_step, err) == SF_OK) {

@@ -9,8 +9,7 @@ enum { MOTIONS = 6 }; /* of each layer: along x, y, z, about x, y, z */
 
 static const double FREE = 1e-9; /* of the mean square of what is held: a motion that moves no held node */
 static const double PART = 1e-6; /* of a motion: none */
-static const double UNDERSIDE = 1e-3;  /* of the thickness */
-static const double MOSTLY_HELD = 0.5; /* of the underside's nodes */
+static const double UNDERSIDE = 1e-3; /* of the thickness */
 
 /* Middle and half size of the pad. */
 static void find_box(const sf_model *m, double middle[3], double *size) {
@@ -39,7 +38,7 @@ static void motion_row(const double r[3], int c, double row[MOTIONS]) {
  * same place, along axis c. */
 static void add_row(const sf_model *m, const double r[3], int c, int32_t node, int32_t other,
                     gsl_matrix *sum) {
-    double row[MOTIONS], weight = 1 / fmax(1, (double)m->fixed_count);
+    double row[MOTIONS], weight = 1 / fmax(1, (double)(m->fixed_count + m->rest_count));
     const int32_t nodes[2] = {node, other};
     motion_row(r, c, row);
     for (int p = 0; p < 2; p++)
@@ -55,24 +54,34 @@ static void add_row(const sf_model *m, const double r[3], int c, int32_t node, i
         }
 }
 
-/* Sum of the squares of what constraints and ties forbid, as a matrix; its null space is free. */
+/* Displacements that are forbidden: of one node, or of one less that of another. The weight holds what rests.
+ */
+typedef struct rows {
+    int64_t count;
+    const int32_t *node, *other; /* [count]; other NULL: of one */
+    const uint8_t *mask;         /* [count]; NULL: z */
+} rows;
+
+/* Sum of the squares of what constraints, the anvil and ties forbid, as a matrix; its null space is free. */
 static void add_rows(const sf_model *m, gsl_matrix *sum, sf_hold *hold) {
     double middle[3], size;
     find_box(m, middle, &size);
-    for (int64_t k = 0; k < m->fixed_count + m->tie_count; k++) {
-        int64_t t = k - m->fixed_count;
-        int32_t node = t < 0 ? m->fixed_node[k] : m->tie_node[t], other = t < 0 ? -1 : m->tie_other[t];
-        uint8_t mask = t < 0 ? m->fixed_mask[k] : m->tie_mask[t];
-        double r[3];
-        for (int i = 0; i < 3; i++)
-            r[i] = (m->position[3 * (int64_t)node + i] - middle[i]) / size;
-        for (int c = 0; c < 3; c++) {
-            if (!(mask & 1 << c))
-                continue;
-            hold->rows[c] += t < 0;
-            add_row(m, r, c, node, other, sum);
+    const rows part[] = {{m->fixed_count, m->fixed_node, NULL, m->fixed_mask},
+                         {m->rest_count, m->rest_node, NULL, NULL},
+                         {m->tie_count, m->tie_node, m->tie_other, m->tie_mask}};
+    for (const rows *p = part; p < part + 3; p++)
+        for (int64_t k = 0; k < p->count; k++) {
+            uint8_t mask = p->mask ? p->mask[k] : SF_FIX_Z;
+            double r[3];
+            for (int i = 0; i < 3; i++)
+                r[i] = (m->position[3 * (int64_t)p->node[k] + i] - middle[i]) / size;
+            for (int c = 0; c < 3; c++) {
+                if (!(mask & 1 << c))
+                    continue;
+                hold->rows[c] += p->other == NULL;
+                add_row(m, r, c, p->node[k], p->other ? p->other[k] : -1, sum);
+            }
         }
-    }
 }
 
 static void name_motion(const gsl_matrix *vector, size_t k, size_t layer, sf_hold *hold) {
@@ -90,7 +99,7 @@ static void name_motion(const gsl_matrix *vector, size_t k, size_t layer, sf_hol
 
 static void find_underside(const sf_model *m, sf_hold *hold) {
     double low = INFINITY, high = -INFINITY;
-    int64_t nodes = 0, held = 0;
+    int64_t nodes = 0, held = m->rest_count; /* which are the lowest nodes */
     for (int64_t i = 0; i < m->node_count; i++) {
         low = fmin(low, m->position[3 * i + 2]);
         high = fmax(high, m->position[3 * i + 2]);
@@ -149,14 +158,14 @@ sf_status sf_hold_check(const sf_hold *hold, const sf_model *m, sf_error *err) {
 }
 
 void sf_hold_warn(const sf_hold *hold, const sf_model *m, const sf_sink *sink) {
-    if (hold->underside < MOSTLY_HELD)
+    if (hold->underside < SF_HOLD_MOST)
         sf_sink_tell(
             sink, SF_WARNING,
             "pad.fixed, pad.sliding: %.3g %% of the nodes of the pad's underside (z = %.4g mm) are held along z: "
             "the rest hangs free",
             100 * hold->underside, 1e3 * hold->underside_low);
     for (int c = 0; c < 2; c++)
-        if (hold->slides[c] && m->missile.direction[c] != 0)
+        if (hold->slides[c] && m->missile.direction[c] != 0 && !(m->anvil.friction > 0))
             sf_sink_tell(
                 sink, SF_WARNING,
                 "nothing holds the pad along %c, where missile.direction has the component %g: it will slide "

@@ -8,13 +8,15 @@
 #include "core/model.h"
 #include "core/sink.h"
 
+#define SF_HOLD_MOST 0.5 /* of the underside's nodes, held along z: mostly held */
+
 typedef struct sf_hold {
-    int64_t rows[3];      /* nodes held along x, y and z */
+    int64_t rows[3];      /* nodes held along x, y and z; those that rest are held along z */
     bool lifts;           /* some rigid motion with a vertical part is free */
     int64_t lifted;       /* the layer that it moves most */
     bool slides[2];       /* along x, y */
     bool turns;           /* about a vertical axis */
-    double underside;     /* share of the nodes of the pad's underside that are held along z */
+    double underside;     /* share of the nodes of the pad's underside that are held along z or rest */
     double underside_low; /* m, its z */
 } sf_hold;
 

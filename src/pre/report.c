@@ -117,7 +117,7 @@ static void print_cost(FILE *out, const sf_model *m, const sf_build_report *r) {
     double step = fmin(m->run.step_safety * r->first_step, m->run.step_limit);
     double steps = TYPICAL * r->slowdown * m->run.end_time / step, n = (double)m->node_count;
     double bytes = 26 * (double)m->domain_nnz + 12 * (double)m->phi_nnz + 7 * (double)m->edge_nnz + 541 * n +
-                   720 * (double)(m->fixed_count + m->contact_count);
+                   720 * (double)(m->fixed_count + sf_model_points(m));
     fprintf(out, "%-26s%.2f us (bound %.2f us)\n", "first time step, at least", 1e6 * step,
             1e6 * r->first_step);
     fprintf(out, "%-26s%.0f MB (%.2f kB per node)\n", "memory of the solver", bytes / 1e6, bytes / n / 1e3);
@@ -146,8 +146,11 @@ void sf_report_print(FILE *out, const sf_model *m, const sf_build_report *r) {
     fprintf(out, "%-26ssum B %.1e, sum X B %.1e, volume %.1e, telescoping %.1e, phi %.1e\n", "invariants",
             r->invariants.unity, r->invariants.linear, r->invariants.volume, r->invariants.telescope,
             r->invariants.shape);
-    fprintf(out, "%-26s%lld held, %lld may be touched\n", "boundary nodes", (long long)m->fixed_count,
+    fprintf(out, "%-26s%lld held, %lld may be touched", "boundary nodes", (long long)m->fixed_count,
             (long long)m->contact_count);
+    if (m->rest_count > 0)
+        fprintf(out, ", %lld rest on the anvil", (long long)m->rest_count);
+    fputc('\n', out);
     print_masses(out, m, r);
     print_mesh_error(out, m, &r->zone);
     print_cost(out, m, r);

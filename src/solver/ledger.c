@@ -11,13 +11,13 @@ static double total_energy(const sf_ledger *l) {
     return l->kinetic_missile + l->kinetic_pad + sf_ledger_internal(l) + l->contact + l->friction;
 }
 
-/* Pad and missile along its direction, against gravity and the constraints. `held` (N): the constraints'
- * force along the direction; `carried` (kg m s-1): the pad's momentum along it. */
+/* Pad and missile along its direction, against gravity, constraints and anvil. `held` (N): the outside
+ * force on the pad along the direction; `carried` (kg m s-1): the pad's momentum along it. */
 static void balance_free(const sf_model *m, sf_state *s, double held, double carried, double dt_v) {
     sf_ledger *l = &s->ledger;
     l->kinetic_missile = sf_missile_kinetic(m, &s->missile, dt_v);
     l->external = sf_missile_gravity_work(m, &s->missile);
-    l->error = (total_energy(l) - l->external) / l->reference - 1;
+    l->error = (total_energy(l) - l->external - l->weight) / l->reference - 1;
 
     l->impulse += dt_v * (sf_missile_weight(m) + held);
     double change = sf_missile_momentum(m, &s->missile) + carried - l->momentum_reference;
@@ -30,7 +30,7 @@ static void balance_driven(const sf_model *m, sf_state *s, double held, double c
     sf_ledger *l = &s->ledger;
     double pressed = dt_v * sf_missile_contact_force(m, &s->missile);
     l->reference = fmax(l->reference, fabs(l->external));
-    l->error = (total_energy(l) - l->external) / l->reference;
+    l->error = (total_energy(l) - l->external - l->weight) / l->reference;
 
     l->impulse += pressed + dt_v * held;
     l->momentum_reference += fabs(pressed);

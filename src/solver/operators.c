@@ -28,7 +28,7 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
     if (owned)
         sf_model_drop_edges(owned);
     if (sf_constraint_build(m, &op->constraint, err) != SF_OK ||
-        sf_contact_gram_build(m, &op->gram, err) != SF_OK)
+        sf_contact_gram_build(m, &op->gram, err) != SF_OK || sf_anvil_build(m, &op->anvil, err) != SF_OK)
         return err->status;
     return sf_missile_surface_build(m, sf_missile_direction(m), &op->surface, err);
 }
@@ -52,6 +52,7 @@ void sf_operators_free(sf_operators *op) {
     sf_halo_free(&op->halo);
     sf_constraint_free(&op->constraint);
     sf_contact_gram_free(&op->gram);
+    sf_anvil_free(&op->anvil);
     sf_missile_surface_free(&op->surface);
     free(op->stability);
     sf_pairs_free(&op->pairs);

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/model.h"
 #include "solver/constraint/constraint.h"
+#include "solver/contact/anvil.h"
 #include "solver/contact/contact_gram.h"
 #include "solver/material/law.h"
 #include "solver/field/halo.h"
@@ -23,6 +24,7 @@ typedef struct sf_operators {
 
     sf_constraint constraint;
     sf_contact_gram gram;
+    sf_anvil anvil;
     sf_missile_surface surface;
 } sf_operators;
 

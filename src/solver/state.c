@@ -64,7 +64,7 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
     case 'h':
         return blocks * history_rows(model);
     case 'c':
-        return model->contact_count;
+        return sf_model_points(model);
     default:
         return (model->node_count + SF_CHUNK - 1) / SF_CHUNK;
     }
@@ -115,9 +115,11 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
         s->f[9 * i] = s->f[9 * i + 4] = s->f[9 * i + 8] = 1;
         s->pair_stiffness[i] = sf_material_rest_modulus(sf_model_material(model, i));
     }
-    for (int64_t c = 0; c < model->contact_count; c++)
-        memcpy(&s->contact_position[3 * c], &model->position[3 * (int64_t)model->contact_node[c]],
+    for (int64_t c = 0; c < sf_model_points(model); c++)
+        memcpy(&s->contact_position[3 * c], &model->position[3 * sf_model_point_node(model, c)],
                3 * sizeof(double));
+    for (int64_t k = 0; k < model->rest_count; k++) /* settled */
+        s->contact_force[3 * (model->contact_count + k) + 2] = model->rest_load[k];
     s->tightness = 1;
     sf_missile_begin(model, &s->missile);
     if (!sf_missile_is_driven(model))

@@ -48,6 +48,8 @@ typedef struct sf_partial {
     X(double, contact, , "J", "lost in normal contact")                                                                \
     X(double, friction, , "J", "lost in friction")                                                                     \
     X(double, external, , "J", "work of gravity on the missile, or of its prescribed motion")                           \
+    X(double, weight, , "J", "work of gravity on a resting pad")                                                       \
+    X(double, anvil, , "J", "part of `contact` and `friction` that is lost at the anvil")                              \
     X(double, reference, , "J", "to which errors refer: total at t = 0; see ledger.h")                                 \
     X(double, stabilisation_drift, , "J", "work that changed stiffness put into the pairs, to date")                   \
     X(double, error, , "1", "of the balance, over `reference`")                                                        \
@@ -67,7 +69,9 @@ typedef struct sf_partial {
     X(double, dt, , "s", "from time to the next")                                                                      \
     X(double, dt_old, , "s", "from the previous time")                                                                 \
     X(double, tightness, , "1", "highest frequency squared over its bound, from the power iteration")                  \
-    X(int64_t, contact_count, , "1", "points with a force")                                                            \
+    X(int64_t, contact_count, , "1", "points with a force of the missile")                                             \
+    X(int64_t, anvil_count, , "1", "points with a force of the anvil")                                                 \
+    X(double, anvil_force, [3], "N", "of the anvil on a resting pad")                                                  \
     X(double, penetration, , "m", "deepest now")                                                                       \
     X(int64_t, contact_unsettled, , "1", "steps whose sweeps did not reach their tolerance")                           \
     X(double, base_reaction, [3], "N", "of the base on the pad")                                                       \
@@ -115,14 +119,14 @@ typedef struct sf_state {
     double *mode;       /* [n] its vector */
     float *directional; /* [n][6] Pa, tangent by direction (law.h), when sf_time_step_due */
 
-    /* Contact points. */
+    /* Contact points: sf_model_points of the model, those of the missile before those of the anvil. */
     double *contact_position; /* [contacts][3] m, physical, now */
     double *contact_motion;   /* [contacts][3] m, its last step */
     double *contact_step;     /* [contacts][3] m, its next step without contact forces */
     double *contact_force;    /* [contacts][3] N, on the pad */
     double *contact_old;      /* [contacts][3] N, of the last step */
     double *contact_gap;      /* [contacts] m, predicted */
-    double *contact_normal;   /* [contacts][3] outward from the missile */
+    double *contact_normal;   /* [contacts][3] outward from the missile or the anvil */
     int32_t *contact_active;  /* [contacts] list */
     int32_t *contact_near;    /* [contacts] Verlet list: the points that can touch before contact_room is used
                                  up; arrays of other points are not up to date */

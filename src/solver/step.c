@@ -165,6 +165,19 @@ static sf_wrench wrench_of_constraints(const sf_state *s, const sf_constraint_st
     return w;
 }
 
+/* The anvil's forces on a resting pad, and its weight. */
+static void add_anvil(const sf_model *m, const sf_operators *op, const sf_state *s, sf_wrench *outside) {
+    const sf_anvil *a = &op->anvil;
+    for (int64_t c = m->contact_count; c < sf_model_points(m); c++)
+        sf_wrench_add(outside, &s->contact_position[3 * c], &s->contact_force[3 * c]);
+    for (int64_t k = 0; k < a->count; k++) {
+        double x[3];
+        for (int r = 0; r < 3; r++)
+            x[r] = m->position[3 * (int64_t)a->node[k] + r] + s->d[3 * (int64_t)a->node[k] + r];
+        sf_wrench_add(outside, x, a->pull[k]);
+    }
+}
+
 sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
 #pragma omp parallel default(none) shared(m, op, s)
     {
@@ -188,14 +201,17 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_lap(s->watch, SF_PHASE_CONTACT);
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
     sf_constraint_project(&op->constraint, &held);
-    memcpy(s->base_reaction, held.base, sizeof held.base);
+    for (int r = 0; r < 3; r++)
+        s->base_reaction[r] = held.base[r] + s->anvil_force[r];
     if (s->step % RESIDUAL_INTERVAL == 0)
         s->constraint_residual = sf_constraint_residual(m, &op->constraint, &held);
     sf_lap(s->watch, SF_PHASE_CONSTRAINT);
 
     accelerate(m, s, dt_v); /* v at the next half step */
     sf_missile_kick(m, &s->missile, s->time, s->dt, s->dt_old);
-    const sf_wrench outside = wrench_of_constraints(s, &held);
+    s->ledger.weight = sf_anvil_work(&op->anvil, s->d);
+    sf_wrench outside = wrench_of_constraints(s, &held);
+    add_anvil(m, op, s, &outside);
     sf_ledger_close(m, s, &outside, dt_v);
     sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)

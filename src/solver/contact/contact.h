@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact of the rigid missile with the pad's surface points, by Lagrange multipliers on the positions of the
- * next time (forward increment method, Carpenter, Taylor, Katona 1991; theory, section "Contact";
- * docs/adr/0003).
+/* Contact of the pad's surface points with the rigid missile, and of a resting pad's underside with the
+ * anvil, by Lagrange multipliers on the positions of the next time (forward increment method, Carpenter,
+ * Taylor, Katona 1991; theory, section "Contact"; docs/adr/0003).
  *
  * Without contact forces point c would move to y*, the missile to s*. Forces q_c on the pad (and -q_c on
  * the missile) shift them by dt dt_v (A q)_c and - dt dt_v (sum q . e) / m. The forces are those for which no
@@ -15,9 +15,9 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* Finds the contact forces of this step, adds them to state->force (with phi^T) and to the missile, and adds
- * the work lost since the last step to the ledger. Needs force without contact, reaction of the last step, dt
- * and dt_old. */
+/* Finds the contact forces of this step, adds them and a resting pad's weight to state->force (with phi^T)
+ * and to missile and anvil, and adds the work lost since the last step to the ledger. Needs force without
+ * contact, reaction of the last step, dt and dt_old. */
 void sf_contact_solve(const sf_model *model, const sf_operators *operators, sf_state *state);
 
 #endif

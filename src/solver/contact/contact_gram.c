@@ -14,16 +14,17 @@ typedef struct transposed {
 
 static sf_status transpose(const sf_model *m, transposed *t, sf_error *err) {
     int64_t count = 0;
-    for (int64_t c = 0; c < m->contact_count; c++)
-        count += m->phi_ptr[m->contact_node[c] + 1] - m->phi_ptr[m->contact_node[c]];
+    for (int64_t c = 0; c < sf_model_points(m); c++)
+        count += m->phi_ptr[sf_model_point_node(m, c) + 1] - m->phi_ptr[sf_model_point_node(m, c)];
     t->ptr = sf_alloc(err, (unsigned long)m->node_count + 2, sizeof *t->ptr, "contact lists");
     t->point = sf_alloc(err, (unsigned long)count, sizeof *t->point, "contact lists");
     t->phi = sf_alloc(err, (unsigned long)count, sizeof *t->phi, "contact lists");
     if (err->status != SF_OK)
         return err->status;
     for (int pass = 0; pass < 2; pass++) {
-        for (int64_t c = 0; c < m->contact_count; c++)
-            for (int64_t k = m->phi_ptr[m->contact_node[c]]; k < m->phi_ptr[m->contact_node[c] + 1]; k++) {
+        for (int64_t c = 0; c < sf_model_points(m); c++)
+            for (int64_t k = m->phi_ptr[sf_model_point_node(m, c)];
+                 k < m->phi_ptr[sf_model_point_node(m, c) + 1]; k++) {
                 if (pass == 0) {
                     t->ptr[m->phi_node[k] + 2]++;
                     continue;
@@ -47,7 +48,8 @@ static int by_value(const void *a, const void *b) {
 static int64_t gram_row(const sf_model *m, const transposed *t, int64_t c, double *dense, int32_t *list,
                         uint8_t *seen) {
     int64_t used = 0;
-    for (int64_t k = m->phi_ptr[m->contact_node[c]]; k < m->phi_ptr[m->contact_node[c] + 1]; k++) {
+    for (int64_t k = m->phi_ptr[sf_model_point_node(m, c)]; k < m->phi_ptr[sf_model_point_node(m, c) + 1];
+         k++) {
         int32_t node = m->phi_node[k];
         for (int64_t q = t->ptr[node]; q < t->ptr[node + 1]; q++) {
             if (!seen[t->point[q]]) {
@@ -63,17 +65,19 @@ static int64_t gram_row(const sf_model *m, const transposed *t, int64_t c, doubl
 
 static void measure_points(const sf_model *m, sf_contact_gram *gram) {
     gram->spacing = INFINITY;
-    for (int64_t c = 0; c < m->contact_count; c++) {
+    for (int64_t c = 0; c < sf_model_points(m); c++) {
         double sum = 0;
-        for (int64_t k = m->phi_ptr[m->contact_node[c]]; k < m->phi_ptr[m->contact_node[c] + 1]; k++)
+        for (int64_t k = m->phi_ptr[sf_model_point_node(m, c)]; k < m->phi_ptr[sf_model_point_node(m, c) + 1];
+             k++)
             sum += fabs(m->phi_value[k]);
         gram->spread = fmax(gram->spread, sum);
-        gram->spacing = fmin(gram->spacing, m->spacing[m->contact_node[c]]);
+        if (!sf_model_point_rests(m, c))
+            gram->spacing = fmin(gram->spacing, m->spacing[sf_model_point_node(m, c)]);
     }
 }
 
 sf_status sf_contact_gram_build(const sf_model *m, sf_contact_gram *gram, sf_error *err) {
-    unsigned long count = (unsigned long)m->contact_count;
+    unsigned long count = (unsigned long)sf_model_points(m);
     transposed t = {0};
     memset(gram, 0, sizeof *gram);
     measure_points(m, gram);
@@ -85,7 +89,7 @@ sf_status sf_contact_gram_build(const sf_model *m, sf_contact_gram *gram, sf_err
     if (err->status != SF_OK || transpose(m, &t, err) != SF_OK)
         goto done;
     for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
-        for (int64_t c = 0; c < m->contact_count; c++) {
+        for (int64_t c = 0; c < sf_model_points(m); c++) {
             int64_t used = gram_row(m, &t, c, dense, list, seen);
             gram->ptr[c + 1] = gram->ptr[c] + used;
             for (int64_t k = 0; k < used; k++) {

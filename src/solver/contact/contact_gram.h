@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a contact force at one surface point accelerates the others: A = Phi M^-1 Phi^T over the contact
- * points, a sparse symmetric matrix; the same for the three components because the mass is lumped. */
+ * points, those of the missile and those of the anvil (sf_model_points), a sparse symmetric matrix; the same
+ * for the three components because the mass is lumped. */
 #ifndef SF_SOLVER_CONTACT_CONTACT_GRAM_H
 #define SF_SOLVER_CONTACT_CONTACT_GRAM_H
 
@@ -14,7 +15,7 @@ typedef struct sf_contact_gram {
     double *diagonal; /* [contacts] kg-1 */
     double spread;    /* -, largest sum |phi| of a contact point: no point is faster than this times the
                          fastest coefficient */
-    double spacing;   /* m, smallest of the contact points */
+    double spacing;   /* m, smallest of the missile's contact points */
 } sf_contact_gram;
 
 sf_status sf_contact_gram_build(const sf_model *model, sf_contact_gram *gram, sf_error *err);

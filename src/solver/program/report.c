@@ -10,10 +10,12 @@
 #include <sys/resource.h>
 
 void sf_solve_print_model(const sf_model *m, int threads) {
-    printf("%lld nodes, %lld interactions, %lld held nodes, %lld contact points, 1/%lld of the pad, %d "
-           "threads\n",
-           (long long)m->node_count, (long long)m->domain_nnz, (long long)m->fixed_count,
-           (long long)m->contact_count, (long long)m->symmetry_factor, threads);
+    printf("%lld nodes, %lld interactions, %lld held nodes, ", (long long)m->node_count,
+           (long long)m->domain_nnz, (long long)m->fixed_count);
+    if (m->rest_count > 0)
+        printf("%lld resting nodes, ", (long long)m->rest_count);
+    printf("%lld contact points, 1/%lld of the pad, %d threads\n", (long long)m->contact_count,
+           (long long)m->symmetry_factor, threads);
 }
 
 void sf_solve_print_ledger(const sf_model *m, const sf_state *s, const sf_run *run) {
@@ -33,6 +35,9 @@ void sf_solve_print_ledger(const sf_model *m, const sf_state *s, const sf_run *r
            whole * l->kinetic_missile, whole * l->kinetic_pad, whole * l->stored, whole * l->hysteresis,
            whole * l->viscous, whole * l->stabilisation, whole * l->contact, whole * l->friction,
            driven ? "the motion's" : "gravity's", whole * l->external);
+    if (m->rest_count > 0)
+        printf("  of contact and friction at the anvil %.5f  work of the pad's weight %.5f\n",
+               whole * l->anvil, whole * l->weight);
     printf("energy error %.2e (largest), momentum error %.1e, |G v| %.1e m/s, penetration %.2g mm\n",
            l->largest_error, x->largest_momentum, x->largest_residual, 1e3 * x->largest_penetration);
     printf("at the peak of the internal energy (%.3f J): stabilisation %.2f %%, contact %.3f %%\n",

@@ -13,7 +13,7 @@ static double area_in_contact(const sf_model *m, const sf_state *s) {
     double area = 0;
     for (int64_t n = 0; n < s->contact_near_count; n++) {
         int64_t k = s->contact_near[n];
-        if (sf_dot3(&s->contact_force[3 * k], &s->contact_force[3 * k]) > 0)
+        if (!sf_model_point_rests(m, k) && sf_dot3(&s->contact_force[3 * k], &s->contact_force[3 * k]) > 0)
             area += m->contact_area[k];
     }
     return area;
@@ -45,11 +45,14 @@ VALUE(energy_stabilisation, whole * s->ledger.stabilisation)
 VALUE(energy_contact, whole * s->ledger.contact)
 VALUE(energy_friction, whole * s->ledger.friction)
 VALUE(energy_external, whole * s->ledger.external)
+VALUE(energy_weight, whole * s->ledger.weight)
+VALUE(energy_anvil, whole * s->ledger.anvil)
 VALUE(energy_error, s->ledger.error)
 VALUE(momentum_error, s->ledger.momentum_error)
 VALUE(largest_compression, s->largest_compression)
 VALUE(smallest_jacobian, s->smallest_jacobian)
 VALUE(contact_nodes, (double)s->contact_count)
+VALUE(anvil_nodes, (double)s->anvil_count)
 VALUE(contact_area, whole * area_in_contact(m, s))
 VALUE(penetration, s->penetration)
 VALUE(constraint_residual, s->constraint_residual)

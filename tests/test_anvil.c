@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A pad that rests on the anvil: it stays where it lies, slides and sticks by Coulomb's law, flies and lands,
+ * rocks, and every impulse on it is that of missile, anvil or weight. */
+#include "extreme.h"
+#include "model_fixture.h"
+
+#include "core/mat3.h"
+#include "core/units.h"
+#include "solver/step.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+
+static const double G = SF_STANDARD_GRAVITY;
+
+typedef struct resting {
+    double friction;
+    double gap; /* m, of the missile */
+    bool quarter, linear;
+    double across; /* m, of the missile's place from the middle, x */
+    int layers;
+    double speed; /* m/s, of the missile; 0: as in the example */
+} resting;
+
+/* A block of 50 x 40 mm under a dome of 20 mm radius. */
+static void start(fixture *f, const resting *r) {
+    const fixture_block block = {
+        .cells = {5, 4, r->layers ? r->layers : 3}, .spacing = 0.01, .jitter = 0.1, .surface_jitter = 0.05};
+    sf_case c;
+    sf_mesh mesh;
+    sf_surface surface;
+    fixture_case(&c, NULL);
+    fixture_hold(&c, (const char *const[]){"base", NULL});
+    c.base_rule = SF_BASE_RESTING;
+    c.anvil_card.friction = r->friction;
+    c.missile_card.mass = 0.5;
+    c.missile_card.gap = r->gap;
+    if (r->speed > 0)
+        c.missile_card.speed = r->speed;
+    if (r->linear)
+        fixture_make_linear(&c);
+    if (r->quarter) {
+        const char *const planes[] = {"plane_x", "plane_y"};
+        for (; c.symmetry_count < 2; c.symmetry_count++)
+            snprintf(c.symmetry_group[c.symmetry_count], SF_CASE_NAME_SIZE, "%s", planes[c.symmetry_count]);
+        c.missile_card.mass = 2;
+    }
+    fixture_block_mesh(&block, &mesh);
+    fixture_dome(0.02, 8, r->quarter ? 0 : 0.025 + r->across, r->quarter ? 0 : 0.02, &surface);
+    fixture_build(&c, &mesh, &surface, f);
+    fixture_start(f);
+}
+
+static double pad_mass(const sf_model *m) {
+    double mass = 0;
+    for (int64_t i = 0; i < m->node_count; i++)
+        mass += m->mass[i];
+    return mass;
+}
+
+static void throw_pad(fixture *f, double x, double z) {
+    for (int64_t i = 0; i < f->model.node_count; i++) {
+        f->state.v[3 * i] = x;
+        f->state.v[3 * i + 2] = z;
+    }
+}
+
+/* Displacement of the centre of mass. */
+static void centre(const fixture *f, double out[3]) {
+    double sum[3] = {0}, mass = pad_mass(&f->model);
+    for (int64_t i = 0; i < f->model.node_count; i++)
+        for (int r = 0; r < 3; r++)
+            sum[r] += f->model.mass[i] * f->state.d[3 * i + r];
+    for (int r = 0; r < 3; r++)
+        out[r] = sum[r] / mass;
+}
+
+static double farthest(const fixture *f) {
+    double most = 0;
+    for (int64_t k = 0; k < 3 * f->model.node_count; k++)
+        most = larger(most, fabs(f->state.d[k]));
+    return most;
+}
+
+static void advance(fixture *f) {
+    fixture_step(f);
+    sf_step_advance(&f->model, &f->state);
+}
+
+static void the_loads_carry_the_weight_below_its_centre(void **state) {
+    (void)state;
+    for (int quarter = 0; quarter < 2; quarter++) {
+        fixture f;
+        start(&f, &(resting){.gap = 1, .quarter = quarter});
+        const sf_model *m = &f.model;
+        double sum = 0, moment[2] = {0}, mass = 0, first[2] = {0};
+        for (int64_t k = 0; k < m->rest_count; k++) {
+            assert_true(m->rest_load[k] > 0);
+            sum += m->rest_load[k];
+            for (int r = 0; r < 2; r++)
+                moment[r] += m->rest_load[k] * m->position[3 * (int64_t)m->rest_node[k] + r];
+        }
+        for (int64_t i = 0; i < m->node_count; i++) {
+            mass += m->mass[i];
+            for (int r = 0; r < 2; r++)
+                first[r] += m->mass[i] * m->position[3 * i + r];
+        }
+        assert_relative(sum, G * mass, 1e-13);
+        for (int r = 0; r < 2 && !quarter; r++)
+            assert_relative(moment[r], G * first[r], 1e-12);
+        assert_int_equal(m->rest_count, 6 * 5);
+        assert_relative(m->anvil.depth, 0.03, 1e-12);
+        fixture_free(&f);
+    }
+}
+
+/* The bound is 1e-9 of the settlement rho g H^2 / 2E, of about 0.4 nm: rounding. */
+static void a_resting_block_keeps_still(void **state) {
+    (void)state;
+    for (int quarter = 0; quarter < 2; quarter++) {
+        fixture f;
+        start(&f, &(resting){.gap = 1, .friction = quarter ? 0 : 0.5, .quarter = quarter});
+        double weight = G * pad_mass(&f.model);
+        while (f.state.time < 0.02) {
+            fixture_step(&f);
+            assert_relative(f.state.base_reaction[2], weight, 1e-6);
+            assert_int_equal(f.state.anvil_count, f.model.rest_count);
+            sf_step_advance(&f.model, &f.state);
+        }
+        assert_true(farthest(&f) < 1e-16);
+        assert_true(f.state.ledger.largest_error < 1e-4); /* the falling missile's first step */
+        assert_true(fabs(f.state.ledger.friction) < 1e-18);
+        fixture_free(&f);
+    }
+}
+
+/* v0 = 0.1 m/s on friction 0.3: v0 / mu g = 34 ms and v0^2 / 2 mu g = 1.7 mm to rest. */
+static void a_sliding_block_comes_to_rest(void **state) {
+    (void)state;
+    const double speed = 0.1, friction = 0.3, time = speed / (friction * G), way = 0.5 * speed * time;
+    fixture f;
+    double place[3];
+    start(&f, &(resting){.gap = 1, .friction = friction});
+    throw_pad(&f, speed, 0);
+    while (f.state.time < 0.6 * time)
+        advance(&f);
+    centre(&f, place);
+    double t = f.state.time;
+    assert_relative(place[0], speed * t - 0.5 * friction * G * t * t, 2e-3);
+    while (f.state.time < 1.2 * time)
+        advance(&f);
+    centre(&f, place);
+    assert_relative(place[0], way, 2e-3);
+    assert_true(fabs(place[1]) < 1e-3 * way);
+    assert_relative(f.state.ledger.friction, 0.5 * pad_mass(&f.model) * speed * speed, 2e-3);
+    assert_relative(f.state.ledger.anvil, f.state.ledger.friction + f.state.ledger.contact, 1e-12);
+    double before = place[0];
+    while (f.state.time < 1.4 * time)
+        advance(&f);
+    centre(&f, place);
+    assert_true(fabs(place[0] - before) < 1e-4 * way); /* it sticks */
+    fixture_free(&f);
+}
+
+/* A pull of `slope` times the weight along x, on every node. */
+static void tilt(fixture *f, double slope) {
+    const sf_model *m = &f->model;
+    sf_anvil *a = &f->operators.anvil;
+    double(*pull)[3] = calloc((size_t)m->node_count, sizeof *pull);
+    int32_t *node = malloc((size_t)m->node_count * sizeof *node);
+    assert_true(pull && node);
+    for (int64_t k = 0; k < a->count; k++)
+        pull[a->node[k]][2] = a->pull[k][2];
+    for (int64_t i = 0; i < m->node_count; i++) {
+        node[i] = (int32_t)i;
+        pull[i][0] = slope * G * m->mass[i];
+        a->weight[0] += pull[i][0];
+    }
+    free(a->pull);
+    free(a->node);
+    a->pull = pull;
+    a->node = node;
+    a->count = m->node_count;
+}
+
+static void below_the_friction_angle_it_sticks_and_above_it_slides(void **state) {
+    (void)state;
+    const double slopes[] = {0.1, 0.7}, friction = 0.4;
+    for (int k = 0; k < 2; k++) {
+        fixture f;
+        double place[3], slip = 0;
+        start(&f, &(resting){.gap = 1, .friction = friction});
+        tilt(&f, slopes[k]);
+        while (f.state.time < 0.02)
+            advance(&f);
+        centre(&f, place);
+        for (int64_t c = f.model.contact_count; c < sf_model_points(&f.model); c++) {
+            int64_t node = sf_model_point_node(&f.model, c);
+            slip = larger(slip, fabs(f.state.contact_position[3 * c] - f.model.position[3 * node]));
+        }
+        double t = f.state.time, slides = 0.5 * fmax(0, slopes[k] - friction) * G * t * t;
+        if (k == 0) {
+            assert_true(slip < 1e-12);
+            assert_true(fabs(place[0]) < 1e-6); /* shear */
+        } else {
+            assert_relative(place[0], slides, 5e-3);
+        }
+        fixture_free(&f);
+    }
+}
+
+/* Thrown up it flies like any body, and lands. */
+static void a_thrown_block_flies_and_lands(void **state) {
+    (void)state;
+    const double speed = 0.05, flight = 2 * speed / G;
+    fixture f;
+    double place[3];
+    start(&f, &(resting){.gap = 1});
+    throw_pad(&f, 0, speed);
+    advance(&f);
+    while (f.state.time < 0.9 * flight) {
+        fixture_step(&f);
+        assert_int_equal(f.state.anvil_count, 0);
+        assert_true(f.state.base_reaction[2] == 0);
+        centre(&f, place);
+        assert_close(f.state.ledger.weight, -G * pad_mass(&f.model) * place[2], 1e-8); /* it stretches */
+        sf_step_advance(&f.model, &f.state);
+        double t = f.state.time;
+        centre(&f, place);
+        assert_close(place[2], speed * t - 0.5 * G * t * t, 2e-7); /* the first half step: g dt t / 2 */
+    }
+    while (f.state.time < 6 * flight)
+        advance(&f);
+    centre(&f, place);
+    assert_close(place[2], 0, 1e-5);
+    assert_int_equal(f.state.anvil_count, f.model.rest_count);
+    assert_true(f.state.ledger.largest_error < 1e-3);
+    fixture_free(&f);
+}
+
+typedef struct balance {
+    double linear[3], angular[3]; /* kg m/s, kg m2/s */
+} balance;
+
+static void add_moment(balance *b, const double x[3], const double f[3], double factor) {
+    double moment[3];
+    sf_cross3(x, f, moment);
+    for (int r = 0; r < 3; r++) {
+        b->linear[r] += factor * f[r];
+        b->angular[r] += factor * moment[r];
+    }
+}
+
+static void place_of(const fixture *f, int64_t node, double x[3]) {
+    for (int r = 0; r < 3; r++)
+        x[r] = f->model.position[3 * node + r] + f->state.d[3 * node + r];
+}
+
+/* Momenta of the pad at the half step. */
+static balance momenta(const fixture *f) {
+    balance b = {0};
+    double x[3];
+    for (int64_t i = 0; i < f->model.node_count; i++) {
+        place_of(f, i, x);
+        add_moment(&b, x, &f->state.v[3 * i], f->model.mass[i]);
+    }
+    return b;
+}
+
+/* Impulses of this step on the pad, by point. */
+static void add_impulses(const fixture *f, balance *b) {
+    const sf_state *s = &f->state;
+    const sf_anvil *a = &f->operators.anvil;
+    double dt = 0.5 * (s->dt + s->dt_old), x[3];
+    for (int64_t c = 0; c < sf_model_points(&f->model); c++)
+        add_moment(b, &s->contact_position[3 * c], &s->contact_force[3 * c], dt);
+    for (int64_t k = 0; k < a->count; k++) {
+        place_of(f, a->node[k], x);
+        add_moment(b, x, a->pull[k], dt);
+    }
+}
+
+/* An off-centre drop tips the pad: it lifts off on one side and comes back. */
+static void a_rocking_pad_conserves_momentum_with_the_anvil(void **state) {
+    (void)state;
+    fixture f;
+    balance impulse = {0};
+    int64_t fewest = 1000, most_after = 0;
+    double size = 0, highest = 0;
+    start(&f, &(resting){.friction = 0.3, .across = 0.018, .speed = 0.5});
+    const sf_model *m = &f.model;
+    sf_state *s = &f.state;
+    while (s->time < 0.15) {
+        fixture_step(&f);
+        add_impulses(&f, &impulse);
+        size = larger(size, fabs(s->missile.force[2]) * s->time);
+        if (s->anvil_count < fewest) {
+            fewest = s->anvil_count;
+            most_after = 0;
+        }
+        most_after = s->anvil_count > most_after ? s->anvil_count : most_after;
+        balance now = momenta(&f);
+        for (int r = 0; r < 3; r++) {
+            assert_true(fabs(now.linear[r] - impulse.linear[r]) <=
+                        1e-12 * m->missile.mass * m->missile.speed);
+            assert_true(fabs(now.angular[r] - impulse.angular[r]) <=
+                        1e-12 * m->missile.mass * m->missile.speed * 0.05);
+        }
+        sf_step_advance(m, s);
+        for (int64_t c = m->contact_count; c < sf_model_points(m); c++)
+            highest = larger(highest, s->contact_position[3 * c + 2]);
+    }
+    assert_true(fewest <= m->rest_count / 2 && most_after > fewest); /* lifts off, comes back */
+    assert_true(highest > 5e-4);
+    assert_true(fabs(s->ledger.momentum_error) < 1e-12);
+    assert_true(s->ledger.largest_error < 0.01);
+    fixture_free(&f);
+}
+
+/* One layer of cells: nodes of top and base share their kernels, and neither surface is penetrated. */
+static void a_thin_pad_is_outside_both(void **state) {
+    (void)state;
+    fixture f;
+    start(&f, &(resting){.friction = 0.2, .layers = 1});
+    const sf_model *m = &f.model;
+    sf_state *s = &f.state;
+    int64_t both = 0;
+    for (int step = 0; step < 60; step++) {
+        fixture_step(&f);
+        both += s->contact_count > 0 && s->anvil_count > 0;
+        sf_step_advance(m, s);
+        assert_true(s->penetration <= 1e-6 * s->dt * m->missile.speed);
+        assert_true(fabs(s->ledger.momentum_error) < 1e-12);
+    }
+    assert_true(both > 50);
+    assert_int_equal(s->contact_unsettled, 0);
+    fixture_free(&f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_loads_carry_the_weight_below_its_centre),
+        cmocka_unit_test(a_resting_block_keeps_still),
+        cmocka_unit_test(a_sliding_block_comes_to_rest),
+        cmocka_unit_test(below_the_friction_angle_it_sticks_and_above_it_slides),
+        cmocka_unit_test(a_thrown_block_flies_and_lands),
+        cmocka_unit_test(a_rocking_pad_conserves_momentum_with_the_anvil),
+        cmocka_unit_test(a_thin_pad_is_outside_both),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
