@@ -58,8 +58,12 @@ void softfall_drop_free(softfall_drop *d) {
 static void step(softfall_drop *d) {
     if (d->recorder.history.rows > 0)
         sf_step_advance(&d->model, &d->state);
-    if (sf_step_evaluate(&d->model, &d->operators, &d->state, &d->failure) == SF_OK &&
-        sf_recorder_add(&d->recorder, &d->model, &d->state, &d->failure) == SF_OK)
+    if (sf_step_evaluate(&d->model, &d->operators, &d->state, &d->failure) != SF_OK ||
+        sf_recorder_add(&d->recorder, &d->model, &d->state, &d->failure) != SF_OK)
+        return;
+    if (sf_ending_on_anvil(&d->model, &d->state))
+        sf_ending_fail_on_anvil(&d->model, &d->state, &d->failure);
+    else
         d->ending = sf_ending_rebounded(&d->model, &d->state)  ? SOFTFALL_REBOUND
                     : sf_ending_finished(&d->model, &d->state) ? SOFTFALL_FINISHED
                                                                : SOFTFALL_RUNNING;

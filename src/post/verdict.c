@@ -132,6 +132,12 @@ static const char *first_note(const sf_results *r) {
     return r->notes[k];
 }
 
+/* The sentence of solver/run/ending.c is the reason, not only a failure. */
+static bool ended_on_anvil(const sf_results *r) {
+    static const char reason[] = "the missile reached the anvil";
+    return r->has_summary && strncmp(r->status, reason, sizeof reason - 1) == 0;
+}
+
 static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf_figures *f, sf_check *c) {
     char value[32], bound[32];
     show(c->value, rule->percent, value);
@@ -141,7 +147,8 @@ static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf
                  sf_utf8_cut(first_note(r), 200), first_note(r));
     else if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_ending)->key)
         snprintf(c->text, sizeof c->text, "%.250s",
-                 !f->touched               ? "the missile never touched the pad"
+                 ended_on_anvil(r)         ? r->status
+                 : !f->touched             ? "the missile never touched the pad"
                  : !r->has_summary         ? "the run has no end: it still runs or was killed"
                  : c->value > c->use_bound ? "the run failed"
                                            : "the run was interrupted");

@@ -161,7 +161,7 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     sf_run_drop(&model, &operators, &state, &run, &output, o->restart ? &from : NULL, err);
     if (state.step > 0)
         sf_solve_print_ledger(&model, &state, &run);
-    if (err->status == SF_ERR_NUMERIC)
+    if (err->status == SF_ERR_NUMERIC && (o->remove_failed || strcmp(run.ending, "anvil") != 0))
         handle_failure(o, &output, &state, run.shown);
 done:
     sf_output_close(&output);

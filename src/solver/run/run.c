@@ -116,12 +116,14 @@ static const char *find_ending(const drop *d) {
         return d->s->step == d->last_step ? "failed" : NULL;
     if (*d->run->stop)
         return "interrupted";
+    if (sf_ending_on_anvil(d->m, d->s))
+        return "anvil";
     if (!d->r.past_rebound && sf_ending_rebounded(d->m, d->s))
         return "rebound";
     return sf_ending_finished(d->m, d->s) ? "finished" : NULL;
 }
 
-/* Steps to the end. A checkpoint holds a step that has been taken. */
+/* Steps to the end; SF_OK also if that is the anvil. A checkpoint holds a step that has been taken. */
 static sf_status run_steps(drop *d, bool taken, sf_error *err) {
     for (;; taken = false) {
         if (!taken && take_step(d, err) != SF_OK)
@@ -273,8 +275,9 @@ static sf_status replay(drop *d, sf_error *err) {
     return err->status;
 }
 
-/* Ends a run that has gone as far as it could. `late`: what failed in doing so. */
-static void end_run(drop *d, const sf_error *failure, sf_error *late) {
+/* Ends a run that has gone as far as it could: by a failure, or with the sentence `end` if it has a status.
+ * `late`: what failed in doing so. */
+static void end_run(drop *d, const sf_error *failure, const sf_error *end, sf_error *late) {
     bool failed = failure->status != SF_OK;
     sf_error unsaved = SF_ERROR_INIT; /* results without a checkpoint are better than none */
     if (d->run->checkpoints && !failed && d->saved != d->s->step)
@@ -283,7 +286,11 @@ static void end_run(drop *d, const sf_error *failure, sf_error *late) {
     d->run->shown = sf_state_is_finite(d->m, d->s);
     if (d->run->checkpoints && !d->run->shown)
         replay(d, &unsaved); /* the last valid step is shown instead */
-    bool whole = conclude(d, failed ? failure->text : d->run->ending, late) == SF_OK;
+    bool whole = conclude(d,
+                          failed                 ? failure->text
+                          : end->status != SF_OK ? end->text
+                                                 : d->run->ending,
+                          late) == SF_OK;
     if (d->run->checkpoints && failed && d->run->shown)
         replay(d, &unsaved);
     if (whole)
@@ -302,7 +309,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
               .note = run->note,
               .start = sf_clock(),
               .left = INFINITY};
-    sf_error late = SF_ERROR_INIT;
+    sf_error late = SF_ERROR_INIT, end = SF_ERROR_INIT;
     d.last_checkpoint = d.start;
     bool taken = false;
     run->ending = "failed";
@@ -312,10 +319,14 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
         run_steps(&d, taken, err);
     }
     run->wall_time = d.r.wall_time + sf_clock() - d.start;
+    if (err->status == SF_OK && strcmp(run->ending, "anvil") == 0)
+        sf_ending_fail_on_anvil(m, s, &end);
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC)
-        end_run(&d, err, &late);
+        end_run(&d, err, &end, &late);
     if (late.status != SF_OK)
         SF_FAIL(err, late.status, "%s", late.text);
+    else if (end.status != SF_OK)
+        SF_FAIL(err, end.status, "%s", end.text);
     else if (err->status == SF_OK && strcmp(run->ending, "interrupted") == 0)
         SF_FAIL(err, SF_INTERRUPTED, "interrupted at t = %.6g s; results up to there are readable%s", s->time,
                 run->checkpoints ? "; --restart resumes the run" : "");

@@ -32,15 +32,16 @@ typedef struct sf_run {
     double wall_time; /* s, with the time before a restart */
     sf_extremes extremes;
     bool shown;         /* the last frame is of the last step, and not of one before it that was finite */
-    const char *ending; /* "finished", "rebound", "interrupted", "failed" */
+    const char *ending; /* "finished", "rebound", "interrupted", "anvil", "failed" */
 } sf_run;
 
 /* Runs `state` to the end, from the beginning or from `checkpoint` (NULL: none) with a `state` freshly
  * created. `output` is open and has its base. If a frame of the run so far is lost, the run starts from the
  * beginning with a warning. On a numerical failure or an interruption everything up to the
  * last step is written, with a last frame, and the status says so. After a failure `state` and the checkpoint
- * are those of the last valid step. When a file cannot be written the folder of `output` stays, and the last
- * checkpoint with it. */
+ * are those of the last valid step. A missile that has reached the anvil ends the run likewise, with
+ * SF_ERR_NUMERIC, and its last step is valid. When a file cannot be written the folder of `output` stays, and
+ * the last checkpoint with it. */
 sf_status sf_run_drop(const sf_model *model, const sf_operators *operators, sf_state *state, sf_run *run,
                       sf_output *output, const sf_checkpoint *checkpoint, sf_error *err);
 
