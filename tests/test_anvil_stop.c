@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A missile that reaches the anvil ends the run, by whole programs: through a hole of 120 mm in a pad of 20 mm it
- * fell as far as the end time, and the report said 4.46 g. */
+/* A missile that reaches the anvil ends the run, by whole programs: through a hole of 120 mm in a pad of 20
+ * mm it fell as far as the end time, and the report said 4.46 g. */
 #include "program_fixture.h"
 
 #include "core/units.h"
@@ -41,7 +41,7 @@ static int set_up(void **state) {
     program_write_text(
         p, "case.cfg",
         "geometry: { file = \"cored.geo\"; length_unit = \"mm\"; missile_file = \"geo/hemisphere.geo\";\n"
-        "  missile_parameters = { diameter = 160.0; element_size = 10.0; quarter = 1; }; };\n"
+        "  missile_parameters = { diameter = 240.0; element_size = 10.0; quarter = 1; }; };\n"
         "material: {\n@include \"materials/eva35.cfg\"\n};\n"
         "pad: { mesh_error_limit = 100.0; };\n"
         "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\nsolver: { end_time = \"40 ms\"; };\n");
@@ -93,24 +93,30 @@ static void assert_stopped(const program_place *p, const drop *d) {
     free(summary.data);
 }
 
-/* The sphere sinks into the hole by 27 mm before it would touch: free fall to the anvil. */
+/* A sphere of 240 mm touches the rim of a hole of 120 mm when it is 16 mm below the top, 4 mm above the
+ * anvil. */
 static void through_a_hole_it_ends_on_the_anvil(void **state) {
     const program_place *p = *state;
-    const struct {
-        const char *options;
-        double way; /* m, from first contact at the start; 0: not known */
-    } rows[] = {
-        {"", 0},
-        {"--set missile.shape=surface", 0},
-        {"--set pad.base=resting", 0},
-        {"--set pad.base=smooth", 0},
-        {"--set geometry.parameters.hole=60", 0},
-    };
+    const char *const rows[] = {"", "--set missile.shape=surface", "--set pad.base=resting",
+                                "--set pad.base=smooth --set missile.gap='2 mm'"};
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
-        drop d = run(p, rows[k].options);
+        drop d = run(p, rows[k]);
         assert_stopped(p, &d);
         assert_true(d.velocity > 3 && d.velocity < SPEED + 0.1);
     }
+}
+
+/* One of 160 mm is 27 mm deep when it would touch. */
+static void a_missile_that_meets_the_anvil_first_is_refused_or_ends_there(void **state) {
+    const program_place *p = *state;
+    static const char small[] = "--set geometry.missile_parameters.diameter=160.0";
+    program_result pre = program_run(p, "pre", "case.cfg -o m.h5 --force %s", small);
+    assert_int_equal(pre.code, 2);
+    assert_non_null(strstr(pre.err, "the missile reaches the anvil before it touches the pad"));
+    drop d = run(p, "--set geometry.missile_parameters.diameter=160.0 --set missile.gap='20 mm'");
+    assert_stopped(p, &d);
+    double way = 0.02 - (0.08 - sqrt(0.08 * 0.08 - 0.06 * 0.06) - 0.02);
+    assert_close(d.time, way / SPEED, 4e-5); /* a step, and gravity */
 }
 
 static void a_resumed_run_ends_there_again(void **state) {
@@ -133,6 +139,7 @@ static void a_pad_that_hangs_has_no_anvil(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(through_a_hole_it_ends_on_the_anvil),
+        cmocka_unit_test(a_missile_that_meets_the_anvil_first_is_refused_or_ends_there),
         cmocka_unit_test(a_resumed_run_ends_there_again),
         cmocka_unit_test(a_pad_that_hangs_has_no_anvil),
     };

@@ -404,10 +404,22 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     return SF_OK;
 }
 
+/* Over a wide hole a thin pad is not what the missile meets first. */
+static sf_status check_start(const sf_case *c, const sf_model *m, sf_error *err) {
+    double depth = sf_missile_card_depth(&m->missile, 0);
+    if (m->anvil.depth == 0 || depth < m->anvil.depth)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "the missile reaches the anvil before it touches the pad: at its gap from the group \"%s\" it "
+        "is %.6g mm below the top of the pad, and the anvil %.6g mm",
+        c->contact_group, 1e3 * depth, 1e3 * m->anvil.depth);
+}
+
 /* A driven missile does not stop at the anvil. */
 static sf_status check_depth(const sf_model *m, sf_error *err) {
     double depth = sf_missile_card_depth(&m->missile, sf_motion_measure(m).displacement);
-    if (depth < m->thickness * (1 - 1e-9)) /* the clearance is a difference of coordinates */
+    if (!sf_missile_is_driven(m) || depth < m->thickness * (1 - 1e-9)) /* a difference of coordinates */
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,
                    "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
@@ -547,8 +559,9 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
         take_cards(c, m, err) == SF_OK) {
         sf_base_place_anvil(c, &report->hold, m);
         estimate_mesh_error(m, report);
-        if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
-            measure_step(m, report, err) == SF_OK && check_first_step(m, report->first_step, err) == SF_OK) {
+        if (check_start(c, m, err) == SF_OK && sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK &&
+            sf_model_check(m, err) == SF_OK && measure_step(m, report, err) == SF_OK &&
+            check_first_step(m, report->first_step, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
             sf_hold_warn(&report->hold, m, sink);
             tell_slits(report, sink);
