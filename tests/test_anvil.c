@@ -180,7 +180,6 @@ static void tilt(fixture *f, double slope) {
     for (int64_t i = 0; i < m->node_count; i++) {
         node[i] = (int32_t)i;
         pull[i][0] = slope * G * m->mass[i];
-        a->weight[0] += pull[i][0];
     }
     free(a->pull);
     free(a->node);
@@ -318,6 +317,7 @@ static void a_rocking_pad_conserves_momentum_with_the_anvil(void **state) {
     }
     assert_true(fewest <= m->rest_count / 2 && most_after > fewest); /* lifts off, comes back */
     assert_true(highest > 5e-4);
+    assert_true(s->ledger.vector_error < 1e-12 && s->ledger.angular_error < 1e-12);
     assert_true(fabs(s->ledger.momentum_error) < 1e-12);
     assert_true(s->ledger.largest_error < 0.01);
     fixture_free(&f);

@@ -28,7 +28,6 @@ sf_status sf_anvil_build(const sf_model *m, sf_anvil *anvil, sf_error *err) {
         if (load[i] != 0) {
             anvil->node[anvil->count] = (int32_t)i;
             anvil->pull[anvil->count++][2] = -load[i];
-            anvil->weight[2] -= load[i];
         }
     free(load);
     if (err->status != SF_OK)

@@ -15,7 +15,6 @@ typedef struct sf_anvil {
     int64_t count;     /* nodes that the weight acts on; 0: the pad is held */
     int32_t *node;     /* [count] ascending */
     double (*pull)[3]; /* [count] N, constant */
-    double weight[3];  /* N, their sum */
 } sf_anvil;
 
 sf_status sf_anvil_build(const sf_model *model, sf_anvil *anvil, sf_error *err);

@@ -12,7 +12,7 @@ bool sf_ending_on_anvil(const sf_model *m, const sf_state *s) {
     return m->anvil.depth > 0 && sf_missile_depth(m, &s->missile) >= m->anvil.depth;
 }
 
-sf_status sf_ending_fail_on_anvil(const sf_model *m, const sf_state *s, sf_error *err) {
+sf_status sf_ending_fail_on_anvil(const sf_state *s, sf_error *err) {
     return SF_FAIL(
         err, SF_ERR_NUMERIC,
         "the missile reached the anvil at t = %.6g ms with %.4g m/s: an impact of rigid bodies has no "

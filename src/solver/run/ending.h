@@ -14,7 +14,7 @@ bool sf_ending_rebounded(const sf_model *model, const sf_state *state);
  * model says nothing. */
 bool sf_ending_on_anvil(const sf_model *model, const sf_state *state);
 /* Records SF_ERR_NUMERIC with a sentence for that. */
-sf_status sf_ending_fail_on_anvil(const sf_model *model, const sf_state *state, sf_error *err);
+sf_status sf_ending_fail_on_anvil(const sf_state *state, sf_error *err);
 
 /* The end time is reached. */
 bool sf_ending_finished(const sf_model *model, const sf_state *state);

@@ -320,7 +320,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     }
     run->wall_time = d.r.wall_time + sf_clock() - d.start;
     if (err->status == SF_OK && strcmp(run->ending, "anvil") == 0)
-        sf_ending_fail_on_anvil(m, s, &end);
+        sf_ending_fail_on_anvil(s, &end);
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC)
         end_run(&d, err, &end, &late);
     if (late.status != SF_OK)
