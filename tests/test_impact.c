@@ -97,6 +97,8 @@ static void lowest_point_arrives_there(void **state) {
         assert_close(point[0], 0.03, 1e-12);
         assert_close(point[1], 0.01, 1e-12);
         assert_close(point[2], 0.02, 1e-12);
+        assert_true(m.missile.impact_known == 1 && m.missile.impact[0] == point[0] &&
+                    m.missile.impact[1] == point[1]);
         sf_model_free(&m);
     }
 }

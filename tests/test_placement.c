@@ -243,6 +243,29 @@ static void sheet_drawn_either_way_is_one_model(void **state) {
     assert_true(fabs(a_max[0] / a_max[1] - 1) < 0.02);
 }
 
+static double figure_of(const program_place *p, const char *file, const char *key) {
+    program_result r = program_shell(p, "grep -m1 '\"%s\":' %s", key, file);
+    assert_non_null(strchr(r.out, ':'));
+    return strstr(r.out, "null") ? NAN : atof(strchr(r.out, ':') + 1);
+}
+
+/* From the case to summary.json and report.html, on a whole pad. */
+static void impact_point_is_reported(void **state) {
+    const program_place *p = *state;
+    program_result pre = program_succeed(
+        p, "pre",
+        "'%s' -o hit.h5 %s --set geometry.parameters.quarter=0 --set "
+        "geometry.missile_parameters.quarter=0 --set 'missile.position=[\"-30 mm\", \"2 cm\"]' "
+        "--set missile.gap='3 mm' --set solver.end_time='1 ms'",
+        fixture_source(EXAMPLE), program_coarse(20));
+    assert_non_null(strstr(pre.out, "(-30, 20) mm: there the missile's lowest point arrives"));
+    program_succeed(p, "solve", "hit.h5 -o hit-r.h5");
+    program_succeed(p, "post", "hit-r.h5 -o hit");
+    assert_true(fabs(figure_of(p, "hit/summary.json", "impact_x_mm") + 30) < 1e-9);
+    assert_true(fabs(figure_of(p, "hit/summary.json", "impact_y_mm") - 20) < 1e-9);
+    program_assert_page(p, "hit/report.html", "x = -30 mm, y = 20 mm");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exchanged_groups_are_refused),
@@ -253,6 +276,7 @@ int main(void) {
         cmocka_unit_test(solid_surface_turned_away_is_refused),
         cmocka_unit_test(one_sided_surface_is_refused),
         cmocka_unit_test(sheet_drawn_either_way_is_one_model),
+        cmocka_unit_test(impact_point_is_reported),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

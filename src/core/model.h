@@ -47,6 +47,8 @@ typedef struct sf_missile_card {
     double gap;              /* m, distance still to travel along `direction` at t = 0 */
     double clearance;        /* m, height of its lowest point above the top of the undeformed pad, its highest
                                 point, at t = 0; negative over a hole */
+    int64_t impact_known;    /* 1: the next line holds; models of older versions do not say */
+    double impact[2];        /* m, x and y of the impact point (pre/impact.h) */
     int64_t shape;           /* SF_SHAPE_* */
     double sphere_centre[3]; /* m, at t = 0 (SF_SHAPE_SPHERE) */
     double sphere_radius;    /* m */

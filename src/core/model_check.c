@@ -111,6 +111,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"missile gravity (m/s2)", m->missile.gravity, 0, driven ? 0 : 1e4},
         {"missile gap (m)", m->missile.gap, 0, 1e3},
         {"missile clearance (m)", m->missile.clearance, -1e3, 1e3},
+        {"knowledge of the impact point", (double)m->missile.impact_known, 0, 1},
         {"missile shape", (double)m->missile.shape, 0, 1},
         {"missile sphere radius (m)", m->missile.sphere_radius, m->missile.shape ? 0 : 1e-9, 1e3},
         {"missile sphere cap cosine", m->missile.sphere_cap_cosine, -1 - 1e-9, 1 + 1e-9},

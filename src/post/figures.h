@@ -73,6 +73,8 @@
     X(FACT, contact_time, "contact_time_ms", 1e3, "first contact")                                                     \
     X(NUMBER, end_time, "end_time_ms", 1e3, "time of the last row of the history")                                     \
     X(FACT, thickness, "thickness_mm", 1e3, "of the pad")                                                              \
+    X(FACT, impact_x, "impact_x_mm", 1e3, "x of the impact point: where the missile's lowest point arrives at the pad's top") \
+    X(FACT, impact_y, "impact_y_mm", 1e3, "its y")                                                                     \
     X(NUMBER, missile_mass, "missile_mass_kg", 1, "of the whole missile")                                              \
     X(FACT, density, "density_kg_m3", 1, "of the undeformed foam")                                                     \
     X(FACT, informed_strain, "informed_strain", 1, "strain up to which the material's data inform its curve: `material.informed_strain`, or the end of the table") \

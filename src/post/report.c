@@ -109,7 +109,9 @@ static void put_missile(const page *p) {
     }
     put_parameter(p, &table, "geometry.missile_file", "shape");
     put_parameter(p, &table, "geometry.missile_parameters", "its parameters");
-    put_parameter(p, &table, "missile.position", "impact point");
+    if (isfinite(r->impact_x) && isfinite(r->impact_y))
+        sf_html_fact(&table, "impact point", "x = %.4g mm, y = %.4g mm", r->impact_x * 1e3,
+                     r->impact_y * 1e3);
     put_parameter(p, &table, "missile.friction", "friction on the pad");
     sf_html_table_end(&table);
 }

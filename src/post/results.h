@@ -46,17 +46,19 @@ typedef struct sf_results {
     double *surface_position;  /* [surface_node_count][3] m, missile at t = 0 */
     int32_t *surface_triangle; /* [surface_triangle_count][3] */
     int64_t symmetry_factor;
-    double thickness;            /* m */
-    double density;              /* kg m-3 */
-    double expected_mesh_error;  /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
-    double slit_fraction;        /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
-                                    the file does not say */
-    double informed_strain;      /* -, up to which data inform the material; NaN: the file does not say */
-    double missile_mass;         /* kg; 0 with a prescribed motion, like the speed */
-    double missile_speed;        /* m s-1 */
-    double gravity_along;        /* m s-2, acceleration of the missile in free flight, along its direction */
-    bool kinematic;              /* figures of the kinematic acceleration; else as an accelerometer reads */
-    bool driven;                 /* the missile had a prescribed motion; else it was free */
+    double thickness;           /* m */
+    double density;             /* kg m-3 */
+    double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
+    double slit_fraction;   /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
+                               the file does not say */
+    double informed_strain; /* -, up to which data inform the material; NaN: the file does not say */
+    double impact_x, impact_y; /* m, where the missile's lowest point arrives at the pad's top; NaN: the file
+                                  does not say */
+    double missile_mass;       /* kg; 0 with a prescribed motion, like the speed */
+    double missile_speed;      /* m s-1 */
+    double gravity_along;      /* m s-2, acceleration of the missile in free flight, along its direction */
+    bool kinematic;            /* figures of the kinematic acceleration; else as an accelerometer reads */
+    bool driven;               /* the missile had a prescribed motion; else it was free */
     double missile_direction[3]; /* unit vector, see sf_results_along */
 
     sf_history history; /* its usable rows */

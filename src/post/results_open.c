@@ -112,6 +112,8 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         read_flag(r, "/model/kinematic", &r->kinematic, err) != SF_OK ||
         read_flag(r, "/model/missile_driven", &r->driven, err) != SF_OK || read_mesh_error(r, err) != SF_OK ||
         read_optional(r, "/model/informed_strain", &r->informed_strain, err) != SF_OK ||
+        read_optional(r, "/model/impact_x", &r->impact_x, err) != SF_OK ||
+        read_optional(r, "/model/impact_y", &r->impact_y, err) != SF_OK ||
         read_optional(r, "/model/slit_fraction", &r->slit_fraction, err) != SF_OK)
         return err->status;
     return sf_results_check_model(r, err);

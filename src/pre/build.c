@@ -380,7 +380,7 @@ static double find_clearance(const sf_model *m) {
 
 /* Places the missile `gap` away from first contact and moves its surface into the model. */
 static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
-    double distance = 0;
+    double distance = 0, impact[3];
     m->missile = c->missile_card;
     if (sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
         sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
@@ -401,6 +401,9 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     surface->triangle = NULL;
     sf_surface_free(surface);
     m->missile.clearance = find_clearance(m);
+    m->missile.impact_known = 1;
+    sf_impact_point(m, impact);
+    memcpy(m->missile.impact, impact, sizeof m->missile.impact);
     return SF_OK;
 }
 

@@ -79,7 +79,7 @@ static void print_body(FILE *out, const sf_model *m) {
 }
 
 static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r) {
-    double impact[3], mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
+    double mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
     for (int64_t i = 0; i < m->node_count; i++)
         mass += m->mass[i];
     for (int64_t k = 0; k < m->material_count; k++)
@@ -98,9 +98,8 @@ static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r)
     else
         fprintf(out, "%-26s%lld triangles\n", "missile contact", (long long)m->surface_triangle_count);
     print_body(out, m);
-    sf_impact_point(m, impact);
     fprintf(out, "%-26s(%.4g, %.4g) mm: there the missile's lowest point arrives\n", "impact point",
-            1e3 * impact[0] + 0.0, 1e3 * impact[1] + 0.0);
+            1e3 * m->missile.impact[0] + 0.0, 1e3 * m->missile.impact[1] + 0.0);
 }
 
 static void print_mesh_error(FILE *out, const sf_model *m, const sf_contact_zone *zone) {

@@ -2,9 +2,11 @@
 #include "solver/run/results_file.h"
 
 #include "solver/missile.h"
+#include <math.h>
 
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     int64_t driven = sf_missile_is_driven(m);
+    const double unknown = NAN, *impact = m->missile.impact_known ? m->missile.impact : NULL;
     const double informed = sf_model_informed_strain(m);
     const double gravity = sf_missile_free_fall(m), density = sf_material_density(&m->material[0]);
     const struct {
@@ -67,6 +69,13 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
          &informed},
         {{"/model/missile_mass", "kg", "mass of the whole missile"}, SF_H5_F64, 0, {0}, &m->missile.mass},
         {{"/model/missile_speed", "m s-1", "speed at t = 0"}, SF_H5_F64, 0, {0}, &m->missile.speed},
+        {{"/model/impact_x", "m",
+          "where the missile's lowest point arrives at the pad's top, x; NaN: not known"},
+         SF_H5_F64,
+         0,
+         {0},
+         impact ? &impact[0] : &unknown},
+        {{"/model/impact_y", "m", "the same, y"}, SF_H5_F64, 0, {0}, impact ? &impact[1] : &unknown},
         {{"/model/missile_driven", "1", "1: the missile had a prescribed motion, 0: it was free"},
          SF_H5_I64,
          0,
