@@ -14,9 +14,9 @@ void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, do
 
 /* Moves the surface, and the card's sphere and centre, in x and y so that the lowest point, on its way along
  * the direction, comes to missile.position at the height of the pad's highest point. Normal to a symmetry
- * plane nothing moves. Does nothing without missile.position. The model has its cloud and its sets; `contact`
- * is the contact group. SF_ERR_INPUT: the position lies off a symmetry plane, or outside the outline of the
- * contact group (a hole is inside). */
+ * plane nothing moves. Does nothing without missile.position. The card's sphere and centre are known, in the
+ * geometry's coordinates; the model has its cloud and its sets. SF_ERR_INPUT: the position lies off a
+ * symmetry plane, or outside the convex outline of the contact nodes. */
 sf_status sf_impact_place(const sf_case *c, const sf_model *model, sf_surface *surface, sf_missile_card *card,
                           sf_error *err);
 
