@@ -14,7 +14,7 @@ static void put_material(const sf_ogden *law, FILE *f) {
     for (int k = 0; k < SF_OGDEN_TERMS; k++)
         fprintf(f, "%.12g,%.12g,", law->mu[k] * MPA, law->alpha[k]);
     for (int k = 0; k < SF_OGDEN_TERMS; k++)
-        fprintf(f, "0.%s", k + 1 < SF_OGDEN_TERMS ? "," : "\n");
+        fprintf(f, "%.12g%s", law->nu[k], k + 1 < SF_OGDEN_TERMS ? "," : "\n");
     fprintf(f, "*SOLID SECTION,ELSET=EPAD,MATERIAL=FOAM\n");
 }
 
@@ -33,6 +33,34 @@ void sf_deck_element(const sf_ogden *law, const double stretch[3], FILE *f) {
     for (int c = 0; c < 3; c++)
         fprintf(f, "*NODE PRINT,NSET=N%c,TOTALS=ONLY\nRF\n", axis[c]);
     fprintf(f, "*END STEP\n");
+}
+
+void sf_deck_path(const sf_ogden *law, int count, const double (*f)[9], FILE *file) {
+    static const char axis[3] = {'X', 'Y', 'Z'};
+    fprintf(file, "*NODE,NSET=NALL\n");
+    for (int v = 0; v < 8; v++)
+        fprintf(file, "%d,%d,%d,%d\n", v + 1, v % 4 == 1 || v % 4 == 2, v % 4 >= 2, v >= 4);
+    fprintf(file, "*ELEMENT,TYPE=C3D8,ELSET=EPAD\n1,1,2,3,4,5,6,7,8\n");
+    fprintf(file, "*NSET,NSET=NX\n2,3,6,7\n*NSET,NSET=NY\n3,4,7,8\n*NSET,NSET=NZ\n5,6,7,8\n");
+    put_material(law, file);
+    for (int v = 0; v < 8; v++)
+        for (int c = 0; c < 3; c++) {
+            const int x[3] = {v % 4 == 1 || v % 4 == 2, v % 4 >= 2, v >= 4};
+            fprintf(file, "*AMPLITUDE,NAME=A%d%c,TIME=TOTAL TIME\n0.,0.\n", v + 1, axis[c]);
+            for (int k = 0; k < count; k++) {
+                double u = -x[c];
+                for (int j = 0; j < 3; j++)
+                    u += f[k][3 * c + j] * x[j];
+                fprintf(file, "%d.,%.15g\n", k + 1, u);
+            }
+        }
+    fprintf(file, "*STEP,NLGEOM,INC=1000\n*STATIC,DIRECT\n1.,%d.\n", count);
+    for (int v = 0; v < 8; v++)
+        for (int c = 0; c < 3; c++)
+            fprintf(file, "*BOUNDARY,AMPLITUDE=A%d%c\n%d,%d,%d,1.\n", v + 1, axis[c], v + 1, c + 1, c + 1);
+    for (int c = 0; c < 3; c++)
+        fprintf(file, "*NODE PRINT,NSET=N%c,TOTALS=ONLY\nRF\n", axis[c]);
+    fprintf(file, "*END STEP\n");
 }
 
 static void put_set(const sf_mesh *mesh, const char *set, const char *name, FILE *f) {

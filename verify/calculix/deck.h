@@ -23,6 +23,10 @@ typedef struct sf_deck {
  * the faces x = 1, y = 1 and z = 1 (sets NX, NY, NZ) are printed in every increment. */
 void sf_deck_element(const sf_ogden *law, const double stretch[3], FILE *file);
 
+/* One C3D8 of 1 mm, all nodes prescribed: at time k + 1 its deformation gradient is f[k], row-major. Total
+ * forces as above. */
+void sf_deck_path(const sf_ogden *law, int count, const double (*f)[9], FILE *file);
+
 /* Frictionless indentation of the pad, glued at "base", with symmetry planes "symmetry_x" and "symmetry_y",
  * by the rigid missile: the triangles of `surface`, moved to touch the pad's top and thickened inwards to
  * wedges whose nodes are all prescribed. Total forces of the base (set NBASE) are printed at every `interval`

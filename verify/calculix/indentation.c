@@ -24,16 +24,29 @@ static const char case_text[] =
     "    parameters = { side = 200.0; thickness = 50.0; layers = 5; half_cells = 10; };\n"
     "    missile_parameters = { diameter = 160.0; element_size = 3.0; quarter = 1; };\n"
     "};\n"
-    "material: { density = \"35 kg/m3\"; E = \"1 Pa\"; curve = \"curve.csv\"; HU = 1.0; "
-    "DAMP = 0.05; };\n"
+    "material: { %s DAMP = 0.05; };\n"
     "missile: { mass = \"1e5 kg\"; velocity = \"1 m/s\"; friction = 0.0; "
     "gravity = \"0 m/s2\"; };\n"
     "solver: { end_time = \"1 ms\"; };\n";
 
-sf_status sf_indentation_begin(sf_indentation *in, sf_error *err) {
+/* The group `material` but for DAMP. */
+static void write_material(const sf_indentation *in, char *text, size_t size) {
+    const sf_ogden *law = &in->law;
+    if (!in->hyperfoam) {
+        snprintf(text, size, "density = \"35 kg/m3\"; E = \"1 Pa\"; curve = \"curve.csv\"; HU = 1.0;");
+        return;
+    }
+    int used = snprintf(text, size, "law = \"hyperfoam\"; density = \"35 kg/m3\"; HU = 1.0;");
+    for (int k = 0; k < SF_OGDEN_TERMS; k++)
+        used += snprintf(text + used, size - (size_t)used,
+                         " term_%d = { mu = \"%.12g Pa\"; alpha = %.12g; nu = %.12g; };", k + 1, law->mu[k],
+                         law->alpha[k] + 0., law->nu[k]);
+}
+
+static sf_status begin(sf_indentation *in, sf_error *err) {
     const char *source = getenv("SF_SOURCE_DIR"), *temporary = getenv("TMPDIR");
-    char path[1024];
-    in->law = sf_ogden_foam();
+    char path[1024], material[512];
+    write_material(in, material, sizeof material);
     snprintf(in->folder, sizeof in->folder, "%s/softfall-ccx-XXXXXX",
              temporary && *temporary ? temporary : "/tmp");
     if (!source)
@@ -47,10 +60,22 @@ sf_status sf_indentation_begin(sf_indentation *in, sf_error *err) {
     if (curve)
         sf_ogden_table(&in->law, curve);
     if (file)
-        fprintf(file, case_text, source, source);
+        fprintf(file, case_text, source, source, material);
     if (!curve || fclose(curve) != 0 || !file || fclose(file) != 0)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be written", path);
     return SF_OK;
+}
+
+sf_status sf_indentation_begin(sf_indentation *in, sf_error *err) {
+    *in = (sf_indentation){.law = sf_ogden_foam()};
+    return begin(in, err);
+}
+
+sf_status sf_indentation_begin_hyperfoam(sf_indentation *in, double nu, sf_error *err) {
+    *in = (sf_indentation){.law = sf_ogden_foam(), .hyperfoam = true};
+    for (int k = 0; k < SF_OGDEN_TERMS; k++)
+        in->law.nu[k] = nu;
+    return begin(in, err);
 }
 
 void sf_indentation_end(sf_indentation *in) {
@@ -69,7 +94,9 @@ static void make_overrides(const sf_indentation *in, const sf_indentation_case *
     snprintf(text[n++], OVERRIDE_SIZE, "geometry.parameters.layers=%d", c->layers);
     snprintf(text[n++], OVERRIDE_SIZE, "geometry.parameters.half_cells=%d", 2 * c->layers);
     snprintf(text[n++], OVERRIDE_SIZE, "geometry.missile_parameters.element_size=%g", c->facet);
-    snprintf(text[n++], OVERRIDE_SIZE, "material.E=\"%.12g Pa\"", c->modulus * sf_ogden_modulus(&in->law));
+    if (!in->hyperfoam)
+        snprintf(text[n++], OVERRIDE_SIZE, "material.E=\"%.12g Pa\"",
+                 c->modulus * sf_ogden_modulus(&in->law));
     snprintf(text[n++], OVERRIDE_SIZE, "missile.velocity=\"%g m/s\"", c->speed);
     snprintf(text[n++], OVERRIDE_SIZE, "solver.end_time=\"%.9g s\"", (c->depth + 2 * WINDOW) / c->speed);
     snprintf(text[n++], OVERRIDE_SIZE, "output.frame_interval=\"%.9g s\"", c->interval / c->speed);

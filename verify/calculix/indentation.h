@@ -12,6 +12,7 @@ enum { SF_INDENTATION_POINTS = 64, SF_INDENTATION_FRAMES = 64 };
 typedef struct sf_indentation {
     char folder[512]; /* temporary; holds case and curve */
     sf_ogden law;
+    bool hyperfoam; /* softfall has the law itself, not its table */
 } sf_indentation;
 
 typedef struct sf_indentation_case {
@@ -39,6 +40,8 @@ typedef struct sf_indentation_curve {
 /* Makes the folder with the case and the law's table; SF_SOURCE_DIR must be set. End with sf_indentation_end.
  */
 sf_status sf_indentation_begin(sf_indentation *in, sf_error *err);
+/* The same with softfall's hyperfoam, of the law's numbers with this nu in every term. */
+sf_status sf_indentation_begin_hyperfoam(sf_indentation *in, double nu, sf_error *err);
 void sf_indentation_end(sf_indentation *in);
 
 sf_status sf_indentation_softfall(const sf_indentation *in, const sf_indentation_case *c,

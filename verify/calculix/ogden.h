@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The law that both codes can hold: Ogden-Hill foam (*HYPERFOAM) with nu = 0, separable in the principal
- * stretches, T(lambda) = sum 2 mu/alpha (lambda^(alpha - 1) - 1/lambda)          nominal stress, Pa Its two
- * terms were fitted to verify/materials/eva_like.csv between 10 and 85 % strain under the condition
+/* The law that both codes can hold: Ogden-Hill foam (*HYPERFOAM). With nu = 0 it is separable in the
+ * principal stretches, T(lambda) = sum 2 mu/alpha (lambda^(alpha - 1) - 1/lambda)          nominal stress, Pa
+ * Its two terms were fitted to verify/materials/eva_like.csv between 10 and 85 % strain under the condition
  * that tension stays near the straight line that softfall has there; the knee below 10 % is given up for
  * that. */
 #ifndef SF_VERIFY_OGDEN_H
@@ -14,6 +14,7 @@ enum { SF_OGDEN_TERMS = 2 };
 typedef struct sf_ogden {
     double mu[SF_OGDEN_TERMS];    /* Pa */
     double alpha[SF_OGDEN_TERMS]; /* - */
+    double nu[SF_OGDEN_TERMS];    /* -; the functions below take 0 */
 } sf_ogden;
 
 /* The law of the study. */

@@ -2,6 +2,7 @@
 #include "core/program.h"
 #include "fit/compression/command.h"
 
+#include "fit/compression/hyperfoam_command.h"
 #include "fit/compression/output.h"
 #include "fit/command_line.h"
 #include "io/plain_file.h"
@@ -89,7 +90,13 @@ static sf_status run(const options *o, sf_error *err) {
     sf_compression_config config = {0};
     sf_compression_fit fit = {0};
     const sf_sink sink = sf_program_sink("softfall-fit");
+    bool hyperfoam;
     uint64_t ignored; /* the case can be read: nothing is made before */
+    SF_TRY(sf_hyperfoam_fit_asked(o->path, &hyperfoam, err));
+    if (hyperfoam && o->cube.case_path)
+        return SF_FAIL(err, SF_ERR_INPUT, "--simulate does not work with law = \"hyperfoam\" in %s", o->path);
+    if (hyperfoam)
+        return sf_hyperfoam_fit_file(o->path, o->directory, o->force, stdout, err);
     if (sf_compression_output_check(o->directory, o->force, err) != SF_OK ||
         (o->cube.case_path &&
          sf_plain_hash(o->cube.case_path, "case file", SF_PLAIN_TEXT, &ignored, err) != SF_OK) ||

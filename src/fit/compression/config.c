@@ -155,7 +155,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
     const config_setting_t *root = config_root_setting(&file->config);
     int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
     SF_TRY(sf_config_names(file, root,
-                           "name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
+                           "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
                            "confidence|specimen|toe_correction",
                            err));
     SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err));
