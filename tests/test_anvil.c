@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "solver/step.h"
 #include <math.h>
+#include <omp.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -343,6 +344,96 @@ static void a_thin_pad_is_outside_both(void **state) {
     fixture_free(&f);
 }
 
+static void same_bits_for_any_number_of_threads(void **state) {
+    (void)state;
+    int threads = omp_get_max_threads();
+    double *first = NULL;
+    for (int k = 1; k <= 3; k++) {
+        fixture f;
+        omp_set_num_threads(k);
+        start(&f, &(resting){.friction = 0.3, .across = 0.018});
+        for (int step = 0; step < 300; step++)
+            advance(&f);
+        size_t bytes = 3 * (size_t)f.model.node_count * sizeof *first;
+        if (k == 1) {
+            first = malloc(bytes);
+            assert_non_null(first);
+            memcpy(first, f.state.d, bytes);
+        }
+        assert_memory_equal(first, f.state.d, bytes);
+        fixture_free(&f);
+    }
+    omp_set_num_threads(threads);
+    free(first);
+}
+
+static void contradictions_of_a_case_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *set[3], *words;
+    } rows[] = {
+        {{"pad.base=resting", "pad.gravity=0 m/s2"}, "a resting pad without weight"},
+        {{"pad.base=resting", "pad.friction=-0.1"}, "pad.friction"},
+        {{"pad.friction=0.3"}, "pad.base is not \"resting\""},
+        {{"pad.base=smooth", "pad.gravity=9.81 m/s2"}, "pad.base is not \"resting\""},
+        {{"pad.base=resting", "pad.fixed=[]", "pad.sliding=[\"base\"]"}, "pad.fixed names no surface"},
+        {{"pad.base=resting", "pad.fixed=[\"top\"]"}, "in pad.fixed and in pad.contact"},
+        {{"pad.base=resting", "pad.sliding=[\"base\"]"}, "in pad.fixed and in pad.sliding"},
+        {{"pad.base=glued", "pad.fixed=[\"base\", \"symmetry_x\"]"}, "in pad.fixed and in pad.symmetry"},
+        {{"pad.base=floating"}, "glued"},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+        sf_case c;
+        sf_error err = SF_ERROR_INIT;
+        int count = 0;
+        while (count < 3 && rows[k].set[count])
+            count++;
+        assert_int_equal(
+            sf_case_read(fixture_source("examples/eva50-v4.5/case.cfg"), count, rows[k].set, NULL, &c, &err),
+            SF_ERR_INPUT);
+        if (!strstr(err.text, rows[k].words))
+            fail_msg("\"%s\" does not say \"%s\"", err.text, rows[k].words);
+    }
+}
+
+/* A block whose base is only a part of its underside, or is not the underside at all. */
+static void a_base_that_cannot_carry_the_pad_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *base, *words;
+        double from; /* m: nodes of the base with less x are left out */
+    } rows[] = {
+        {"sides", "must lie in the plane of the pad's lowest nodes", 0},
+        {"base", "does not rest on the whole of its base", 0.0345},
+    };
+    for (size_t k = 0; k < 2; k++) {
+        const fixture_block block = {.cells = {5, 4, 3}, .spacing = 0.01};
+        sf_case c;
+        sf_mesh mesh;
+        sf_surface surface;
+        sf_model m;
+        sf_build_report report;
+        sf_error err = SF_ERROR_INIT;
+        fixture_case(&c, NULL);
+        fixture_hold(&c, (const char *const[]){rows[k].base, NULL});
+        c.base_rule = SF_BASE_RESTING;
+        fixture_block_mesh(&block, &mesh);
+        sf_node_set *set = &mesh.set[0];
+        int64_t kept = 0;
+        for (int64_t i = 0; i < set->count; i++)
+            if (mesh.position[3 * (int64_t)set->node[i]] >= rows[k].from)
+                set->node[kept++] = set->node[i];
+        set->count = kept;
+        fixture_plate(0.1, 0.02, 0.02, &surface);
+        assert_int_equal(sf_model_build(&c, &mesh, &surface, &m, &report, NULL, &err), SF_ERR_INPUT);
+        if (!strstr(err.text, rows[k].words))
+            fail_msg("\"%s\" does not say \"%s\"", err.text, rows[k].words);
+        sf_surface_free(&surface);
+        sf_mesh_free(&mesh);
+        sf_case_free(&c);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_loads_carry_the_weight_below_its_centre),
@@ -352,6 +443,9 @@ int main(void) {
         cmocka_unit_test(a_thrown_block_flies_and_lands),
         cmocka_unit_test(a_rocking_pad_conserves_momentum_with_the_anvil),
         cmocka_unit_test(a_thin_pad_is_outside_both),
+        cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(contradictions_of_a_case_are_refused),
+        cmocka_unit_test(a_base_that_cannot_carry_the_pad_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

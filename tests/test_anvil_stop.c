@@ -2,6 +2,7 @@
 /* A missile that reaches the anvil ends the run, by whole programs: through a hole of 120 mm in a pad of 20
  * mm it fell as far as the end time, and the report said 4.46 g. */
 #include "program_fixture.h"
+#include "run_fixture.h"
 
 #include "core/units.h"
 #include <math.h>
@@ -128,6 +129,18 @@ static void a_resumed_run_ends_there_again(void **state) {
     assert_true(last_of(p, "/history/time") == d.time);
 }
 
+/* A resting pad in two parts, on other numbers of threads. */
+static void a_resting_pad_resumes_with_the_same_bits(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "pre",
+                    "case.cfg -o m.h5 --force --set pad.base=resting --set geometry.parameters.hole=40 "
+                    "--set missile.velocity='2 m/s' --set output.frame_interval='1 ms'");
+    program_succeed(p, "solve", "m.h5 -o full.h5 --force --threads 1 --end-time '4 ms'");
+    program_succeed(p, "solve", "m.h5 -o parts.h5 --force --threads 2 --end-time '1.7 ms'");
+    program_succeed(p, "solve", "--restart parts.h5 --threads 1 --end-time '4 ms'");
+    run_assert_same(p, "full.h5", "parts.h5");
+}
+
 /* Held at its sides alone the pad has nothing below it. */
 static void a_pad_that_hangs_has_no_anvil(void **state) {
     const program_place *p = *state;
@@ -141,6 +154,7 @@ int main(void) {
         cmocka_unit_test(through_a_hole_it_ends_on_the_anvil),
         cmocka_unit_test(a_missile_that_meets_the_anvil_first_is_refused_or_ends_there),
         cmocka_unit_test(a_resumed_run_ends_there_again),
+        cmocka_unit_test(a_resting_pad_resumes_with_the_same_bits),
         cmocka_unit_test(a_pad_that_hangs_has_no_anvil),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
