@@ -121,7 +121,7 @@ static void the_loads_carry_the_weight_below_its_centre(void **state) {
     }
 }
 
-/* The bound is 1e-9 of the settlement rho g H^2 / 2E, of about 0.4 nm: rounding. */
+/* The bound is 3e-10 of the settlement, g rho H^2 / 2 E = 0.37 um: rounding. */
 static void a_resting_block_keeps_still(void **state) {
     (void)state;
     for (int quarter = 0; quarter < 2; quarter++) {
