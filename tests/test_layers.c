@@ -2,9 +2,10 @@
 /* Pads of several layers: clouds that end at the interface, ties that pass the patch test, and the physics of
  * stacks against closed forms. */
 #include "extreme.h"
-#include "model_fixture.h"
+#include "layer_fixture.h"
 
 #include "solver/constraint/constraint.h"
+#include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,13 +19,9 @@
 static const double GRADIENT[9] = {0.06, -0.11, 0.04, 0.09, -0.05, 0.13, -0.07, 0.08, -0.32};
 static const double SHIFT[3] = {0.013, -0.004, 0.021};
 
-enum { SPACING_MM = 10 };
-static const double H = 1e-3 * SPACING_MM;
+static const double H = 0.01; /* m */
 
 /* ---- blocks of layers ---- */
-
-/* The layer of a cell by the place of its centroid, in cells. */
-typedef int (*layering)(const double cell[3]);
 
 static int flat(const double x[3]) {
     return x[2] > 3;
@@ -45,41 +42,15 @@ static int inclusion(const double x[3]) {
     return fabs(x[0] - 3) < 1.1 && fabs(x[1] - 2.5) < 1 && fabs(x[2] - 2.5) < 1;
 }
 
-/* By the lattice, which the jitter of the nodes does not leave. */
-static void assign_layers(sf_mesh *mesh, layering layer) {
-    mesh->cell_layer = malloc((size_t)mesh->cell_count);
-    for (int64_t k = 0; k < mesh->cell_count; k++) {
-        double x[3] = {0};
-        for (int64_t v = mesh->cell_ptr[k]; v < mesh->cell_ptr[k + 1]; v++)
-            for (int c = 0; c < 3; c++)
-                x[c] += mesh->position[3 * (int64_t)mesh->cell_node[v] + c] / (8 * H);
-        mesh->cell_layer[k] = (uint8_t)layer(x);
-    }
-}
-
-/* Moves the case's material and further ones, read again, to `count` layers. */
-static void make_layers(sf_case *c, int count) {
-    c->layer = calloc((size_t)count, sizeof *c->layer);
-    c->layer_count = count;
-    for (int k = 0; k < count; k++) {
-        sf_case again;
-        fixture_case(&again, NULL);
-        c->layer[k] = k == 0 ? c->material : again.material;
-        (k == 0 ? c : &again)->material = (sf_material){0};
-        sf_case_free(&again);
-        c->layer[k].name[0] = (char)('A' + k);
-    }
-}
-
 static void build_block(const fixture_block *block, layering layer, int count, fixture *out) {
     sf_case c;
     sf_mesh mesh;
     sf_surface surface;
     fixture_block_mesh(block, &mesh);
-    assign_layers(&mesh, layer);
+    layers_assign(block, layer, &mesh);
     fixture_case(&c, NULL);
     fixture_hold(&c, (const char *const[]){"base", "top", "sides", NULL});
-    make_layers(&c, count);
+    layers_make(&c, count);
     fixture_plate(1, 0, 0, &surface);
     fixture_build(&c, &mesh, &surface, out);
 }
@@ -174,6 +145,329 @@ static void without_ties_the_patch_test_fails(void **state) {
     fixture_free(&f);
 }
 
+/* ---- sliding ---- */
+
+static void start_sliding(layering layer, fixture *f) {
+    const fixture_block block = {.cells = {6, 5, 5}, .spacing = 0.01};
+    sf_case c;
+    sf_mesh mesh;
+    sf_surface surface;
+    fixture_block_mesh(&block, &mesh);
+    layers_assign(&block, layer, &mesh);
+    fixture_case(&c, NULL);
+    fixture_hold(&c, (const char *const[]){"base", NULL});
+    layers_make(&c, 2);
+    c.interface_count = 1;
+    c.interface_layer[0][0] = 1;
+    fixture_plate(1, 0, 0, &surface);
+    fixture_build(&c, &mesh, &surface, f);
+    fixture_start(f);
+}
+
+/* Adds the reaction's part in the motion: what the constraints leave of a velocity field of the upper layer.
+ */
+static double kept_velocity(fixture *f, int axis) {
+    sf_state *s = &f->state;
+    memset(s->force, 0, 3 * (size_t)f->model.node_count * sizeof *s->force);
+    for (int64_t i = 0; i < f->model.node_count; i++)
+        for (int c = 0; c < 3; c++)
+            s->v[3 * i + c] = f->model.node_material[i] == 1 && c == axis;
+    sf_constraint_step step = {.force = s->force, .v = s->v, .dt = 1e-5, .reaction = s->reaction};
+    sf_constraint_project(&f->operators.constraint, &step);
+    double least = 1;
+    for (int64_t i = 0; i < f->model.node_count; i++)
+        if (f->model.node_material[i] == 1)
+            least = smaller(least, 1 - s->reaction[3 * i + axis] * step.dt / f->model.mass[i]);
+    return least;
+}
+
+static void sliding_layers_are_free_along_their_interface_and_tied_across_it(void **state) {
+    fixture f;
+    (void)state;
+    start_sliding(flat, &f);
+    assert_int_equal(f.model.tie_mask[0], SF_FIX_Z);
+    assert_close(kept_velocity(&f, 0), 1, 1e-12);
+    assert_close(kept_velocity(&f, 1), 1, 1e-12);
+    assert_true(kept_velocity(&f, 2) < 0.9);
+    assert_true(f.report.hold.slides[0] && f.report.hold.slides[1] && f.report.hold.turns);
+    assert_false(f.report.hold.lifts);
+    fixture_free(&f);
+}
+
+/* The edges of a step hold the components of each of its faces. */
+static void sliding_steps_hold_each_other_along_their_faces(void **state) {
+    fixture f;
+    (void)state;
+    start_sliding(stepped, &f);
+    for (int axis = 0; axis < 3; axis++)
+        assert_true(kept_velocity(&f, axis) < 0.9);
+    assert_false(f.report.hold.slides[0] || f.report.hold.slides[1] || f.report.hold.turns);
+    fixture_free(&f);
+}
+
+/* ---- series compression ---- */
+
+static double stress_of(const sf_material *material, double strain) {
+    sf_error err = SF_ERROR_INIT;
+    sf_material_law law;
+    sf_uniaxial point = {0};
+    assert_int_equal(sf_material_law_build(material, &law, &err), SF_OK);
+    double stress = law.law->uniaxial(law.numbers, 1, strain, &point);
+    sf_material_law_free(&law);
+    return stress;
+}
+
+/* Strain of the second material at the same stress. */
+static double partner_strain(const sf_model *m, double strain) {
+    double stress = stress_of(&m->material[0], strain), low = 0, high = 0.9;
+    for (int k = 0; k < 60; k++) {
+        double middle = 0.5 * (low + high);
+        *(stress_of(&m->material[1], middle) < stress ? &low : &high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+/* Two foams, the second three times as stiff, on a base; free sides. */
+static void start_pair(fixture *f) {
+    const fixture_block block = {.cells = {3, 3, 6}, .spacing = 0.01};
+    sf_case c;
+    sf_mesh mesh;
+    sf_surface surface;
+    fixture_block_mesh(&block, &mesh);
+    layers_assign(&block, flat, &mesh);
+    fixture_case(&c, NULL);
+    fixture_hold(&c, (const char *const[]){"base", "top", NULL});
+    layers_make(&c, 2);
+    layers_make_elastic(&c.layer[0], 1);
+    layers_make_elastic(&c.layer[1], 3);
+    fixture_plate(1, 0, 0, &surface);
+    fixture_build(&c, &mesh, &surface, f);
+    fixture_start(f);
+}
+
+/* The exact solution has a kink at the interface; it is in the space of the layers' shape functions. */
+static void strains_of_a_stack_jump_at_its_interface(void **state) {
+    static const double STRAINS[] = {0.05, 0.5, 0.8};
+    fixture f;
+    (void)state;
+    start_pair(&f);
+    const sf_model *m = &f.model;
+    for (int k = 0; k < 3; k++) {
+        double strain[2] = {STRAINS[k], partner_strain(m, STRAINS[k])};
+        for (int64_t i = 0; i < m->node_count; i++) {
+            double z = m->position[3 * i + 2], beyond = fmax(0, z - 3 * H);
+            f.state.d[3 * i] = f.state.d[3 * i + 1] = 0;
+            f.state.d[3 * i + 2] = -strain[0] * (z - beyond) - strain[1] * beyond;
+        }
+        fixture_forces(&f);
+        for (int64_t i = 0; i < m->node_count; i++)
+            assert_close(f.state.f[9 * i + 8], 1 - strain[m->node_material[i]], 1e-12);
+        assert_close(relative_acceleration(&f), 0, 1e-9);
+        double sum = 0, stress = stress_of(&m->material[0], STRAINS[k]) * 9 * H * H;
+        for (int64_t i = 0; i < m->node_count; i++)
+            if (m->position[3 * i + 2] == 0)
+                sum += f.state.force[3 * i + 2];
+        assert_true(strain[1] < 0.9 * strain[0]);
+        sf_constraint_step step = {
+            .force = f.state.force, .v = f.state.v, .dt = 1e-5, .reaction = f.state.reaction};
+        sf_constraint_project(&f.operators.constraint, &step);
+        assert_close(step.all[2] / stress, 0, 1e-9); /* base and top */
+    }
+    fixture_free(&f);
+}
+
+/* ---- a wave across an impedance step ---- */
+
+enum { COLUMN = 200 };
+
+static int half(const double x[3]) {
+    return x[2] > COLUMN / 2;
+}
+
+static void start_column(const double modulus[2], const double density[2], fixture *f) {
+    const fixture_block block = {.cells = {2, 2, COLUMN}, .spacing = 0.001};
+    sf_case c;
+    sf_mesh mesh;
+    sf_surface surface;
+    fixture_block_mesh(&block, &mesh);
+    layers_assign(&block, half, &mesh);
+    fixture_case(&c, (const char *const[]){"missile.gap=1 m", "solver.end_time=1 s", NULL});
+    fixture_hold(&c, (const char *const[]){"base", NULL});
+    layers_make(&c, 2);
+    for (int k = 0; k < 2; k++)
+        layers_make_linear(&c.layer[k], modulus[k], density[k]);
+    fixture_plate(1, 0, 0, &surface);
+    fixture_build(&c, &mesh, &surface, f);
+    f->model.run.step_limit = 0.5 * block.spacing / sqrt(modulus[0] / density[0]);
+    fixture_start(f);
+}
+
+/* u_h along z at a node. */
+static double height_of(const fixture *f, int64_t i) {
+    double u = 0;
+    for (int64_t k = f->model.phi_ptr[i]; k < f->model.phi_ptr[i + 1]; k++)
+        u += f->model.phi_value[k] * f->state.d[3 * (int64_t)f->model.phi_node[k] + 2];
+    return u;
+}
+
+/* A pulse runs up the column; the amplitudes of what comes back and of what goes on, over its own. */
+static void run_pulse(fixture *f, double speed, double amplitude[2]) {
+    const double width = 0.02, start = 0.06, top = 1e-7, travel = 0.08, pi = acos(-1);
+    const sf_model *m = &f->model;
+    sf_state *s = &f->state;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        double x = (m->position[3 * i + 2] - start) / width, c = fabs(x) < 1 ? cos(0.5 * pi * x) : 0;
+        s->d[3 * i + 2] = top * c * c * c * c;
+        s->v[3 * i + 2] = top * 2 * pi * c * c * c * sin(0.5 * pi * x) / width * speed;
+    }
+    while (s->time < travel / speed) {
+        fixture_step(f);
+        sf_step_advance(m, s);
+    }
+    amplitude[0] = amplitude[1] = 0;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        double u = height_of(f, i) / top, *most = &amplitude[m->node_material[i]];
+        *most = fabs(u) > fabs(*most) ? u : *most;
+    }
+}
+
+static void waves_are_reflected_and_transmitted_at_an_impedance_step(void **state) {
+    static const double MODULUS[][2] = {{1e6, 2e6}, {4e6, 1e6}, {1e6, 1e6}},
+                        DENSITY[][2] = {{50, 200}, {150, 50}, {50, 50}};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        fixture f;
+        double z[2], amplitude[2];
+        start_column(MODULUS[k], DENSITY[k], &f);
+        for (int l = 0; l < 2; l++)
+            z[l] = sqrt(MODULUS[k][l] * DENSITY[k][l]);
+        run_pulse(&f, sqrt(MODULUS[k][0] / DENSITY[k][0]), amplitude);
+        print_message("reflected %.5f (exact %.5f), transmitted %.5f (exact %.5f)\n", amplitude[0],
+                      (z[0] - z[1]) / (z[0] + z[1]), amplitude[1], 2 * z[0] / (z[0] + z[1]));
+        assert_close(amplitude[0], (z[0] - z[1]) / (z[0] + z[1]),
+                     k < 2 ? 0.01 : 0.005); /* equal layers: of the lattice */
+        assert_close(amplitude[1] / (2 * z[0] / (z[0] + z[1])), 1, 0.01);
+        fixture_free(&f);
+    }
+}
+
+/* ---- drops ---- */
+
+typedef struct drop {
+    double peak, severity; /* m s-2; integral of (a/g)^2.5, s */
+    double energy_error, momentum_error, residual, penetration;
+    int64_t nodes;
+} drop;
+
+static void run_drop(fixture *f, drop *out) {
+    const sf_model *m = &f->model;
+    sf_state *s = &f->state;
+    *out = (drop){.nodes = m->node_count};
+    fixture_start(f);
+    while (s->time < 0.03) {
+        fixture_step(f);
+        double a = sf_missile_reading(m, &s->missile);
+        out->peak = larger(out->peak, a);
+        out->severity += pow(a / 9.80665, 2.5) * s->dt;
+        out->momentum_error = larger(out->momentum_error, fabs(s->ledger.momentum_error));
+        out->residual = larger(out->residual, s->constraint_residual);
+        out->penetration = larger(out->penetration, s->penetration);
+        sf_step_advance(m, s);
+    }
+    out->energy_error = s->ledger.largest_error;
+    print_message("%lld nodes: a_max %.3f g, severity %.4f s, energy %.1e, momentum %.1e, |G v| %.1e m/s, "
+                  "penetration %.1e m\n",
+                  (long long)out->nodes, out->peak / 9.80665, out->severity, out->energy_error,
+                  out->momentum_error, out->residual, out->penetration);
+}
+
+/* A quarter of a pad of 160 x 160 x 60 mm under the hemisphere. `layer` NULL: one material. */
+static void build_drop(layering layer, int count, const double *factor, int sliding, fixture *f) {
+    const fixture_block block = {.cells = {8, 8, 6}, .spacing = 0.01};
+    sf_case c;
+    sf_mesh mesh;
+    sf_surface surface;
+    fixture_block_mesh(&block, &mesh);
+    fixture_case(&c, NULL);
+    fixture_hold(&c, (const char *const[]){"base", NULL});
+    for (c.symmetry_count = 0; c.symmetry_count < 2; c.symmetry_count++)
+        snprintf(c.symmetry_group[c.symmetry_count], SF_CASE_NAME_SIZE, "plane_%c", 'x' + c.symmetry_count);
+    if (layer) {
+        layers_assign(&block, layer, &mesh);
+        layers_make(&c, count);
+        for (int k = 0; k < count; k++) {
+            sf_foam_card *card = sf_foam_card_of(&c.layer[k]);
+            card->modulus *= factor[k];
+            card->density *= factor[k];
+            for (int64_t p = 0; p < card->curve_points; p++)
+                card->curve_stress[p] *= factor[k];
+        }
+        c.interface_count = sliding;
+        c.interface_layer[0][0] = count - 1;
+        c.interface_layer[0][1] = count - 2;
+    }
+    fixture_dome(0.08, 12, 0, 0, &surface);
+    fixture_build(&c, &mesh, &surface, f);
+}
+
+static void assert_balanced(const drop *d) {
+    assert_close(d->energy_error, 0, 2e-4);
+    assert_close(d->momentum_error, 0, 1e-12);
+    assert_close(d->residual, 0, 1e-11);
+    assert_close(d->penetration, 0, 2e-5);
+}
+
+static const double EQUAL[] = {1, 1, 1}, STIFFENING[] = {3, 1, 4};
+
+static int half_pad(const double x[3]) {
+    return x[2] > 3;
+}
+
+/* Below, middle and a cover of one cell. */
+static int sandwich(const double x[3]) {
+    return x[2] < 2 ? 0 : x[2] < 5 ? 1 : 2;
+}
+
+/* Two materials side by side under the missile. */
+static int beside(const double x[3]) {
+    return x[0] > 3;
+}
+
+static void stack_of_equal_layers_gives_the_drop_of_one(void **state) {
+    fixture f;
+    drop one, two, three;
+    (void)state;
+    build_drop(NULL, 1, EQUAL, 0, &f);
+    run_drop(&f, &one);
+    fixture_free(&f);
+    build_drop(half_pad, 2, EQUAL, 0, &f);
+    run_drop(&f, &two);
+    fixture_free(&f);
+    build_drop(sandwich, 3, EQUAL, 0, &f);
+    run_drop(&f, &three);
+    fixture_free(&f);
+    assert_balanced(&two);
+    assert_balanced(&three);
+    assert_close(two.peak / one.peak, 1, 0.003);
+    assert_close(two.severity / one.severity, 1, 0.003);
+}
+
+static void drops_on_layers_keep_energy_and_momentum(void **state) {
+    static const struct {
+        layering layer;
+        int count, sliding;
+    } rows[] = {{sandwich, 3, 0}, {sandwich, 3, 1}, {beside, 2, 0}, {beside, 2, 1}};
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        fixture f;
+        drop d;
+        build_drop(rows[k].layer, rows[k].count, STIFFENING, rows[k].sliding, &f);
+        run_drop(&f, &d);
+        fixture_free(&f);
+        assert_balanced(&d);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_list_reaches_across_an_interface),
@@ -181,6 +475,12 @@ int main(void) {
         cmocka_unit_test(junction_of_three_layers_is_a_chain_of_ties),
         cmocka_unit_test(affine_field_across_interfaces_is_in_equilibrium),
         cmocka_unit_test(without_ties_the_patch_test_fails),
+        cmocka_unit_test(sliding_layers_are_free_along_their_interface_and_tied_across_it),
+        cmocka_unit_test(sliding_steps_hold_each_other_along_their_faces),
+        cmocka_unit_test(strains_of_a_stack_jump_at_its_interface),
+        cmocka_unit_test(waves_are_reflected_and_transmitted_at_an_impedance_step),
+        cmocka_unit_test(stack_of_equal_layers_gives_the_drop_of_one),
+        cmocka_unit_test(drops_on_layers_keep_energy_and_momentum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
