@@ -60,6 +60,16 @@ static void put_figures(FILE *f) {
     }
 }
 
+static void put_layer_figures(FILE *f) {
+    size_t count;
+    const sf_layer_figure *figure = sf_layer_figure_list(&count);
+    fputs("| key | meaning |\n|---|---|\n", f);
+    for (size_t k = 0; k < count; k++) {
+        fprintf(f, "| `%s` | ", figure[k].key);
+        put_meaning(f, figure[k].meaning, "");
+    }
+}
+
 static void put_good_run(FILE *f) {
     fputs("| check | value | remark beyond | do not use beyond | why it matters |\n|---|---|---|---|---|\n",
           f);
@@ -108,8 +118,12 @@ static const struct {
     const char *name;
     void (*put)(FILE *f);
 } tables[] = {
-    {"model", put_model},     {"history", put_history},   {"frame fields", put_frame_fields},
-    {"figures", put_figures}, {"good run", put_good_run},
+    {"model", put_model},
+    {"history", put_history},
+    {"frame fields", put_frame_fields},
+    {"figures", put_figures},
+    {"layer figures", put_layer_figures},
+    {"good run", put_good_run},
 };
 
 /* The whole file as text; free it. */

@@ -76,7 +76,7 @@ static void comments_give_title_and_origin_of_the_material(void **state) {
         "# EVA pad\n#  second line\n\n# not this\ngeometry: {\n# nor this\n};\n"
         "material: {\n# from ../foam.cfg:\n# from the supplier's data sheet\n# from 2024\n# Foam of 35 kg/m3\nE = \"1 MPa\";\n# informed to 0.8\n"
         "};\nmissile: { # nor this\n};\n";
-    char *title = sf_origin_title(text), *origin = sf_origin_material(text);
+    char *title = sf_origin_title(text), *origin = sf_origin_material(text, NULL);
     assert_string_equal(title, "EVA pad\nsecond line\n");
     assert_string_equal(origin,
                         "from the supplier's data sheet\nfrom 2024\nFoam of 35 kg/m3\ninformed to 0.8\n");
@@ -85,7 +85,7 @@ static void comments_give_title_and_origin_of_the_material(void **state) {
     char replaced[600];
     snprintf(replaced, sizeof replaced,
              "%s# --set material=@other.cfg\n#     # Other foam\n#     E = \"2 MPa\";\n", text);
-    origin = sf_origin_material(replaced);
+    origin = sf_origin_material(replaced, NULL);
     assert_string_equal(origin, "Other foam\n");
     free(origin);
 }

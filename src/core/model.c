@@ -183,6 +183,17 @@ double sf_model_informed_strain(const sf_model *model) {
     return least;
 }
 
+double sf_model_density(const sf_model *model) {
+    double mass = 0, volume = 0;
+    if (model->material_count == 1)
+        return sf_material_density(&model->material[0]);
+    for (int64_t i = 0; i < model->node_count; i++) {
+        mass += model->mass[i];
+        volume += model->volume[i];
+    }
+    return mass / volume;
+}
+
 sf_status sf_model_take_materials(sf_model *model, sf_material *material, int count, sf_error *err) {
     if (!model->node_material)
         model->node_material = sf_alloc(err, (unsigned long)model->node_count, 1, "materials of the nodes");

@@ -203,6 +203,8 @@ static inline const sf_material *sf_model_material(const sf_model *model, int64_
 /* Least, over the materials, of the strain up to which their data inform (sf_material_informed); INFINITY:
  * they do not say. */
 double sf_model_informed_strain(const sf_model *model);
+/* Mean density of the undeformed pad, kg m-3. */
+double sf_model_density(const sf_model *model);
 
 /* Moves `count` materials into the list. node_material is allocated and, if there is one material only, stays
  * zero; node_count is known. */

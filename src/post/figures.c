@@ -4,6 +4,7 @@
 #include "core/units.h"
 #include "post/results_check.h"
 #include "post/strain_field.h"
+#include <stdlib.h>
 #include <math.h>
 #include <string.h>
 
@@ -134,8 +135,10 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
 static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *err) {
     sf_error problem = SF_ERROR_INIT;
     sf_frame peak;
-    if (!r->has_peak)
-        return SF_OK;
+    if (!r->has_peak) {
+        f->layers = sf_layer_figures_compute(r, NULL, NULL, err);
+        return err->status;
+    }
     if (sf_frame_read_fields(r, &r->peak, SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY, &peak,
                              &problem) != SF_OK)
         return sf_results_ended_well(r) ? SF_FAIL(err, problem.status, "%s", problem.text) : SF_OK;
@@ -143,6 +146,12 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
                  *energy = peak.field[SF_FRAME_ENERGY_DENSITY];
     if (compression && energy && isfinite(r->informed_strain))
         f->energy_beyond_data = sf_strain_field_energy_beyond(r, compression, energy, r->informed_strain);
+    f->layers = sf_layer_figures_compute(r, compression, energy, err);
+    if (f->layers && compression && energy) {
+        f->energy_beyond_data = 0;
+        for (int k = 0; k < r->layer_count; k++)
+            f->energy_beyond_data += f->layers[k].energy_share * f->layers[k].energy_beyond_data;
+    }
     if (compression)
         sf_strain_field_collapse(r, compression, &f->local_collapse, err);
     sf_frame_free(&peak);
@@ -217,6 +226,7 @@ done:
 void sf_figures_free(sf_figures *figures) {
     sf_series_free(&figures->raw);
     sf_series_free(&figures->filtered);
+    free(figures->layers);
     *figures = (sf_figures){0};
 }
 

@@ -8,6 +8,7 @@
 #define SF_POST_FIGURES_H
 
 #include "post/injury.h"
+#include "post/layers.h"
 #include "post/results.h"
 #include <stddef.h>
 
@@ -49,7 +50,7 @@
     X(NUMBER, max_local_strain_time, "max_local_strain_time_ms", 1e3, "its time")                                      \
     X(NUMBER, local_strain_excess, "local_strain_excess", 1, "max_local_strain - max_mean_strain")                     \
     X(NUMBER, local_collapse, "local_collapse", 1, "largest excess of a node's compression over the median of its neighbours (nodes of a common cell), at /peak") \
-    X(NUMBER, energy_beyond_data, "energy_beyond_data", 1, "share of the foam's energy, at /peak, in nodes compressed beyond `informed_strain`") \
+    X(NUMBER, energy_beyond_data, "energy_beyond_data", 1, "share of the foam's energy, at /peak, in nodes compressed beyond `informed_strain`, each by that of its layer") \
     X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F")                                             \
     X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point")                    \
     X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next two")                    \
@@ -76,8 +77,8 @@
     X(FACT, impact_x, "impact_x_mm", 1e3, "x of the impact point: where the missile's lowest point arrives at the pad's top") \
     X(FACT, impact_y, "impact_y_mm", 1e3, "its y")                                                                     \
     X(NUMBER, missile_mass, "missile_mass_kg", 1, "of the whole missile")                                              \
-    X(FACT, density, "density_kg_m3", 1, "of the undeformed foam")                                                     \
-    X(FACT, informed_strain, "informed_strain", 1, "strain up to which the material's data inform its curve: `material.informed_strain`, or the end of the table") \
+    X(FACT, density, "density_kg_m3", 1, "of the undeformed foam, the mean of layers")                                                     \
+    X(FACT, informed_strain, "informed_strain", 1, "strain up to which the material's data inform its curve: `material.informed_strain`, or the end of the table; of layers the least") \
     X(FACT_COUNT, symmetry_factor, "symmetry_factor", 1, "modelled parts that make the whole")                         \
     X(FACT_COUNT, node_count, "nodes", 1, "of the modelled part, like the next two")                                   \
     X(FACT_COUNT, cell_count, "cells", 1, "of the background mesh")                                                    \
@@ -101,6 +102,7 @@ typedef struct sf_figures {
     sf_series filtered; /* s, g: resampled and CFC filtered; owned */
     sf_injury injury_raw;
     sf_injury injury;            /* of the filtered curve */
+    sf_layer_figures *layers;    /* [results->layer_count] owned; NULL: one material, or no contact */
     SF_FIGURES(SF_FIGURE_MEMBER) /* SI */
 } sf_figures;
 

@@ -128,10 +128,28 @@ static const char *after_last(const char *text, const char *begin) {
     return found ? found + (*found == '\n') : NULL;
 }
 
-char *sf_origin_material(const char *case_text) {
-    const char *replaced = after_last(case_text, "# --set material=@");
+/* The line after the first one below `text` whose first word is `name`; NULL if there is none. */
+static const char *after_name(const char *text, const char *name) {
+    size_t length = strlen(name);
+    for (const char *line = text; line && *line; line += strcspn(line, "\n"), line += *line == '\n') {
+        const char *word = line + strspn(line, " \t");
+        if (strncmp(word, name, length) == 0 && strchr(" \t:=\n", word[length]))
+            return line + strcspn(line, "\n") + (line[strcspn(line, "\n")] == '\n');
+    }
+    return NULL;
+}
+
+char *sf_origin_material(const char *case_text, const char *layer) {
+    char replacing[SF_ORIGIN_NAME_SIZE + 32];
+    snprintf(replacing, sizeof replacing, layer ? "# --set materials.%s=@" : "# --set material%s=@",
+             layer ? layer : "");
+    const char *replaced = after_last(case_text, replacing);
     if (replaced)
         return collect(replaced, "#     ", true);
+    if (layer) {
+        const char *own = after_name(after_last(case_text, "materials"), layer);
+        return collect(own ? own : "", "", true);
+    }
     const char *group = after_last(case_text, "material");
     return collect(group ? group : "", "", true);
 }

@@ -2,6 +2,7 @@
 #include "post/origin_page.h"
 
 #include "post/origin.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,24 +26,30 @@ void sf_origin_put_key(sf_html_table *table, const char *parameters, const char 
         sf_html_fact(table, title, "%s", key.value);
 }
 
-/* The keys of the material that the case gives, and whether it says what its data inform. */
-static void put_given(sf_html_table *table, const char *parameters) {
-    static const char group[] = "material.";
+/* The keys of the material that the case gives, and whether it says what its data inform. `group`: with its
+ * point at the end. */
+static void put_given(sf_html_table *table, const char *parameters, const char *group) {
     sf_origin_key key;
-    if (sf_origin_find(parameters, "material.informed_strain", &key) && !key.given)
+    char informed[SF_ORIGIN_NAME_SIZE + 32];
+    snprintf(informed, sizeof informed, "%sinformed_strain", group);
+    if (sf_origin_find(parameters, informed, &key) && !key.given)
         sf_html_fact(table, "informed_strain", "not given: the end of the curve is taken for it");
     while (sf_origin_next(&parameters, &key))
         if (key.given && strncmp(key.name, group, strlen(group)) == 0)
             sf_html_fact(table, key.name + strlen(group), "%s", key.value);
 }
 
-void sf_origin_put_material(FILE *page, const char *case_text, const char *parameters) {
-    char *origin = sf_origin_material(case_text);
+/* `layer` NULL: of a pad of one material. */
+static void put_material(FILE *page, const char *case_text, const char *parameters, const char *layer) {
+    char *origin = sf_origin_material(case_text, layer), heading[SF_ORIGIN_NAME_SIZE + 32],
+         group[SF_ORIGIN_NAME_SIZE + 16];
+    snprintf(heading, sizeof heading, "Material%s%s", layer ? " of the layer " : "", layer ? layer : "");
+    snprintf(group, sizeof group, "material%s%s.", layer ? "s." : "", layer ? layer : "");
     sf_html_block_begin(page);
-    sf_html_heading(page, "Material");
+    sf_html_heading(page, heading);
     sf_html_columns_begin(page, "narrow");
     sf_html_table table = sf_html_table_begin(page, "dense", NULL);
-    put_given(&table, parameters);
+    put_given(&table, parameters, group);
     sf_html_table_end(&table);
     sf_html_block_begin(page);
     sf_html_note(
@@ -53,4 +60,23 @@ void sf_origin_put_material(FILE *page, const char *case_text, const char *param
     sf_html_columns_end(page);
     sf_html_block_end(page);
     free(origin);
+}
+
+void sf_origin_put_material(FILE *page, const char *case_text, const char *parameters) {
+    static const char group[] = "materials.";
+    char last[SF_ORIGIN_NAME_SIZE] = "";
+    const char *rest = parameters;
+    sf_origin_key key;
+    while (sf_origin_next(&rest, &key)) {
+        if (strncmp(key.name, group, strlen(group)) != 0)
+            continue;
+        char *name = key.name + strlen(group);
+        name[strcspn(name, ".")] = '\0';
+        if (strcmp(name, last) == 0)
+            continue;
+        snprintf(last, sizeof last, "%.*s", (int)sizeof last - 1, name);
+        put_material(page, case_text, parameters, name);
+    }
+    if (!*last)
+        put_material(page, case_text, parameters, NULL);
 }

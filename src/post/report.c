@@ -121,7 +121,8 @@ static void put_pad(const page *p) {
     sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
     sf_html_fact(&table, "thickness", "%.4g mm", r->thickness * 1e3);
     sf_html_fact(&table, "mean cross-section", "%.4g cm², of the whole pad", p->figures->area * 1e4);
-    sf_html_fact(&table, "density", "%.4g kg/m³, undeformed", r->density);
+    sf_html_fact(&table, "density", "%.4g kg/m³, undeformed%s", r->density,
+                 r->layer_count > 0 ? ", mean of the layers" : "");
     put_parameter(p, &table, "geometry.file", "shape");
     put_parameter(p, &table, "geometry.parameters", "its parameters");
     put_parameter(p, &table, "geometry.length_unit", "their unit");
@@ -132,6 +133,7 @@ static void put_pad(const page *p) {
         put_parameter(p, &table, "pad.friction", "friction on the anvil");
         put_parameter(p, &table, "pad.gravity", "gravity on the pad");
     }
+    put_parameter(p, &table, "pad.sliding_interfaces", "sliding layers");
     sf_html_table_end(&table);
 }
 
@@ -405,6 +407,35 @@ static void put_provenance(const page *p) {
     sf_html_columns_end(p->file);
 }
 
+/* A pad of several materials, layer by layer. */
+static void put_layers(const page *p) {
+    const sf_layer_figures *layer = p->figures->layers;
+    if (!layer)
+        return;
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Layers");
+    sf_html_table table = sf_html_table_begin(
+        p->file, "dense",
+        "layer|>density (kg/m³)|>volume (cm³)|>largest strain|>absorbed (J)|>of it viscous (J)|>share of the "
+        "energy at the peak (%)|>of it beyond its data (%)");
+    for (int k = 0; k < p->results->layer_count; k++, layer++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", layer->name);
+        sf_html_number(&table, 1, layer->density);
+        sf_html_number(&table, 1, layer->volume * 1e6);
+        sf_html_number(&table, 3, layer->max_local_strain);
+        sf_html_number(&table, 3, layer->absorbed_energy);
+        sf_html_number(&table, 3, layer->viscous_energy);
+        sf_html_number(&table, 1, 100 * layer->energy_share);
+        sf_html_number(&table, 1, 100 * layer->energy_beyond_data);
+    }
+    sf_html_table_end(&table);
+    sf_html_note(p->file,
+                 "Absorbed: stored, lost and viscous energy in the last frame. Beyond its data: in nodes "
+                 "compressed beyond the strain up to which the data of the layer's material inform it.");
+    sf_html_block_end(p->file);
+}
+
 /* ---- the page ---- */
 
 static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
@@ -428,6 +459,7 @@ static sf_status write_page(page *p, const sf_staging *output, sf_error *err) {
     put_verdict_line(p);
     put_tiles(p);
     put_bodies(p);
+    put_layers(p);
     put_pictures(p, output);
     put_comparison(p);
     put_verdict(p);

@@ -28,6 +28,12 @@ typedef struct sf_frame {
     double *field[SF_FRAME_FIELDS]; /* [node_count][components], NULL if the file does not hold it */
 } sf_frame;
 
+/* Of one layer, whole pad, to date. */
+typedef struct sf_layer_sums {
+    double stored, hysteresis, viscous; /* J */
+    double compression;                 /* -, largest */
+} sf_layer_sums;
+
 enum { SF_RESULTS_NOTES = 24, SF_RESULTS_NOTE_SIZE = 512 };
 
 typedef struct sf_results {
@@ -47,11 +53,19 @@ typedef struct sf_results {
     int32_t *surface_triangle; /* [surface_triangle_count][3] */
     int64_t symmetry_factor;
     double thickness;           /* m */
-    double density;             /* kg m-3 */
+    double density;             /* kg m-3, mean */
     double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
     double slit_fraction;   /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
                                the file does not say */
-    double informed_strain; /* -, up to which data inform the material; NaN: the file does not say */
+    double informed_strain; /* -, up to which data inform the material (of layers the least); NaN: the file
+                               does not say */
+    int layer_count;        /* of a pad of several materials; 0: one */
+    uint8_t *node_layer;    /* [node_count] number of the layer */
+    char **layer_name;      /* [layer_count] parts of layer_names */
+    char *layer_names;
+    double *layer_density;     /* [layer_count] kg m-3 */
+    double *layer_informed;    /* [layer_count] as informed_strain */
+    sf_layer_sums *layer_sums; /* [layer_count] of the last frame; NULL: no frame has them */
     double impact_x, impact_y; /* m, where the missile's lowest point arrives at the pad's top; NaN: the file
                                   does not say */
     double missile_mass;       /* kg; 0 with a prescribed motion, like the speed */

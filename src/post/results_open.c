@@ -4,7 +4,9 @@
 
 #include "io/provenance.h"
 #include "io/seal.h"
+#include "core/model.h"
 #include "post/results_check.h"
+#include <stddef.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -87,6 +89,70 @@ static sf_status read_optional(const sf_results *r, const char *path, double *va
     return err->status;
 }
 
+/* The names of the layers, a line each. */
+static sf_status read_layer_names(sf_results *r, sf_error *err) {
+    char *rest = NULL;
+    int count = 0;
+    r->layer_name = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_name, "names of layers");
+    if (!r->layer_name || sf_h5_read_text(r->file, "/model/layer_names", &r->layer_names, err) != SF_OK)
+        return err->status;
+    for (char *line = strtok_r(r->layer_names, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        sf_error_clean(line);
+        if (count < r->layer_count)
+            r->layer_name[count] = line;
+        count++;
+    }
+    if (count != r->layer_count)
+        return SF_FAIL(err, SF_ERR_IO, "/model/layer_names: %d names for %d layers", count, r->layer_count);
+    return SF_OK;
+}
+
+/* The layers of a pad of several materials. */
+static sf_status read_layers(sf_results *r, sf_error *err) {
+    int64_t count = -1, nodes = r->node_count;
+    if (!sf_h5_exists(r->file, "/model/node_layer"))
+        return SF_OK;
+    if (read_array(r, "/model/node_layer", SF_H5_U8, &nodes, 1, &r->node_layer, err) != SF_OK ||
+        read_array(r, "/model/layer_density", SF_H5_F64, &count, 1, &r->layer_density, err) != SF_OK)
+        return err->status;
+    if (count < 1 || count > SF_MATERIAL_MAX)
+        return SF_FAIL(err, SF_ERR_IO, "/model/layer_density: %lld layers, 1 to %d are possible",
+                       (long long)count, SF_MATERIAL_MAX);
+    r->layer_count = (int)count;
+    if (read_array(r, "/model/layer_informed_strain", SF_H5_F64, &count, 1, &r->layer_informed, err) != SF_OK)
+        return err->status;
+    for (int64_t i = 0; i < r->node_count; i++)
+        if (r->node_layer[i] >= count)
+            return SF_FAIL(err, SF_ERR_IO, "/model/node_layer: node %lld is of layer %d, of 0 to %lld",
+                           (long long)i, r->node_layer[i], (long long)count - 1);
+    for (int64_t k = 0; k < count; k++)
+        if (!(r->layer_density[k] > 0) || isnan(r->layer_informed[k]))
+            return SF_FAIL(err, SF_ERR_IO, "/model/layer_density, /model/layer_informed_strain: %g, %g",
+                           r->layer_density[k], r->layer_informed[k]);
+    return read_layer_names(r, err);
+}
+
+/* What the frame says by layer; nothing if it does not. */
+static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_error *err) {
+    static const char *const names[] = {"layer_stored", "layer_hysteresis", "layer_viscous",
+                                        "layer_compression"};
+    static const size_t offsets[] = {offsetof(sf_layer_sums, stored), offsetof(sf_layer_sums, hysteresis),
+                                     offsetof(sf_layer_sums, viscous), offsetof(sf_layer_sums, compression)};
+    r->layer_sums = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_sums, "sums of layers");
+    for (int k = 0; k < 4 && err->status == SF_OK; k++) {
+        char path[80];
+        double *value = NULL;
+        int64_t count = r->layer_count;
+        snprintf(path, sizeof path, "%s/%s", head->group, names[k]);
+        if (read_array(r, path, SF_H5_F64, &count, 1, &value, err) != SF_OK)
+            break;
+        for (int64_t i = 0; i < count && sf_results_check_finite(value, count, path, err) == SF_OK; i++)
+            *(double *)((char *)&r->layer_sums[i] + offsets[k]) = value[i];
+        free(value);
+    }
+    return err->status;
+}
+
 static sf_status read_model(sf_results *r, sf_error *err) {
     int64_t pointers = -1;
     r->node_count = r->cell_count = r->cell_nnz = r->surface_node_count = r->surface_triangle_count = -1;
@@ -114,7 +180,8 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         read_optional(r, "/model/informed_strain", &r->informed_strain, err) != SF_OK ||
         read_optional(r, "/model/impact_x", &r->impact_x, err) != SF_OK ||
         read_optional(r, "/model/impact_y", &r->impact_y, err) != SF_OK ||
-        read_optional(r, "/model/slit_fraction", &r->slit_fraction, err) != SF_OK)
+        read_optional(r, "/model/slit_fraction", &r->slit_fraction, err) != SF_OK ||
+        read_layers(r, err) != SF_OK)
         return err->status;
     return sf_results_check_model(r, err);
 }
@@ -228,12 +295,20 @@ static sf_status read_frame_list(sf_results *r, sf_error *err) {
         else if (keep_error(r, &problem, err))
             return err->status;
     }
+    sf_error problem = SF_ERROR_INIT;
+    if (r->frame_count > 0 && r->layer_count > 0 &&
+        read_layer_sums(r, &r->frames[r->frame_count - 1], &problem) != SF_OK) {
+        free(r->layer_sums);
+        r->layer_sums = NULL;
+        if (keep_error(r, &problem, err))
+            return err->status;
+    }
     if (r->frame_count == 0)
         sf_results_note(r, "there are no frames: nothing to show in ParaView");
     snprintf(r->peak.group, sizeof r->peak.group, "/peak");
     if (!sf_h5_exists(r->file, "/peak"))
         return SF_OK;
-    sf_error problem = SF_ERROR_INIT;
+    problem = (sf_error)SF_ERROR_INIT;
     r->has_peak = read_head(r, &r->peak, &problem) == SF_OK;
     if (!r->has_peak)
         keep_error(r, &problem, err);
@@ -261,6 +336,12 @@ void sf_results_close(sf_results *results) {
     free(results->cell_node);
     free(results->surface_position);
     free(results->surface_triangle);
+    free(results->node_layer);
+    free(results->layer_name);
+    free(results->layer_names);
+    free(results->layer_density);
+    free(results->layer_informed);
+    free(results->layer_sums);
     sf_history_free(&results->history);
     free(results->frames);
     *results = (sf_results){0};

@@ -45,6 +45,25 @@ static void put_figures(sf_json *json, const sf_summary *s) {
     sf_json_close(json, ']');
 }
 
+/* A pad of several materials has a group for each. */
+static void put_layers(sf_json *json, const sf_summary *s) {
+    size_t count;
+    const sf_layer_figure *list = sf_layer_figure_list(&count);
+    if (!s->figures->layers)
+        return;
+    sf_json_open(json, "layers", '[');
+    for (int k = 0; k < s->results->layer_count; k++) {
+        const sf_layer_figures *layer = &s->figures->layers[k];
+        sf_json_open(json, NULL, '{');
+        sf_json_text(json, "name", layer->name);
+        for (size_t q = 0; q < count; q++)
+            sf_json_number(json, list[q].key,
+                           *(const double *)((const char *)layer + list[q].offset) * list[q].factor);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
 /* Infinity, a bound that there is not, becomes null. */
 static void put_checks(sf_json *json, const sf_verdict *v) {
     sf_json_open(json, "checks", '[');
@@ -135,6 +154,7 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
     sf_json_text(&json, "caution", caution);
     put_verdict(&json, s->verdict);
     put_figures(&json, s);
+    put_layers(&json, s);
     if (s->comparison)
         put_comparison(&json, s->reference_path, s->comparison);
     sf_json_close(&json, '}');
@@ -206,6 +226,21 @@ static void print_cell(FILE *out, double value, int width, int digits) {
         fprintf(out, " %*s", width, "-");
 }
 
+static void print_layers(FILE *out, const sf_summary *s) {
+    if (!s->figures->layers)
+        return;
+    fprintf(out, "  %-24s %12s %14s %20s\n", "layer", "largest strain", "absorbed (J)",
+            "beyond its data (%)");
+    for (int k = 0; k < s->results->layer_count; k++) {
+        const sf_layer_figures *layer = &s->figures->layers[k];
+        fprintf(out, "  %-24s", layer->name);
+        print_cell(out, layer->max_local_strain, 14, 3);
+        print_cell(out, layer->absorbed_energy, 14, 2);
+        print_cell(out, 100 * layer->energy_beyond_data, 20, 1);
+        fputc('\n', out);
+    }
+}
+
 static void print_comparison(FILE *out, const char *path, const sf_comparison *c) {
     fprintf(out, "Compared with\nreference %s: %s\n", path, c->understood);
     fprintf(out, "  measured a_max %.2f g (model %+.1f %%), HIC %.1f\n", c->injury.a_max_g,
@@ -264,6 +299,7 @@ void sf_summary_print(FILE *out, const sf_summary *s) {
     else
         print_drop(out, s);
     print_lines(out, s, common_lines);
+    print_layers(out, s);
     if (s->comparison)
         print_comparison(out, s->reference_path, s->comparison);
     fprintf(out, "These figures are %s.\n", caution);

@@ -28,6 +28,9 @@ static sf_status write_topology(sf_h5 *file, const sf_results *r, sf_error *err)
     if (sf_h5_write(file, &pad, SF_H5_I32, 1, &length, mixed, err) == SF_OK && r->surface_triangle_count > 0)
         sf_h5_write(file, &missile, SF_H5_I32, 2, triangles, r->surface_triangle, err);
     free(mixed);
+    if (err->status == SF_OK && r->layer_count > 0)
+        sf_h5_write(file, &(sf_h5_info){"/pad/layer", "1", "number of the layer of each node"}, SF_H5_U8, 1,
+                    &r->node_count, r->node_layer, err);
     return err->status;
 }
 
@@ -113,6 +116,12 @@ static void put_pad(const scene *x, const sf_results *r, int fields, double time
         put_float_item(x, index, info->array, r->node_count, info->components);
         fputs("</Attribute>\n", x->file);
     }
+    if (r->layer_count > 0)
+        fprintf(
+            x->file,
+            "          <Attribute Name=\"layer\" AttributeType=\"Scalar\" Center=\"Node\"><DataItem "
+            "Format=\"HDF\" NumberType=\"UChar\" Dimensions=\"%lld\">%s:/pad/layer</DataItem></Attribute>\n",
+            (long long)r->node_count, x->data);
     fputs("        </Grid>\n", x->file);
 }
 

@@ -25,6 +25,8 @@ static const sf_state_array arrays[] = {
     KEPT(tangent, 'n', 1),
     KEPT(pair_sum, 'n', 1),
     KEPT(pair_stiffness, 'n', 1),
+    KEPT(viscous_work, 'l', 1),
+    KEPT(compressed, 'l', 1),
     KEPT(mode, 'n', 1),
     SCRATCH(directional, 'n', 6 * sizeof(float)),
     KEPT(contact_position, 'c', 3),
@@ -61,6 +63,8 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
     switch (rows) {
     case 'n':
         return model->node_count;
+    case 'l':
+        return model->material_count > 1 ? model->node_count : 0;
     case 'h':
         return blocks * history_rows(model);
     case 'c':

@@ -115,6 +115,10 @@ typedef struct sf_state {
     double *pair_sum;       /* [n] m3 */
     double *pair_stiffness; /* [n] Pa */
 
+    /* Of a pad of layers. */
+    double *viscous_work; /* [n] J, to date */
+    double *compressed;   /* [n] -, largest compression to date */
+
     /* Power iteration (time_step.h). */
     double *mode;       /* [n] its vector */
     float *directional; /* [n][6] Pa, tangent by direction (law.h), when sf_time_step_due */
@@ -144,7 +148,8 @@ typedef struct sf_state {
 typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
-    char rows; /* n nodes, h rows of history of all blocks of lanes, c contact points, k chunks */
+    char rows; /* n nodes, l nodes of a pad of layers, h rows of history of all blocks of lanes, c contact
+                  points, k chunks */
     int bytes; /* of a row; doubles if it has a name */
 } sf_state_array;
 

@@ -187,6 +187,16 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
     }
 }
 
+/* What is told by layer at the end. */
+static void store_layers(const sf_model *m, sf_state *s, int64_t first, int count, const sf_law_batch *b) {
+    for (int l = 0; l < count; l++) {
+        double shorter = sf_smaller(b->stretch[0][l], b->stretch[1][l]),
+               compressed = 1 - sf_smaller(b->stretch[2][l], shorter);
+        s->viscous_work[first + l] += m->volume[first + l] * b->work[l];
+        s->compressed[first + l] = sf_larger(compressed, s->compressed[first + l]);
+    }
+}
+
 static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf_state *s, const sf_vec *d,
                                    int64_t chunk) {
     lane_sums sum = {.stored = {0}};
@@ -204,6 +214,8 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
         for (int l = count; l < SF_LANES; l++) /* nor is it short */
             batch.jacobian[l] = batch.stretch[0][l] = batch.stretch[1][l] = batch.stretch[2][l] = INFINITY;
         store_batch(m, op, s, block, count, &batch, &sum);
+        if (m->material_count > 1)
+            store_layers(m, s, block * SF_LANES, count, &batch);
     }
     merge_lanes(&sum, chunk * SF_CHUNK, &s->partial[chunk]);
 }

@@ -4,6 +4,7 @@
 #include "core/mat3.h"
 #include "solver/field/domain_stress.h"
 #include "solver/field/stabilisation.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -124,6 +125,45 @@ static sf_status write_item(sf_h5 *file, const char *group, const char *name, co
     return sf_h5_write(file, &info, SF_H5_F64, rank, dims, data, err);
 }
 
+/* Sums by layer, of the whole pad: a row of each. */
+static void sum_layers(const sf_model *m, const sf_operators *op, const sf_state *s, double *sums) {
+    int64_t count = m->material_count;
+    double whole = sf_model_whole(m);
+    sf_law_batch b;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        int lane = (int)(i % SF_LANES);
+        double *own = &sums[m->node_material[i]];
+        if (lane == 0)
+            sf_domain_law(m, op, s, i / SF_LANES, &b);
+        own[0] += whole * m->volume[i] * b.stored[lane];
+        own[count] += whole * m->volume[i] * b.lost[lane];
+        own[2 * count] += whole * s->viscous_work[i];
+        own[3 * count] = fmax(own[3 * count], s->compressed[i]);
+    }
+}
+
+/* By layer, if the pad has several. */
+static sf_status write_layers(const sf_model *m, const sf_operators *op, const sf_state *s, const char *path,
+                              sf_h5 *file, sf_error *err) {
+    static const struct {
+        const char *name, *units, *description;
+    } rows[] = {{"layer_stored", "J", "recoverable energy of each layer"},
+                {"layer_hysteresis", "J", "lost by the unloading rule in each layer"},
+                {"layer_viscous", "J", "viscous work in each layer to date"},
+                {"layer_compression", "1", "largest compression in each layer to date"}};
+    int64_t count = m->material_count;
+    if (count < 2)
+        return SF_OK;
+    double *sums = sf_alloc(err, 4 * (unsigned long)count, sizeof *sums, "sums of the layers");
+    if (sums)
+        sum_layers(m, op, s, sums);
+    for (int k = 0; k < 4 && err->status == SF_OK; k++)
+        write_item(file, path, rows[k].name, rows[k].units, rows[k].description, 1, &count, &sums[k * count],
+                   err);
+    free(sums);
+    return err->status;
+}
+
 /* The data of a frame beside its fields. */
 static sf_status write_head(const sf_model *m, const sf_state *s, const char *path, sf_h5 *file,
                             sf_error *err) {
@@ -165,8 +205,8 @@ static sf_status write_field(const sf_model *m, const sf_operators *op, const sf
 sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t wanted,
                          const char *path, sf_h5 *file, sf_error *err) {
     double *buffer = sf_alloc(err, SLAB, 9 * sizeof *buffer, "fields of a frame");
-    if (buffer)
-        write_head(m, s, path, file, err);
+    if (buffer && write_head(m, s, path, file, err) == SF_OK)
+        write_layers(m, op, s, path, file, err);
     for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
         if (wanted >> k & 1)
             write_field(m, op, s, (sf_frame_field)k, path, buffer, file, err);

@@ -3,12 +3,13 @@
 
 #include "solver/missile.h"
 #include <math.h>
+#include <stdio.h>
 
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     int64_t driven = sf_missile_is_driven(m);
     const double unknown = NAN, *impact = m->missile.impact_known ? m->missile.impact : NULL;
     const double informed = sf_model_informed_strain(m);
-    const double gravity = sf_missile_free_fall(m), density = sf_material_density(&m->material[0]);
+    const double gravity = sf_missile_free_fall(m), density = sf_model_density(m);
     const struct {
         sf_h5_info info;
         sf_h5_type type;
@@ -61,7 +62,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
          0,
          {0},
          &m->slit_fraction},
-        {{"/model/density", "kg m-3", "density of the first material"}, SF_H5_F64, 0, {0}, &density},
+        {{"/model/density", "kg m-3", "mean density of the undeformed pad"}, SF_H5_F64, 0, {0}, &density},
         {{"/model/informed_strain", "1", "least, over the materials, of the strain up to which data inform"},
          SF_H5_F64,
          0,
@@ -104,12 +105,38 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     return SF_OK;
 }
 
+/* The layers of a pad of several materials. */
+static sf_status write_layers(const sf_model *m, sf_h5 *file, sf_error *err) {
+    double density[SF_MATERIAL_MAX], informed[SF_MATERIAL_MAX];
+    char names[SF_MATERIAL_MAX * SF_MATERIAL_NAME_SIZE];
+    size_t used = 0;
+    if (m->material_count < 2)
+        return SF_OK;
+    for (int64_t k = 0; k < m->material_count; k++) {
+        const sf_material *material = &m->material[k];
+        density[k] = sf_material_density(material);
+        informed[k] = sf_material_informed(material);
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", k ? "\n" : "", material->name);
+    }
+    sf_h5_write(file, &(sf_h5_info){"/model/node_layer", "1", "number of the layer of each node, ascending"},
+                SF_H5_U8, 1, &m->node_count, m->node_material, err);
+    sf_h5_write(file, &(sf_h5_info){"/model/layer_density", "kg m-3", "density of each layer"}, SF_H5_F64, 1,
+                &m->material_count, density, err);
+    sf_h5_write(file,
+                &(sf_h5_info){"/model/layer_informed_strain", "1",
+                              "strain up to which data inform the material of each layer"},
+                SF_H5_F64, 1, &m->material_count, informed, err);
+    return sf_h5_write_text(
+        file, &(sf_h5_info){"/model/layer_names", "1", "names of the layers, a line each"}, names, err);
+}
+
 sf_status sf_results_create(const char *path, const sf_model *m, const sf_h5 *model_file,
                             const sf_provenance *provenance, sf_h5 **file, sf_error *err) {
     if (sf_h5_create(path, file, err) != SF_OK)
         return err->status;
     if (sf_provenance_write(*file, "softfall-results", provenance, err) == SF_OK &&
-        sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK)
+        sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK &&
+        write_layers(m, *file, err) == SF_OK)
         return SF_OK;
     sf_error ignored = SF_ERROR_INIT;
     sf_h5_close(file, &ignored);
