@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A pad of layers through the three programs: its figures by layer, the same bits for any number of threads
  * and after a restart, and what is refused. */
+#include "extreme.h"
 #include "program_fixture.h"
 
 #include <math.h>
@@ -76,7 +77,7 @@ static void summary_tells_strain_and_energy_by_layer(void **state) {
     assert_non_null(layers);
     double most = 0, share = 0;
     for (int k = 1; k <= 3; k++) {
-        most = fmax(most, figure_of(layers, "max_local_strain", k));
+        most = larger(most, figure_of(layers, "max_local_strain", k));
         share += figure_of(layers, "energy_share", k);
         assert_close(figure_of(layers, "energy_beyond_data", k), 0.5, 0.5);
     }

@@ -255,7 +255,7 @@ static void strains_of_a_stack_jump_at_its_interface(void **state) {
     for (int k = 0; k < 3; k++) {
         double strain[2] = {STRAINS[k], partner_strain(m, STRAINS[k])};
         for (int64_t i = 0; i < m->node_count; i++) {
-            double z = m->position[3 * i + 2], beyond = fmax(0, z - 3 * H);
+            double z = m->position[3 * i + 2], beyond = larger(0, z - 3 * H);
             f.state.d[3 * i] = f.state.d[3 * i + 1] = 0;
             f.state.d[3 * i + 2] = -strain[0] * (z - beyond) - strain[1] * beyond;
         }
