@@ -159,7 +159,6 @@ sf_status sf_impact_place(const sf_case *c, const sf_model *m, sf_surface *surfa
         if (sf_symmetry_plane(m, axis, &place))
             continue;
         card->sphere_centre[axis] += shift;
-        card->centre[axis] += card->freedom ? shift : 0; /* of the mass */
         for (int64_t k = 0; k < surface->node_count; k++)
             surface->position[3 * k + axis] += shift;
     }

@@ -12,10 +12,10 @@
  * centroid of the flat faces there, or, without such faces, the middle of the box around these nodes. */
 void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, double point[3]);
 
-/* Moves the surface, and the card's sphere and centre, in x and y so that the lowest point, on its way along
+/* Moves the surface, and the card's sphere, in x and y so that the lowest point, on its way along
  * the direction, comes to missile.position at the height of the pad's highest point. Normal to a symmetry
- * plane nothing moves. Does nothing without missile.position. The card's sphere and centre are known, in the
- * geometry's coordinates; the model has its cloud and its sets. SF_ERR_INPUT: the position lies off a
+ * plane nothing moves. Does nothing without missile.position. The card's shape is set, its body not yet;
+ * the model has its cloud and its sets. SF_ERR_INPUT: the position lies off a
  * symmetry plane, or outside the convex outline of the contact nodes. */
 sf_status sf_impact_place(const sf_case *c, const sf_model *model, sf_surface *surface, sf_missile_card *card,
                           sf_error *err);
