@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: what a good one gives, and the sentence that each fault gets. */
+#include "solver/material/hyperfoam.h"
 #include "core/foam_card.h"
 #include "program_fixture.h"
 
@@ -813,6 +814,56 @@ static void examples_are_the_drops_they_are_called(void **state) {
     }
 }
 
+/* Terms that mean nothing or are unstable, with their line; and what is right. */
+static void hyperfoam_terms_are_checked(void **state) {
+    (void)state;
+    static const struct {
+        const char *keys, *sentence;
+    } cases[] = {
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; nu = 0.2; beta = 0.1; };",
+         "material.term_1: both nu and beta are given"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 0.0; };", "material.term_1: alpha is 0"},
+        {"term_1 = { mu = \"60 kPa\"; };", "material.term_1.alpha is missing"},
+        {"", "material.term_1.mu is missing"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; nu = 0.5; };", "material.term_1.nu: 0.5 is out of bounds"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; term_3 = { nu = 0.1; };",
+         "material.term_3.mu is missing"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; term_2 = { mu = \"-10 kPa\"; };",
+         "material.term_2: mu and alpha are both needed"},
+        {"term_1 = { mu = \"200 kPa\"; alpha = 8.0; }; term_2 = { mu = \"-20 kPa\"; alpha = 2.0; };",
+         "material.term_2 (mu = -20 kPa, alpha = 2) makes the law unstable in uniaxial compression from a strain "
+         "of 0.32 on (Drucker's condition); stable_to asks for 0.9"},
+        {"term_1 = { mu = \"-60 kPa\"; alpha = 8.0; };", "material.term_1 (mu = -60 kPa"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; ALPHA = 0.05;",
+         "material.ALPHA: 0.05 is out of bounds"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; ALPHA = 0.5; SHAPE = 0.01;",
+         "material.SHAPE is 0.01; with ALPHA = 0.5"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; ED = \"1 MPa\";", "material.BETA1 is missing"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; rate_factor = 0.3;",
+         "material.rate_reference is missing"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; E = \"1 MPa\";", "unknown key \"E\" in group material"},
+    };
+    char text[1200];
+    sf_case c;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        snprintf(text, sizeof text,
+                 GEOMETRY
+                 "material: { law = \"hyperfoam\"; density = \"100 kg/m3\";\n%s\n};\n" MISSILE SOLVER,
+                 cases[k].keys);
+        assert_refused(text, NULL, cases[k].sentence, NULL);
+    }
+    read_good(
+        GEOMETRY
+        "material: { law = \"hyperfoam\"; density = \"100 kg/m3\"; stable_to = 0.3; HU = 0.2; ALPHA = 0.4;"
+        "term_1 = { mu = \"200 kPa\"; alpha = 8.0; nu = 0.25; };"
+        "term_3 = { mu = \"-20 kPa\"; alpha = 2.0; beta = 0.1; }; };\n" MISSILE SOLVER,
+        NULL, &c);
+    const sf_hyperfoam_card *card = c.material.card;
+    assert_true(card->term[0].mu == 2e5 && card->term[1].mu == 0 && card->term[2].beta == 0.1);
+    assert_true(card->hysteresis_alpha == 0.4 && sf_material_informed(&c.material) == 0.3);
+    sf_case_free(&c);
+}
+
 /* docs/case.md ends with the table as the program prints it. */
 static void reference_is_the_table(void **state) {
     (void)state;
@@ -866,6 +917,7 @@ int main(void) {
         cmocka_unit_test(curve_without_origin_is_extended_to_it),
         cmocka_unit_test(laboratory_files_are_read_and_told),
         cmocka_unit_test(examples_are_the_drops_they_are_called),
+        cmocka_unit_test(hyperfoam_terms_are_checked),
         cmocka_unit_test(reference_is_the_table),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

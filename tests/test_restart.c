@@ -107,6 +107,22 @@ static void finished_run_goes_on_to_a_later_end(void **state) {
     run_assert_same(p, "full.h5", "parts.h5");
 }
 
+/* The same of the hyperfoam with all that its points remember. */
+static void hyperfoam_goes_on_with_the_same_bits(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "pre",
+                    "'%s' -o hyper.h5 %s --set material=@'%s' --set material.ED='\"1 MPa\"' --set "
+                    "material.BETA1='\"4000 1/s\"' --set material.rate_factor=0.2 --set "
+                    "material.rate_reference='\"0.01 1/s\"' --set material.ALPHA=0.6 --set "
+                    "solver.end_time='\"6 ms\"'",
+                    fixture_source(EXAMPLE), program_coarse(20),
+                    fixture_source("examples/materials/vn600_slow.cfg"));
+    program_succeed(p, "solve", "hyper.h5 -o hyper_full.h5 --threads 1");
+    program_succeed(p, "solve", "hyper.h5 -o hyper_parts.h5 --end-time '2.3 ms' --threads 2");
+    program_succeed(p, "solve", "--restart hyper_parts.h5 --end-time '6 ms' --threads 2");
+    run_assert_same(p, "hyper_full.h5", "hyper_parts.h5");
+}
+
 /* Runs to the end with a signal after a random time, again and again, at least `least` times. The file opens
  * after each; post-processing reads it. */
 static void run_with_signals(const program_place *p, const char *results, const int *numbers, int count,
@@ -685,6 +701,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(killed_campaign_makes_progress_in_every_life),
         cmocka_unit_test(finished_run_goes_on_to_a_later_end),
+        cmocka_unit_test(hyperfoam_goes_on_with_the_same_bits),
         cmocka_unit_test(interrupted_run_goes_on),
         cmocka_unit_test(killed_run_loses_nothing),
         cmocka_unit_test(interruption_at_once_leaves_a_checkpoint),

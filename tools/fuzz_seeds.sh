@@ -12,5 +12,7 @@ cp -r examples geo "$folder"
 cd "$folder"
 "$bin/softfall-pre" -o m.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.1 ms' examples/compression/case.cfg >/dev/null
 "$bin/softfall-solve" m.h5 -o r.h5 -t 1 --no-checkpoint >/dev/null 2>&1
+"$bin/softfall-pre" -o h.h5 --set geometry.parameters.spacing=25 examples/compression/vn600.cfg >/dev/null
 cp m.h5 "$corpus/model/cube.h5"
+cp h.h5 "$corpus/model/hyperfoam.h5"
 cp r.h5 "$corpus/results/cube.h5"
