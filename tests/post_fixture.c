@@ -108,7 +108,10 @@ static sf_status put_model(sf_h5 *file, const cloud *c, const fixture_options *o
     put_scalar(file, "/model/expected_mesh_error", 0, err);
     put_scalar(file, "/model/gravity_along", SF_STANDARD_GRAVITY, err);
     put_integer(file, "/model/kinematic", o->kinematic, err);
+    const double centre[3] = {0, 0, 0};
     put_integer(file, "/model/missile_driven", 0, err);
+    put_integer(file, "/model/missile_free", 0, err);
+    put(file, "/model/missile_centre", SF_H5_F64, 3, 1, centre, err);
     return put(file, "/model/missile_direction", SF_H5_F64, 3, 1, direction, err);
 }
 
@@ -183,6 +186,9 @@ static sf_status put_frame(sf_h5 *file, const cloud *c, const char *group, int k
         put_scalar(file, path, k * FIXTURE_DURATION / 4, err);
     snprintf(path, sizeof path, "%s/acceleration", group);
     put_scalar(file, path, FIXTURE_PEAK_G * SF_STANDARD_GRAVITY * sin(M_PI * k / 4), err);
+    const double upright[4] = {1, 0, 0, 0};
+    snprintf(path, sizeof path, "%s/missile_quaternion", group);
+    put(file, path, SF_H5_F64, 4, 1, upright, err);
     snprintf(path, sizeof path, "%s/missile_displacement", group);
     return put(file, path, SF_H5_F64, 3, 1, lowered, err);
 }

@@ -243,7 +243,7 @@ static void contact_times_are_the_first_and_the_last(void **state) {
     sf_missile missile;
     sf_missile_begin(&m, &missile);
     for (int k = 1; k < 4; k++)
-        sf_missile_touch(&missile, 1e-3 * k);
+        sf_missile_touch(&m, &missile, 1e-3 * k);
     assert_true(missile.contact_time == 1e-3 && missile.release_time == 3e-3);
 }
 

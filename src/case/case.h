@@ -68,9 +68,16 @@ typedef struct sf_case {
     int interface_count;    /* pairs of layers that slide on each other; all others are tied */
     char interface_name[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE]; /* "NAME/NAME" */
     int interface_layer[SF_CASE_MAX_GROUPS][2];                 /* their places in `layer` */
-    sf_missile_card missile_card; /* sphere_* are left zero: they come from the geometry */
     bool position_given;
-    double missile_position[2]; /* m, x and y of the impact point, if given */
+    double missile_position[2];   /* m, x and y of the impact point, if given */
+    int freedom;                  /* SF_MISSILE_GUIDED or SF_MISSILE_FREE */
+    int inertia_count;            /* 0: from the geometry, else 3 or 6 */
+    double inertia[6];            /* kg m2, as in sf_missile_card */
+    int centre_count;             /* 0: from the geometry, else 3 */
+    double centre[3];             /* m, in the missile's geometry as it is */
+    int angular_velocity_count;   /* 0 or 3 */
+    double angular_velocity[3];   /* rad s-1 */
+    sf_missile_card missile_card; /* sphere_* and what a free missile needs are left zero */
     int64_t motion_count;         /* points of the missile's prescribed motion; 0 = it is free */
     double *motion_time;          /* [motion_count] s; owned until moved into a model, like the next */
     double *motion_displacement;  /* [motion_count] m, along the direction */

@@ -24,6 +24,7 @@ typedef enum sf_key_kind {
     SF_KEY_CHOICE,     /* one of `words` ("a|b"): int, its index */
     SF_KEY_FIELDS,     /* list of `words`: int64_t, bit k for word k */
     SF_KEY_TIMES,      /* ["12 ms", "20 ms"]: double[SF_CASE_MAX_TIMES] ascending, s; int at count_offset */
+    SF_KEY_QUANTITIES, /* ["0 mm", "0 mm", "50 mm"]: double[..], SI; int at count_offset, one of `lengths` */
     SF_KEY_VECTOR,     /* [0.0, 0.0, -1.0]: double[3] */
     SF_KEY_PLACE,      /* ["10 mm", "0 mm"]: double[2], SI */
     SF_KEY_PATH,       /* "file": char *, relative to the file that holds the key; must be readable */
@@ -46,7 +47,8 @@ typedef struct sf_key {
     bool low_open;           /* the lower bound itself is refused */
     const char *words;       /* see sf_key_kind; NULL = none */
     double word_value;
-    size_t count_offset; /* SF_KEY_NAMES, SF_KEY_TIMES */
+    size_t count_offset; /* SF_KEY_NAMES, SF_KEY_TIMES, SF_KEY_QUANTITIES */
+    int lengths[2];      /* SF_KEY_QUANTITIES; the second may be 0 */
     bool in_card;        /* a parameter of the law */
 } sf_key;
 

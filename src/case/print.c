@@ -67,6 +67,7 @@ static void print_kind(FILE *file, const sf_key *key) {
         [SF_KEY_TIMES] = "array of times",
         [SF_KEY_VECTOR] = "three numbers",
         [SF_KEY_PLACE] = "array of two lengths",
+        [SF_KEY_QUANTITIES] = "array",
         [SF_KEY_PATH] = "file",
         [SF_KEY_PARAMETERS] = "group of numbers",
         [SF_KEY_CURVE] = "file",
@@ -90,6 +91,12 @@ static void print_kind(FILE *file, const sf_key *key) {
             fprintf(file, " or \"%s\"", key->words);
     } else {
         fputs(phrase[key->kind], file);
+    }
+    if (key->kind == SF_KEY_QUANTITIES) {
+        fprintf(file, " of %d", key->lengths[0]);
+        if (key->lengths[1])
+            fprintf(file, " or %d", key->lengths[1]);
+        fprintf(file, ", each %s", sf_quantity_phrase(key->quantity));
     }
     bool bounded = key->kind == SF_KEY_QUANTITY || key->kind == SF_KEY_NUMBER;
     if (!bounded)

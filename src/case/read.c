@@ -3,6 +3,7 @@
  */
 #include "case/case.h"
 
+#include "case/freedom.h"
 #include "case/motion.h"
 #include "case/override.h"
 #include "case/print.h"
@@ -367,7 +368,8 @@ static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
             err, SF_ERR_INPUT,
             "%s: geometry.missile_parameters are given but no geometry.missile_file that they belong to",
             sf_case_where_is(reader, "geometry.missile_parameters", where));
-    if (check_base(reader, err) != SF_OK || check_direction(reader, err) != SF_OK)
+    if (check_base(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
+        sf_case_check_freedom(reader, err) != SF_OK)
         return err->status;
     return sf_case_check_motion(reader, err);
 }

@@ -294,6 +294,36 @@ static sf_status read_times(sf_case_reader *reader, const sf_key *key, const con
     return SF_OK;
 }
 
+static sf_status read_quantities(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
+                                 char *detail, size_t size, sf_error *err) {
+    double *value = (double *)((char *)reader->out + key->offset);
+    int *count = (int *)((char *)reader->out + key->count_offset), length = 0;
+    char other[24] = "";
+    if (is_sequence(setting))
+        length = config_setting_length(setting);
+    if (key->lengths[1])
+        snprintf(other, sizeof other, " or %d", key->lengths[1]);
+    if (length == 0 || (length != key->lengths[0] && length != key->lengths[1]))
+        return FAIL_AT(reader, key, setting, err, "expected an array of %d%s values, each %s such as \"%s\"",
+                       key->lengths[0], other, sf_quantity_phrase(key->quantity),
+                       sf_quantity_example(key->quantity));
+    for (*count = 0; *count < length; ++*count) {
+        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)*count);
+        const char *text = config_setting_get_string(item);
+        sf_error inner = SF_ERROR_INIT;
+        if (!text)
+            return FAIL_AT(reader, key, setting, err, "item %d is %s; expected %s such as \"%s\"", *count + 1,
+                           type_phrase(item), sf_quantity_phrase(key->quantity),
+                           sf_quantity_example(key->quantity));
+        if (sf_units_parse(reader->units, text, key->quantity, &value[*count], &inner) != SF_OK)
+            return FAIL_AT(reader, key, setting, err, "%s", inner.text);
+        if (check_bounds(reader, key, setting, value[*count], sf_quantity_unit(key->quantity), err) != SF_OK)
+            return err->status;
+    }
+    snprintf(detail, size, "-");
+    return SF_OK;
+}
+
 static sf_status read_vector(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                              char *detail, size_t size, sf_error *err) {
     double *value = (double *)((char *)reader->out + key->offset);
@@ -406,6 +436,8 @@ sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const co
         return read_fields(reader, key, setting, detail, size, err);
     case SF_KEY_TIMES:
         return read_times(reader, key, setting, detail, size, err);
+    case SF_KEY_QUANTITIES:
+        return read_quantities(reader, key, setting, detail, size, err);
     case SF_KEY_VECTOR:
         return read_vector(reader, key, setting, detail, size, err);
     case SF_KEY_PLACE:

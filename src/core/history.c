@@ -41,6 +41,11 @@ double sf_history_lasting(const double *column, int64_t row) {
     return row < 2 ? 0 : fmin(column[row], fmin(column[row - 1], column[row - 2]));
 }
 
+double sf_history_resultant(const sf_history *h, int64_t row) {
+    double x = h->specific_force_x[row], y = h->specific_force_y[row], z = h->specific_force_z[row];
+    return sqrt(x * x + y * y + z * z);
+}
+
 int64_t sf_history_row_of_lasting(const sf_history *h, const double *column) {
     int64_t row = 0;
     for (int64_t i = 1; i < h->rows; i++)

@@ -43,6 +43,27 @@
     X(momentum_error, "1", "momentum_error_1", 1,                                                                      \
       "momentum change minus impulses, over mass x speed or the impulse of contact",                                   \
       "the latter with a prescribed motion, so far")                                                                   \
+    X(translation_x, "m", "translation_x_mm", 1e3, "missile's centre since t = 0, x", "its place then is /model/missile_centre") \
+    X(translation_y, "m", "translation_y_mm", 1e3, "missile's centre since t = 0, y", "") \
+    X(translation_z, "m", "translation_z_mm", 1e3, "missile's centre since t = 0, z", "") \
+    X(quaternion_w, "1", "quaternion_w_1", 1, "orientation of the missile, w", "unit quaternion from its axes to space; 1, 0, 0, 0 of a guided missile") \
+    X(quaternion_x, "1", "quaternion_x_1", 1, "orientation of the missile, x", "") \
+    X(quaternion_y, "1", "quaternion_y_1", 1, "orientation of the missile, y", "") \
+    X(quaternion_z, "1", "quaternion_z_1", 1, "orientation of the missile, z", "") \
+    X(velocity_x, "m s-1", "velocity_x_m_s", 1, "missile's centre, x", "") \
+    X(velocity_y, "m s-1", "velocity_y_m_s", 1, "missile's centre, y", "") \
+    X(velocity_z, "m s-1", "velocity_z_m_s", 1, "missile's centre, z", "") \
+    X(specific_force_x, "m s-2", "specific_force_x_m_s2", 1, "specific force on the missile's centre, x", "as a triaxial accelerometer there reads, in the axes of the geometry; `acceleration` is its part against the direction") \
+    X(specific_force_y, "m s-2", "specific_force_y_m_s2", 1, "specific force on the missile's centre, y", "") \
+    X(specific_force_z, "m s-2", "specific_force_z_m_s2", 1, "specific force on the missile's centre, z", "") \
+    X(angular_velocity_x, "rad s-1", "angular_velocity_x_rad_s", 1, "missile, about x", "0 of a guided missile, like the next ones") \
+    X(angular_velocity_y, "rad s-1", "angular_velocity_y_rad_s", 1, "missile, about y", "") \
+    X(angular_velocity_z, "rad s-1", "angular_velocity_z_rad_s", 1, "missile, about z", "") \
+    X(angular_acceleration_x, "rad s-2", "angular_acceleration_x_rad_s2", 1, "missile, about x", "") \
+    X(angular_acceleration_y, "rad s-2", "angular_acceleration_y_rad_s2", 1, "missile, about y", "") \
+    X(angular_acceleration_z, "rad s-2", "angular_acceleration_z_rad_s2", 1, "missile, about z", "") \
+    X(momentum_error_space, "1", "momentum_error_space_1", 1, "error of the momentum in space, over that of `momentum_error`", "pad, and a free missile, against constraints, anvil and weight") \
+    X(angular_momentum_error, "1", "angular_momentum_error_1", 1, "error of the angular momentum about the origin, over the same x thickness", "") \
     X(largest_compression, "1", "largest_compression_1", 1, "1 - smallest principal stretch of all domains", "")       \
     X(smallest_jacobian, "1", "smallest_jacobian_1", 1, "smallest det F", "of all domains")                            \
     X(contact_nodes, "1", "contact_nodes_1", 1, "points in contact with the missile, modelled part", "")               \
@@ -92,6 +113,9 @@ double sf_history_largest(const sf_history *history, const double *column);
 double sf_history_lasting(const double *column, int64_t row);
 /* First row of the largest such value; 0 without rows. */
 int64_t sf_history_row_of_lasting(const sf_history *history, const double *column);
+
+/* |specific force| on the missile's centre in a row, m s-2. */
+double sf_history_resultant(const sf_history *history, int64_t row);
 
 /* First row of the largest value of a column; 0 without rows. */
 int64_t sf_history_row_of_largest(const sf_history *history, const double *column);

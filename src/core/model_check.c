@@ -99,6 +99,27 @@ static sf_status check_motion(const sf_model *m, sf_error *err) {
                        SF_MOTION_MAX_SPEED, err);
 }
 
+static sf_status check_freedom(const sf_model *m, sf_error *err) {
+    const sf_missile_card *card = &m->missile;
+    double p[3];
+    if (card->freedom == SF_MISSILE_GUIDED)
+        return SF_OK;
+    if (sf_missile_is_driven(m) || m->symmetry_factor != 1)
+        return SF_FAIL(err, SF_ERR_MODEL, "a free missile cannot be driven, nor be 1/%lld of the whole",
+                       (long long)m->symmetry_factor);
+    if (!sf_missile_inertia_is_possible(card->inertia, p))
+        return SF_FAIL(
+            err, SF_ERR_MODEL,
+            "the missile's inertia has the principal moments %g, %g and %g kg m2: no body has them", p[0],
+            p[1], p[2]);
+    for (int c = 0; c < 3; c++)
+        if (check_bound("place of the missile's centre (m)", card->centre[c], -2e3, 2e3, err) != SF_OK ||
+            check_bound("angular velocity of the missile (rad/s)", card->angular_velocity[c], -1e3, 1e3,
+                        err) != SF_OK)
+            return err->status;
+    return SF_OK;
+}
+
 static sf_status check_cards(const sf_model *m, sf_error *err) {
     bool driven = sf_missile_is_driven(m);
     const struct {
@@ -113,6 +134,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"missile clearance (m)", m->missile.clearance, -1e3, 1e3},
         {"knowledge of the impact point", (double)m->missile.impact_known, 0, 1},
         {"missile shape", (double)m->missile.shape, 0, 1},
+        {"missile freedom", (double)m->missile.freedom, 0, 1},
         {"missile sphere radius (m)", m->missile.sphere_radius, m->missile.shape ? 0 : 1e-9, 1e3},
         {"missile sphere cap cosine", m->missile.sphere_cap_cosine, -1 - 1e-9, 1 + 1e-9},
         {"anvil depth (m)", m->anvil.depth, 0, 1e3},
@@ -139,7 +161,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         length += m->missile.direction[c] * m->missile.direction[c];
     if (fabs(length - 1) > 1e-9)
         return SF_FAIL(err, SF_ERR_MODEL, "missile direction has length %g, expected 1", sqrt(length));
-    if (check_motion(m, err) != SF_OK)
+    if (check_motion(m, err) != SF_OK || check_freedom(m, err) != SF_OK)
         return err->status;
     return check_materials(m, err);
 }

@@ -26,6 +26,7 @@ static const struct {
     {"pressure", "Pa", "hkMG"},
     {"pressure", "pascal|pascals|kilopascal|kilopascals|megapascal|megapascals|psi|ksi", ""},
     {"pressure", "bar", "mk"},
+    {"angle", "rad|radian|radians", ""},
 };
 enum { UNITS = sizeof units / sizeof *units, DEEPEST = 4 };
 

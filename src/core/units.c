@@ -27,6 +27,8 @@ static const quantity_info quantities[SF_QUANTITY_COUNT] = {
     [SF_RATE] = {"a rate", "s-1", "5000 1/s"},
     [SF_VISCOSITY] = {"a viscosity", "Pa s", "690 Pa s"},
     [SF_AREA] = {"an area", "m2", "25 cm2"},
+    [SF_INERTIA] = {"a moment of inertia", "kg m2", "0.012 kg m2"},
+    [SF_ANGULAR_VELOCITY] = {"an angular velocity", "rad s-1", "20 rad/s"},
     [SF_FORCE] = {"a force", "N", "2.5 kN"},
 };
 

@@ -26,6 +26,8 @@ typedef enum sf_quantity {
     SF_VISCOSITY,
     SF_FORCE,
     SF_AREA,
+    SF_INERTIA,
+    SF_ANGULAR_VELOCITY, /* last: UDUNITS takes a radian for 1, so that it has the dimension of a rate */
     SF_QUANTITY_COUNT,
 } sf_quantity;
 

@@ -108,24 +108,39 @@ static sf_status cut_cells(sf_cut *cut, sf_error *err) {
     return err->status;
 }
 
+/* The part of a triangle in the plane. */
+static bool cross_triangle(const sf_cut *cut, const double *const corner[3], double segment[2][2]) {
+    int count = 0;
+    for (int k = 0; k < 3; k++) {
+        const double *a = corner[k], *b = corner[(k + 1) % 3];
+        double from = height_over(cut, a), to = height_over(cut, b);
+        if ((from < 0) == (to < 0))
+            continue;
+        double weight = from / (from - to);
+        segment[count][0] = a[0] + weight * (b[0] - a[0]);
+        segment[count++][1] = a[2] + weight * (b[2] - a[2]);
+    }
+    return count == 2;
+}
+
+bool sf_cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t t, double end[2][2]) {
+    const sf_results *r = cut->results;
+    double x[3][3];
+    for (int k = 0; k < 3; k++)
+        sf_results_place(r, head, &r->surface_position[3 * (int64_t)r->surface_triangle[3 * t + k]], x[k]);
+    return cross_triangle(cut, (const double *const[3]){x[0], x[1], x[2]}, end);
+}
+
 static sf_status cut_missile(sf_cut *cut, sf_error *err) {
     const sf_results *r = cut->results;
     cut->missile[0] = INFINITY;
     cut->missile[1] = -INFINITY;
     for (int64_t t = 0; t < r->surface_triangle_count; t++) {
-        double segment[3][2];
-        int count = 0;
-        for (int k = 0; k < 3; k++) {
-            const double *a = &r->surface_position[3 * (int64_t)r->surface_triangle[3 * t + k]];
-            const double *b = &r->surface_position[3 * (int64_t)r->surface_triangle[3 * t + (k + 1) % 3]];
-            double from = height_over(cut, a), to = height_over(cut, b);
-            if ((from < 0) == (to < 0))
-                continue;
-            double weight = from / (from - to);
-            segment[count][0] = a[0] + weight * (b[0] - a[0]);
-            segment[count++][1] = a[2] + weight * (b[2] - a[2]);
-        }
-        if (count != 2)
+        double segment[2][2];
+        const double *corner[3];
+        for (int k = 0; k < 3; k++)
+            corner[k] = &r->surface_position[3 * (int64_t)r->surface_triangle[3 * t + k]];
+        if (!cross_triangle(cut, corner, segment))
             continue;
         void *grown = grow(cut->outline, cut->outline_count, &cut->outline_room, sizeof *cut->outline, err);
         if (!grown)

@@ -47,18 +47,65 @@ static double first_contact(const sf_history *h) {
     return INFINITY;
 }
 
-/* The filtered curve begins with free flight, so that filter and HIC see the onset whole. */
-static sf_status filter(const sf_results *r, double free_flight, sf_figures *f, sf_error *err) {
+/* The filtered curve begins with free flight, at that level, so that filter and HIC see the onset whole. */
+static sf_status filter(const sf_results *r, const sf_series *raw, double free_flight, const sf_figures *f,
+                        sf_series *filtered, sf_error *err) {
     double lead = FREE_FLIGHT - (first_contact(&r->history) - r->history.time[0]);
     sf_series before = {0}, uniform = {0};
-    f->rate = sf_signal_rate(&f->raw);
-    if (lead > 0 && sf_signal_lead_in(&f->raw, lead, free_flight, &before, err) != SF_OK)
+    if (lead > 0 && sf_signal_lead_in(raw, lead, free_flight, &before, err) != SF_OK)
         return err->status;
-    if (sf_signal_resample(lead > 0 ? &before : &f->raw, f->rate, &uniform, err) == SF_OK)
-        sf_signal_filter_cfc(&uniform, f->cfc, &f->filtered, err);
+    if (sf_signal_resample(lead > 0 ? &before : raw, f->rate, &uniform, err) == SF_OK)
+        sf_signal_filter_cfc(&uniform, f->cfc, filtered, err);
     sf_series_free(&before);
     sf_series_free(&uniform);
     return err->status;
+}
+
+/* Three channels, filtered one by one, and their resultant; `flight`: the channels' values in free flight. */
+static sf_status filter_resultant(const sf_results *r, const double *const channel[3], const double flight[3],
+                                  const double shift[3], double unit, const sf_figures *f, sf_series *out,
+                                  sf_error *err) {
+    const sf_history *h = &r->history;
+    sf_series raw = {0};
+    if (sf_series_create(h->rows, &raw, err) != SF_OK)
+        return err->status;
+    memcpy(raw.time, h->time, (size_t)h->rows * sizeof *raw.time);
+    for (int c = 0; c < 3 && err->status == SF_OK; c++) {
+        sf_series one = {0};
+        for (int64_t i = 0; i < h->rows; i++)
+            raw.value[i] = (channel[c][i] + shift[c]) / unit;
+        if (filter(r, &raw, (flight[c] + shift[c]) / unit, f, &one, err) != SF_OK)
+            break;
+        if (c == 0) {
+            *out = one;
+            for (int64_t i = 0; i < out->count; i++)
+                out->value[i] *= out->value[i];
+            continue;
+        }
+        for (int64_t i = 0; i < out->count; i++)
+            out->value[i] += one.value[i] * one.value[i];
+        sf_series_free(&one);
+    }
+    for (int64_t i = 0; i < out->count && err->status == SF_OK; i++)
+        out->value[i] = sqrt(out->value[i]);
+    sf_series_free(&raw);
+    return err->status;
+}
+
+static sf_status compute_resultant(const sf_results *r, sf_figures *f, sf_error *err) {
+    const sf_history *h = &r->history;
+    const double *const channel[3] = {h->specific_force_x, h->specific_force_y, h->specific_force_z};
+    static const double none[3] = {0};
+    double shift[3] = {0};
+    shift[2] = r->kinematic ? r->gravity_along / r->missile_direction[2] : 0;
+    for (int64_t i = 0; i < h->rows; i++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++)
+            square += (channel[c][i] + shift[c]) * (channel[c][i] + shift[c]);
+        f->raw.value[i] = sqrt(square) / SF_STANDARD_GRAVITY;
+    }
+    f->rate = sf_signal_rate(&f->raw);
+    return filter_resultant(r, channel, none, shift, SF_STANDARD_GRAVITY, f, &f->filtered, err);
 }
 
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
@@ -66,11 +113,43 @@ static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *er
     double free_flight = r->kinematic ? -r->gravity_along / SF_STANDARD_GRAVITY : 0;
     if (sf_series_create(h->rows, &f->raw, err) != SF_OK)
         return err->status;
-    for (int64_t i = 0; i < h->rows; i++) {
-        f->raw.time[i] = h->time[i];
+    memcpy(f->raw.time, h->time, (size_t)h->rows * sizeof *f->raw.time);
+    if (r->turns)
+        return compute_resultant(r, f, err);
+    for (int64_t i = 0; i < h->rows; i++)
         f->raw.value[i] = h->acceleration[i] / SF_STANDARD_GRAVITY + free_flight;
+    f->rate = sf_signal_rate(&f->raw);
+    return filter(r, &f->raw, free_flight, f, &f->filtered, err);
+}
+
+/* `known`: the first row is still that of free flight. */
+static sf_status find_peak(const sf_results *r, const double *const channel[3], bool known,
+                           const sf_figures *f, double *peak, double *time, sf_error *err) {
+    static const double none[3] = {0};
+    const double first[3] = {channel[0][0], channel[1][0], channel[2][0]};
+    sf_series curve = {0};
+    if (filter_resultant(r, channel, known ? first : none, none, 1, f, &curve, err) == SF_OK) {
+        int64_t row = 0;
+        for (int64_t i = 1; i < curve.count; i++)
+            row = curve.value[i] > curve.value[row] ? i : row;
+        *peak = curve.value[row];
+        *time = curve.time[row];
     }
-    return filter(r, free_flight, f, err);
+    sf_series_free(&curve);
+    return err->status;
+}
+
+static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *err) {
+    const sf_history *h = &r->history;
+    const double *const acceleration[3] = {h->angular_acceleration_x, h->angular_acceleration_y,
+                                           h->angular_acceleration_z},
+                        *const velocity[3] = {h->angular_velocity_x, h->angular_velocity_y,
+                                              h->angular_velocity_z};
+    f->peak_resultant = f->injury.a_max_g;
+    if (find_peak(r, acceleration, first_contact(h) > h->time[0], f, &f->peak_angular_acceleration,
+                  &f->peak_angular_acceleration_time, err))
+        return err->status;
+    return find_peak(r, velocity, true, f, &f->peak_angular_velocity, &f->peak_angular_velocity_time, err);
 }
 
 /* Rows around the raw peak, without a gap, above half of it. */
@@ -102,13 +181,20 @@ static void compute_rebound(const sf_results *r, sf_figures *f) {
     int64_t last = h->rows - 1;
     while (last > 0 && !(h->contact_nodes[last] > 0))
         last--;
-    if (last == h->rows - 1 || !(h->velocity[last + 1] < 0))
+    if (last == h->rows - 1)
+        return;
+    double upwards = r->turns ? h->velocity_z[last + 1] : -h->velocity[last + 1];
+    if (!(upwards > 0))
         return;
     f->rebounded = true;
-    f->v_rebound = -h->velocity[last + 1];
+    f->v_rebound = upwards;
     f->rebound_time = h->time[last + 1];
     double initial = r->missile_mass * f->v0 * f->v0 / 2;
     f->absorbed_energy = initial - r->missile_mass * f->v_rebound * f->v_rebound / 2;
+    if (r->turns) {
+        initial = h->energy_kinetic_missile[0];
+        f->absorbed_energy = initial - h->energy_kinetic_missile[last + 1];
+    }
     f->absorbed_energy_fraction = f->absorbed_energy / initial;
     double volume = sf_history_largest(h, h->contact_area) * r->thickness;
     if (volume > 0)
@@ -184,6 +270,7 @@ static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
     f->cfc = cfc;
     f->touched = sf_results_touched(r);
     f->driven = r->driven;
+    f->turns = r->turns;
     f->kinematic = r->kinematic;
     f->v0 = f->driven ? NAN : r->missile_speed;
     f->missile_mass = f->driven ? NAN : r->missile_mass;
@@ -201,6 +288,8 @@ sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *
         goto done;
     f->energy_error = sf_history_largest(h, h->energy_error);
     f->momentum_error = sf_history_largest(h, h->momentum_error);
+    f->momentum_error_space = sf_history_largest(h, h->momentum_error_space);
+    f->angular_momentum_error = sf_history_largest(h, h->angular_momentum_error);
     f->constraint_residual = sf_history_largest(h, h->constraint_residual);
     if (!f->touched)
         goto done;
@@ -214,6 +303,8 @@ sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *
     }
     if (sf_injury_evaluate(&f->raw, &f->injury_raw, err) != SF_OK ||
         sf_injury_evaluate(&f->filtered, &f->injury, err) != SF_OK)
+        goto done;
+    if (f->turns && compute_rotation(results, f, err) != SF_OK)
         goto done;
     f->raw_peak_rows = count_peak_rows(&f->raw);
     compute_rebound(results, f);
@@ -231,5 +322,9 @@ void sf_figures_free(sf_figures *figures) {
 }
 
 const char *sf_figures_acceleration(const sf_figures *figures) {
+    if (figures->turns)
+        return figures->kinematic
+                   ? "resultant kinematic acceleration of the centre of mass"
+                   : "resultant acceleration of the centre of mass as an accelerometer reads it";
     return figures->kinematic ? "kinematic deceleration" : "acceleration as an accelerometer reads it";
 }

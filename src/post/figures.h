@@ -35,13 +35,18 @@
     X(INNER, injury_raw.a_max_g, "a_max_raw_g", 1, "largest deceleration of the raw curve")                            \
     X(INNER, injury_raw.hic.value, "hic_raw", 1, "head injury criterion of the raw curve, no limit of the window")     \
     X(COUNT, raw_peak_rows, "a_max_raw_rows", 1, "rows around that peak above half of it: 1 or 2 are an artefact of the time step") \
+    X(NUMBER, peak_resultant, "peak_resultant_g", 1, "largest resultant acceleration of the centre of mass of a free missile, its axes filtered: a_max_g of it; like the next ones undefined of a guided one") \
+    X(NUMBER, peak_angular_acceleration, "peak_angular_acceleration_rad_s2", 1, "largest resultant angular acceleration, its axes filtered") \
+    X(NUMBER, peak_angular_acceleration_time, "peak_angular_acceleration_time_ms", 1e3, "its time") \
+    X(NUMBER, peak_angular_velocity, "peak_angular_velocity_rad_s", 1, "largest resultant angular velocity, its axes filtered") \
+    X(NUMBER, peak_angular_velocity_time, "peak_angular_velocity_time_ms", 1e3, "its time") \
     X(NUMBER, cfc, "cfc", 1, "channel frequency class of the filter")                                                  \
     X(NUMBER, rate, "sampling_rate_Hz", 1, "sampling of the filtered curve")                                           \
     X(NUMBER, v0, "v0_m_s", 1, "speed at contact")                                                                     \
-    X(NUMBER, v_rebound, "v_rebound_m_s", 1, "speed upwards in the first row after contact")                           \
+    X(NUMBER, v_rebound, "v_rebound_m_s", 1, "speed upwards in the first row after contact; of a free missile that of its centre, along z")                           \
     X(NUMBER, rebound_time, "rebound_time_ms", 1e3, "time of that row")                                                \
-    X(NUMBER, absorbed_energy, "absorbed_energy_J", 1, "m (v0^2 - v_rebound^2) / 2")                                   \
-    X(NUMBER, absorbed_energy_fraction, "absorbed_energy_fraction", 1, "that of m v0^2 / 2")                           \
+    X(NUMBER, absorbed_energy, "absorbed_energy_J", 1, "m (v0^2 - v_rebound^2) / 2; of a free missile the loss of its kinetic energy")                                   \
+    X(NUMBER, absorbed_energy_fraction, "absorbed_energy_fraction", 1, "that of m v0^2 / 2; of a free missile of its first kinetic energy")                           \
     X(NUMBER, absorbed_density, "absorbed_energy_per_volume_kJ_m3", 1e-3, "that energy / (largest contact_area x thickness): per unit of pad volume under the missile") \
     X(NUMBER, max_indentation, "max_indentation_mm", 1e3, "largest indentation")                                       \
     X(NUMBER, max_indentation_time, "max_indentation_time_ms", 1e3, "its time")                                        \
@@ -53,8 +58,10 @@
     X(NUMBER, energy_beyond_data, "energy_beyond_data", 1, "share of the foam's energy, at /peak, in nodes compressed beyond `informed_strain`, each by that of its layer") \
     X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F")                                             \
     X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point")                    \
-    X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next two")                    \
+    X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next four")                    \
     X(NUMBER, momentum_error, "momentum_error", 1, "of the momentum balance")                                          \
+    X(NUMBER, momentum_error_space, "momentum_error_space", 1, "of the momentum in space")                             \
+    X(NUMBER, angular_momentum_error, "angular_momentum_error", 1, "of the angular momentum")                          \
     X(NUMBER, constraint_residual, "constraint_residual_m_s", 1, "|G v|")                                              \
     X(NUMBER, internal_energy_peak, "internal_energy_peak_J", 1, "largest stored + hysteresis + viscous + stabilisation") \
     X(NUMBER, internal_energy_peak_time, "internal_energy_peak_time_ms", 1e3, "its time")                              \
@@ -69,6 +76,7 @@
     X(FACT_TEXT, status, "status", 1, "how the run ended: as /summary/status in results.h5")                           \
     X(FLAG, touched, "touched", 1, "the missile touched the pad")                                                      \
     X(FLAG, driven, "prescribed_motion", 1, "the missile's motion was prescribed")                                     \
+    X(FLAG, turns, "free_missile", 1, "the missile had six degrees of freedom: all acceleration figures, HIC too, are of the resultant") \
     X(FLAG, kinematic, "kinematic_acceleration", 1, "the figures are of the kinematic acceleration, not of the reading of an accelerometer") \
     X(FLAG, rebounded, "rebounded", 1, "contact had ended before the last row, upwards")                               \
     X(FACT, contact_time, "contact_time_ms", 1e3, "first contact")                                                     \
@@ -98,8 +106,8 @@
 #define SF_FIGURE_FACT_TEXT(member)
 #define SF_FIGURE_MEMBER(kind, member, ...) SF_FIGURE_##kind(member)
 typedef struct sf_figures {
-    sf_series raw;      /* s, g: the history as it is; owned */
-    sf_series filtered; /* s, g: resampled and CFC filtered; owned */
+    sf_series raw;      /* s, g: the history as it is; of a missile that turns the resultant; owned */
+    sf_series filtered; /* s, g: resampled and CFC filtered, each axis by itself; owned */
     sf_injury injury_raw;
     sf_injury injury;            /* of the filtered curve */
     sf_layer_figures *layers;    /* [results->layer_count] owned; NULL: one material, or no contact */

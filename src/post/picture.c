@@ -124,17 +124,32 @@ static void put_lines(const layout *l, const sf_frame *frame) {
     fputs("\"/>\n", l->svg);
 }
 
+static int64_t outline_count(const layout *l) {
+    const sf_results *r = l->cut->results;
+    return r->turns ? r->surface_triangle_count : l->cut->outline_count;
+}
+
+/* Piece k of the missile's outline in that frame; x and z of both ends. */
+static bool find_outline(const layout *l, const sf_frame_head *head, int64_t k, double end[2][2]) {
+    if (l->cut->results->turns)
+        return sf_cut_triangle(l->cut, head, k, end);
+    for (int e = 0; e < 2; e++)
+        for (int c = 0; c < 2; c++)
+            end[e][c] = l->cut->outline[k][e][c] + head->missile_displacement[2 * c];
+    return true;
+}
+
 static void put_missile(const layout *l, const sf_frame_head *head) {
-    const double *moved = head->missile_displacement;
     fputs("<path fill=\"none\" stroke=\"#101820\" stroke-width=\"1.8\" stroke-linecap=\"round\" d=\"M0 0",
           l->svg);
     for (int side = 0; side <= (int)l->cut->mirrored; side++)
-        for (int64_t k = 0; k < l->cut->outline_count; k++) {
+        for (int64_t k = 0; k < outline_count(l); k++) {
             sf_corner end[2];
-            for (int e = 0; e < 2; e++) {
-                double x = l->cut->outline[k][e][0] + moved[0];
-                end[e] = place(l, side ? 2 * l->cut->axis - x : x, l->cut->outline[k][e][1] + moved[2], 0);
-            }
+            double x[2][2];
+            if (!find_outline(l, head, k, x))
+                continue;
+            for (int e = 0; e < 2; e++)
+                end[e] = place(l, side ? 2 * l->cut->axis - x[e][0] : x[e][0], x[e][1], 0);
             put_path(l->svg, 2, end, false);
         }
     fputs("\"/>\n", l->svg);
@@ -197,9 +212,11 @@ static void lay_out(layout *l, const sf_picture *pictures, int count) {
     double half = fmin(l->style->half_width, fmax(cut->axis - cut->x[0], cut->x[1] - cut->axis));
     double thickness = cut->z[1] - cut->z[0], top = cut->z[1];
     for (int p = 0; p < count; p++)
-        for (int64_t k = 0; k < cut->outline_count; k++)
-            for (int e = 0; e < 2; e++)
-                top = fmax(top, cut->outline[k][e][1] + pictures[p].head->missile_displacement[2]);
+        for (int64_t k = 0; k < outline_count(l); k++) {
+            double x[2][2];
+            if (find_outline(l, pictures[p].head, k, x))
+                top = fmax(top, fmax(x[0][1], x[1][1]));
+        }
     l->x[0] = cut->mirrored ? cut->axis - half : fmax(cut->axis - half, cut->x[0] - 0.02 * half);
     l->x[1] = cut->mirrored ? cut->axis + half : fmin(cut->axis + half, cut->x[1] + 0.02 * half);
     l->z[0] = cut->z[0] - 0.01 * thickness;

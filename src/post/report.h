@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* report.html: one page to hand on, self-contained, usually two sides of A4: verdict, what was dropped on what, the
- * deformed pad at the peak, the mid-section at three instants, curves, figures, material, mesh and where it
- * all comes from. A picture that cannot be made is replaced by the reason. */
+/* report.html: one page to hand on, self-contained, usually two sides of A4: verdict, what was dropped on
+ * what, the deformed pad at the peak, the mid-section at three instants, curves, figures, material, mesh and
+ * where it all comes from. A picture that cannot be made is replaced by the reason. */
 #ifndef SF_POST_REPORT_H
 #define SF_POST_REPORT_H
 

@@ -20,7 +20,8 @@
 typedef struct sf_frame_head {
     char group[24];                 /* "/frames/000012" or "/peak" */
     double time;                    /* s */
-    double missile_displacement[3]; /* m, translation of the surface since t = 0 */
+    double missile_displacement[3]; /* m, translation of its centre since t = 0 */
+    double missile_quaternion[4];   /* its orientation, core/rotation.h */
     double acceleration;            /* m s-2 */
 } sf_frame_head;
 
@@ -73,6 +74,8 @@ typedef struct sf_results {
     double gravity_along;      /* m s-2, acceleration of the missile in free flight, along its direction */
     bool kinematic;            /* figures of the kinematic acceleration; else as an accelerometer reads */
     bool driven;               /* the missile had a prescribed motion; else it was free */
+    bool turns;                /* it had six degrees of freedom */
+    double missile_centre[3];  /* m, its centre of mass at t = 0; 0 unless it turns */
     double missile_direction[3]; /* unit vector, see sf_results_along */
 
     sf_history history; /* its usable rows */
@@ -112,6 +115,8 @@ void sf_frame_free(sf_frame *frame);
 static inline double sf_results_along(const sf_results *results, const double vector[3]) {
     return sf_dot3(vector, results->missile_direction);
 }
+/* Where the missile's point that was at x (m) at t = 0 is in that frame. */
+void sf_results_place(const sf_results *results, const sf_frame_head *head, const double x[3], double out[3]);
 /* Speed of the missile downwards, along -z, at t = 0, m s-1. */
 double sf_results_fall_speed(const sf_results *results);
 /* Modelled parts that make the whole pad: see sf_model_whole. */

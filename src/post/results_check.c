@@ -110,6 +110,10 @@ sf_status sf_results_check_model(const sf_results *r, sf_error *err) {
     if (!(fabs(sf_results_along(r, d) - 1) < 1e-6))
         return SF_FAIL(err, SF_ERR_IO, "/model/missile_direction (%g, %g, %g) is not a unit vector", d[0],
                        d[1], d[2]);
+    if (sf_results_check_finite(r->missile_centre, 3, "/model/missile_centre", err) != SF_OK)
+        return err->status;
+    if (r->turns && (r->driven || r->symmetry_factor != 1))
+        return SF_FAIL(err, SF_ERR_IO, "/model/missile_free is 1 of a driven missile or of a part of one");
     if (check_positive(r->thickness, "/model/thickness", err) != SF_OK ||
         check_positive(r->density, "/model/density", err) != SF_OK)
         return err->status;

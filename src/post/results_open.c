@@ -2,6 +2,7 @@
 /* sf_results_open and sf_frame_read (post/results.h). */
 #include "post/results.h"
 
+#include "core/rotation.h"
 #include "io/provenance.h"
 #include "io/seal.h"
 #include "core/model.h"
@@ -14,6 +15,15 @@
 
 double sf_results_fall_speed(const sf_results *r) {
     return -r->missile_speed * r->missile_direction[2];
+}
+
+void sf_results_place(const sf_results *r, const sf_frame_head *head, const double x[3], double out[3]) {
+    double arm[3];
+    for (int k = 0; k < 3; k++)
+        arm[k] = x[k] - r->missile_centre[k];
+    sf_rotate(head->missile_quaternion, arm, out);
+    for (int k = 0; k < 3; k++)
+        out[k] = (r->turns ? out[k] + r->missile_centre[k] : x[k]) + head->missile_displacement[k];
 }
 
 double sf_results_whole(const sf_results *r) {
@@ -54,14 +64,18 @@ static sf_status read_integer(const sf_results *r, const char *path, int64_t *va
     return SF_OK;
 }
 
-static sf_status read_vector(const sf_results *r, const char *path, double vector[3], sf_error *err) {
-    int64_t three = 3;
+static sf_status read_numbers(const sf_results *r, const char *path, int64_t count, double *numbers,
+                              sf_error *err) {
     double *data = NULL;
-    if (read_array(r, path, SF_H5_F64, &three, 1, &data, err) != SF_OK)
+    if (read_array(r, path, SF_H5_F64, &count, 1, &data, err) != SF_OK)
         return err->status;
-    memcpy(vector, data, 3 * sizeof *vector);
+    memcpy(numbers, data, (size_t)count * sizeof *numbers);
     free(data);
     return SF_OK;
+}
+
+static sf_status read_vector(const sf_results *r, const char *path, double vector[3], sf_error *err) {
+    return read_numbers(r, path, 3, vector, err);
 }
 
 /* NaN: the law of the mesh error does not apply. */
@@ -176,7 +190,10 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/model/gravity_along", &r->gravity_along, err) != SF_OK ||
         read_flag(r, "/model/kinematic", &r->kinematic, err) != SF_OK ||
-        read_flag(r, "/model/missile_driven", &r->driven, err) != SF_OK || read_mesh_error(r, err) != SF_OK ||
+        read_flag(r, "/model/missile_driven", &r->driven, err) != SF_OK ||
+        read_flag(r, "/model/missile_free", &r->turns, err) != SF_OK ||
+        read_vector(r, "/model/missile_centre", r->missile_centre, err) != SF_OK ||
+        read_mesh_error(r, err) != SF_OK ||
         read_optional(r, "/model/informed_strain", &r->informed_strain, err) != SF_OK ||
         read_optional(r, "/model/impact_x", &r->impact_x, err) != SF_OK ||
         read_optional(r, "/model/impact_y", &r->impact_y, err) != SF_OK ||
@@ -256,7 +273,12 @@ static sf_status read_head(const sf_results *r, sf_frame_head *head, sf_error *e
     snprintf(path, sizeof path, "%s/missile_displacement", head->group);
     if (read_vector(r, path, head->missile_displacement, err) != SF_OK)
         return err->status;
-    const double *u = head->missile_displacement;
+    snprintf(path, sizeof path, "%s/missile_quaternion", head->group);
+    if (read_numbers(r, path, 4, head->missile_quaternion, err) != SF_OK)
+        return err->status;
+    const double *u = head->missile_displacement, *q = head->missile_quaternion;
+    if (!(fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6))
+        return SF_FAIL(err, SF_ERR_IO, "%s: its missile_quaternion is not of unit length", head->group);
     if (!isfinite(head->time) || !isfinite(head->acceleration) || !isfinite(u[0] + u[1] + u[2]))
         return SF_FAIL(err, SF_ERR_IO, "%s: its time, acceleration or missile_displacement is not finite",
                        head->group);

@@ -182,6 +182,11 @@ static const report_line drop_lines[] = {
     {"absorbed_energy_fraction", "absorbed energy", 100, 1, "%", NULL, NULL},
     {NULL, NULL, 0, 0, NULL, NULL, NULL},
 };
+static const report_line rotation_lines[] = {
+    {"peak_angular_acceleration_rad_s2", "angular acceleration", 1, 1, "rad/s2", NULL, NULL},
+    {"peak_angular_velocity_rad_s", "angular velocity", 1, 2, "rad/s", NULL, NULL},
+    {NULL, NULL, 0, 0, NULL, NULL, NULL},
+};
 static const report_line compression_lines[] = {
     {"peak_force_N", "largest force", 1, 2, "N", NULL, NULL},
     {"peak_stress_kPa", "  over mean section", 1, 2, "kPa", NULL, NULL},
@@ -265,9 +270,12 @@ static void print_comparison(FILE *out, const char *path, const sf_comparison *c
 
 static void print_drop(FILE *out, const sf_summary *s) {
     const sf_figures *f = s->figures;
-    fprintf(out, "Drop of %.4g kg at %.4g m/s on %.4g mm (CFC %.0f%s)\n", s->results->missile_mass, f->v0,
-            s->results->thickness * 1e3, f->cfc, f->kinematic ? ", kinematic acceleration" : "");
+    fprintf(out, "Drop of %.4g kg at %.4g m/s on %.4g mm (CFC %.0f%s%s)\n", s->results->missile_mass, f->v0,
+            s->results->thickness * 1e3, f->cfc, f->kinematic ? ", kinematic acceleration" : "",
+            f->turns ? ", free missile: a_max, HIC and all that follows of the resultant" : "");
     print_lines(out, s, drop_lines);
+    if (f->turns)
+        print_lines(out, s, rotation_lines);
 }
 
 static void print_compression(FILE *out, const sf_summary *s) {

@@ -34,15 +34,27 @@ static sf_status write_topology(sf_h5 *file, const sf_results *r, sf_error *err)
     return err->status;
 }
 
-/* `count` positions moved by `field` ([count][3], or NULL) and `shift`. */
-static sf_status write_positions(sf_h5 *file, const sf_h5_info *info, int64_t count, const double *position,
-                                 const double *field, const double shift[3], sf_error *err) {
-    int64_t dims[2] = {count, 3};
-    double *moved = sf_alloc(err, (unsigned long)(3 * count), sizeof *moved, info->description);
+static sf_status write_pad(sf_h5 *file, const sf_h5_info *info, const sf_results *r,
+                           const double *displacement, sf_error *err) {
+    int64_t dims[2] = {r->node_count, 3};
+    double *moved = sf_alloc(err, 3 * (unsigned long)r->node_count, sizeof *moved, info->description);
     if (!moved)
         return err->status;
-    for (int64_t i = 0; i < 3 * count; i++)
-        moved[i] = position[i] + (field ? field[i] : 0) + shift[i % 3];
+    for (int64_t i = 0; i < 3 * r->node_count; i++)
+        moved[i] = r->position[i] + (displacement ? displacement[i] : 0);
+    sf_h5_write(file, info, SF_H5_F64, 2, dims, moved, err);
+    free(moved);
+    return err->status;
+}
+
+static sf_status write_missile(sf_h5 *file, const sf_h5_info *info, const sf_results *r,
+                               const sf_frame_head *head, sf_error *err) {
+    int64_t dims[2] = {r->surface_node_count, 3};
+    double *moved = sf_alloc(err, 3 * (unsigned long)r->surface_node_count, sizeof *moved, info->description);
+    if (!moved)
+        return err->status;
+    for (int64_t i = 0; i < r->surface_node_count; i++)
+        sf_results_place(r, head, &r->surface_position[3 * i], &moved[3 * i]);
     sf_h5_write(file, info, SF_H5_F64, 2, dims, moved, err);
     free(moved);
     return err->status;
@@ -50,17 +62,14 @@ static sf_status write_positions(sf_h5 *file, const sf_h5_info *info, int64_t co
 
 static sf_status write_frame_data(sf_h5 *file, const sf_results *r, const sf_frame_head *head,
                                   const sf_frame *frame, int64_t index, sf_error *err) {
-    const double still[3] = {0, 0, 0};
     char path[96];
     snprintf(path, sizeof path, "/frames/%06lld/pad_position", (long long)index);
     sf_h5_info pad = {path, "m", "positions of the pad's nodes, deformed"};
-    if (write_positions(file, &pad, r->node_count, r->position, frame->field[SF_FRAME_DISPLACEMENT], still,
-                        err))
+    if (write_pad(file, &pad, r, frame->field[SF_FRAME_DISPLACEMENT], err))
         return err->status;
     snprintf(path, sizeof path, "/frames/%06lld/missile_position", (long long)index);
     sf_h5_info missile = {path, "m", "positions of the missile's surface nodes"};
-    if (write_positions(file, &missile, r->surface_node_count, r->surface_position, NULL,
-                        head->missile_displacement, err) != SF_OK)
+    if (write_missile(file, &missile, r, head, err) != SF_OK)
         return err->status;
     for (int f = 0; f < SF_FRAME_FIELDS; f++) {
         const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);

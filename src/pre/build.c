@@ -9,6 +9,7 @@
 #include "pre/cloud/connectivity.h"
 #include "pre/cloud/domains.h"
 #include "pre/drop_check.h"
+#include "pre/missile_body.h"
 #include "pre/cloud/dual.h"
 #include "pre/cloud/group_check.h"
 #include "pre/cloud/layers.h"
@@ -378,21 +379,35 @@ static double find_clearance(const sf_model *m) {
     return lowest[2] - high;
 }
 
+/* A half or quarter of a missile would be held by its planes. */
+static sf_status check_freedom(const sf_case *c, const sf_model *m, sf_error *err) {
+    if (c->freedom == SF_MISSILE_GUIDED || m->symmetry_factor == 1)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "missile.freedom: a free missile needs the whole pad and the whole missile; this model is "
+                   "1/%lld of them",
+                   (long long)m->symmetry_factor);
+}
+
 /* Places the missile `gap` away from first contact and moves its surface into the model. */
 static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
     double distance = 0, impact[3];
     m->missile = c->missile_card;
-    if (sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
+    if (check_freedom(c, m, err) != SF_OK || sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
         sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
         sf_impact_place(c, m, surface, &m->missile, err) != SF_OK ||
+        sf_missile_take_body(c, surface, &m->missile, err) != SF_OK ||
         sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
                             err) != SF_OK)
         return err->status;
     double travel = distance - m->missile.gap;
     for (int64_t k = 0; k < 3 * surface->node_count; k++)
         surface->position[k] += travel * m->missile.direction[k % 3];
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++) {
         m->missile.sphere_centre[k] += travel * m->missile.direction[k];
+        if (sf_missile_turns(m))
+            m->missile.centre[k] += travel * m->missile.direction[k];
+    }
     m->surface_node_count = surface->node_count;
     m->surface_triangle_count = surface->triangle_count;
     m->surface_position = surface->position;

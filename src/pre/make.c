@@ -26,6 +26,8 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
     if (session && sf_gmsh_load(session, &c->pad, err) == SF_OK && read_pad(session, c, mesh, err) == SF_OK &&
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK))
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
+    if (err->status == SF_OK && c->freedom == SF_MISSILE_FREE)
+        sf_gmsh_read_hull(session, c->surface_group, c->length_unit, surface, err);
     free(c->geometry_files);
     c->geometry_files = NULL;
     if (err->status == SF_OK && !(c->geometry_files = strdup(sf_gmsh_files(session))))

@@ -42,6 +42,15 @@ static void print_impact(FILE *out, const sf_model *m) {
             speed * speed / (2 * SF_STANDARD_GRAVITY));
 }
 
+static void print_body(FILE *out, const sf_model *m) {
+    const sf_missile_card *card = &m->missile;
+    double p[3];
+    sf_missile_inertia_is_possible(card->inertia, p);
+    fprintf(out, "%-26scentre of mass (%.5g, %.5g, %.5g) mm, principal moments %.5g, %.5g, %.5g kg cm2\n",
+            "missile, free", 1e3 * card->centre[0], 1e3 * card->centre[1], 1e3 * card->centre[2], 1e4 * p[0],
+            1e4 * p[1], 1e4 * p[2]);
+}
+
 static void print_motion(FILE *out, const sf_model *m) {
     const sf_motion_range range = sf_motion_measure(m);
     fprintf(out, "%-26sprescribed motion of %lld points to %.4g ms, to %.4g mm, at most %.4g m/s\n",
@@ -92,6 +101,8 @@ static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r)
         print_motion(out, m);
     else
         print_impact(out, m);
+    if (sf_missile_turns(m))
+        print_body(out, m);
     if (m->missile.shape == SF_SHAPE_SPHERE)
         fprintf(out, "%-26sexact sphere cap, radius %.5g mm\n", "missile contact",
                 1e3 * m->missile.sphere_radius);

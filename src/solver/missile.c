@@ -59,7 +59,7 @@ void sf_missile_begin(const sf_model *m, sf_missile *missile) {
     memset(missile, 0, sizeof *missile);
     missile->velocity = sf_missile_is_driven(m) ? sf_motion_velocity(m, 0) : m->missile.speed;
     missile->velocity_now = missile->velocity;
-    missile->contact_time = missile->release_time = NAN;
+    missile->contact_time = missile->release_time = missile->rim_time = NAN;
     missile->quaternion[0] = 1;
     if (sf_missile_turns(m))
         begin_turning(m, missile);
@@ -330,7 +330,18 @@ void sf_missile_apply(const sf_model *m, sf_missile *missile, const double x[3],
     }
 }
 
-void sf_missile_touch(sf_missile *missile, double time) {
+/* Has it turned so far that the rim of its spherical cap is lower than the cap? */
+static bool rim_leads(const sf_model *m, const sf_missile *missile) {
+    double down[3];
+    if (!sf_missile_turns(m) || m->missile.shape != SF_SHAPE_SPHERE)
+        return false;
+    sf_rotate_back(missile->quaternion, (const double[3]){0, 0, -1}, down);
+    return sf_dot3(down, m->missile.direction) < m->missile.sphere_cap_cosine;
+}
+
+void sf_missile_touch(const sf_model *m, sf_missile *missile, double time) {
+    if (isnan(missile->rim_time) && rim_leads(m, missile))
+        missile->rim_time = time;
     if (isnan(missile->contact_time))
         missile->contact_time = time;
     missile->release_time = time;
@@ -451,7 +462,7 @@ void sf_missile_outside(const sf_model *m, const sf_missile *missile, double for
 
 double sf_missile_gravity_work(const sf_model *m, const sf_missile *missile) {
     if (sf_missile_turns(m))
-        return -sf_missile_mass(m) * m->missile.gravity * missile->translation[2];
+        return 0 - sf_missile_mass(m) * m->missile.gravity * missile->translation[2]; /* not -0 */
     return sf_missile_weight(m) * missile->displacement;
 }
 

@@ -41,6 +41,7 @@
     X(double, turn, [3], "1", "its change in the last step, sf_rotation_advance")                                      \
     X(double, spin, [3], "kg m2 s-1", "angular momentum about the centre at the half step")                            \
     X(double, spin_now, [3], "kg m2 s-1", "at `time`")                                                                 \
+    X(double, rim_time, , "s", "first contact with the rim of its spherical cap lowest; NaN before") \
     X(double, radius, , "m", "largest distance of its surface from the centre")                                        \
     X(double, lowest, , "m", "height z of its lowest point at t = 0")
 /* clang-format on */
@@ -132,7 +133,7 @@ void sf_missile_clear(sf_missile *missile);
 void sf_missile_apply(const sf_model *model, sf_missile *missile, const double x[3], const double n[3],
                       const double force[3]);
 /* Records contact at `time`. */
-void sf_missile_touch(sf_missile *missile, double time);
+void sf_missile_touch(const sf_model *model, sf_missile *missile, double time);
 /* Acceleration by gravity and the forces applied. */
 void sf_missile_accelerate(const sf_model *model, sf_missile *missile);
 /* The velocities at `time` and at the half step after it; dt and dt_old as above. */

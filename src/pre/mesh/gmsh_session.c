@@ -426,15 +426,32 @@ done:
     return err->status;
 }
 
+/* Nodes, cells and the faces of the missile's group. */
+static sf_status read_missile(const sf_gmsh *session, const char *surface_group, sf_raw_mesh *raw,
+                              sf_error *err) {
+    const sf_geo_group *found = NULL;
+    if (find_group(session, 2, surface_group, &found, err) == SF_OK &&
+        check_groups(session, 2, err) == SF_OK && read_nodes(session, raw, err) == SF_OK &&
+        read_cells(session, NULL, 0, raw, err) == SF_OK)
+        read_faces(session, found, raw, err);
+    return err->status;
+}
+
 sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                                sf_error *err) {
     sf_raw_mesh raw = {0};
-    const sf_geo_group *found = NULL;
     memset(surface, 0, sizeof *surface);
-    if (find_group(session, 2, surface_group, &found, err) == SF_OK &&
-        check_groups(session, 2, err) == SF_OK && read_nodes(session, &raw, err) == SF_OK &&
-        read_cells(session, NULL, 0, &raw, err) == SF_OK && read_faces(session, found, &raw, err) == SF_OK)
+    if (read_missile(session, surface_group, &raw, err) == SF_OK)
         sf_surface_assemble(&raw, unit, surface, err);
+    sf_raw_mesh_free(&raw);
+    return err->status;
+}
+
+sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
+                            sf_error *err) {
+    sf_raw_mesh raw = {0};
+    if (read_missile(session, surface_group, &raw, err) == SF_OK)
+        sf_hull_assemble(&raw, unit, surface, err);
     sf_raw_mesh_free(&raw);
     return err->status;
 }

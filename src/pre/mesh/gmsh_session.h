@@ -47,6 +47,10 @@ sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, d
 sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                                sf_error *err);
 
+/* Adds to the surface that was read last the hull of the cells behind it. */
+sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
+                            sf_error *err);
+
 /* The version of gmsh that meshed the last geometry, for example "4.8.4", or "4.8.4 (unconfined)"; valid as
  * long as the session. */
 const char *sf_gmsh_version(const sf_gmsh *session);

@@ -23,6 +23,8 @@ void sf_surface_free(sf_surface *surface) {
     free(surface->position);
     free(surface->triangle);
     free(surface->solid);
+    free(surface->hull_position);
+    free(surface->hull_triangle);
     memset(surface, 0, sizeof *surface);
 }
 

@@ -36,6 +36,14 @@ typedef struct sf_surface {
     int64_t triangle_count;
     int32_t *triangle; /* [triangle_count][3] turned outwards (away from the missile's volume) */
     uint8_t *solid;    /* [triangle_count] 1: a cell of the missile lies behind it; NULL: none */
+
+    /* The outer surface of the cells behind it, if it was asked for (sf_gmsh_read_hull) and there are any;
+     * some nodes are inside. */
+    int64_t hull_node_count, hull_triangle_count;
+    double *hull_position;  /* [hull_node_count][3] m */
+    int32_t *hull_triangle; /* [hull_triangle_count][3] turned outwards */
+
+    double origin[3]; /* m, where the first node of the surface was as read: it may be moved since */
 } sf_surface;
 
 void sf_mesh_free(sf_mesh *mesh);

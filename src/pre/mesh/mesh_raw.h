@@ -58,4 +58,8 @@ sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_m
  */
 sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err);
 
+/* Adds the hull to a surface that was assembled from the same mesh: of all cells that are joined through
+ * faces to one behind it. Without cells there is none. */
+sf_status sf_hull_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err);
+
 #endif

@@ -185,6 +185,8 @@ static sf_status write_surface(const surface_builder *b, const uint8_t *reverse,
             *solid++ = b->known[f];
         }
     }
+    if (err->status == SF_OK && surface->node_count > 0)
+        memcpy(surface->origin, surface->position, sizeof surface->origin);
     free(number);
     return err->status;
 }

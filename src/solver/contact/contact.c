@@ -277,7 +277,7 @@ static void apply_forces(const sf_model *m, sf_state *s, int64_t active) {
                 s->force[3 * (int64_t)m->phi_node[k] + r] += m->phi_value[k] * q[r];
     }
     if (s->contact_count > 0)
-        sf_missile_touch(&s->missile, s->time);
+        sf_missile_touch(m, &s->missile, s->time);
 }
 
 void sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s) {

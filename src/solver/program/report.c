@@ -50,7 +50,7 @@ void sf_solve_print_ledger(const sf_model *m, const sf_state *s, const sf_run *r
             "largest specific force %.2f g at %.3f ms, largest local compression %.4f, speed upwards at the "
             "end %.3f m/s\n",
             x->peak_value / SF_STANDARD_GRAVITY, 1e3 * x->peak_time, x->largest_compression,
-            fmax(0, -s->missile.velocity_now));
+            fmax(0, sf_missile_turns(m) ? s->missile.rate_now[2] : -s->missile.velocity_now));
     sf_run_tell(m, s, x, &sink);
     const sf_good_run *good = sf_good_run_limits();
     if (l->largest_error > good->energy_error || fabs(x->stabilisation_share) > good->stabilisation ||

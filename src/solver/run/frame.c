@@ -167,7 +167,7 @@ static sf_status write_layers(const sf_model *m, const sf_operators *op, const s
 /* The data of a frame beside its fields. */
 static sf_status write_head(const sf_model *m, const sf_state *s, const char *path, sf_h5 *file,
                             sf_error *err) {
-    const int64_t three = 3;
+    const int64_t three = 3, four = 4;
     double acceleration = sf_missile_reading(m, &s->missile), displacement[3], reaction[3];
     sf_missile_translation(m, &s->missile, displacement);
     for (int c = 0; c < 3; c++)
@@ -176,8 +176,10 @@ static sf_status write_head(const sf_model *m, const sf_state *s, const char *pa
         write_item(file, path, "acceleration", "m s-2",
                    "specific force on the missile, against its direction of motion", 0, NULL, &acceleration,
                    err) != SF_OK ||
-        write_item(file, path, "missile_displacement", "m", "translation of the missile since t = 0", 1,
-                   &three, displacement, err) != SF_OK)
+        write_item(file, path, "missile_displacement", "m", "translation of the missile's centre since t = 0",
+                   1, &three, displacement, err) != SF_OK ||
+        write_item(file, path, "missile_quaternion", "1", "orientation of the missile, w, x, y, z", 1, &four,
+                   s->missile.quaternion, err) != SF_OK)
         return err->status;
     return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three, reaction,
                       err);

@@ -23,6 +23,13 @@ void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, con
     if (s->contact_unsettled > 0)
         sf_sink_tell(sink, SF_WARNING, "the contact forces of %lld steps did not settle to the last digits",
                      (long long)s->contact_unsettled);
+    if (!isnan(s->missile.rim_time))
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "at %.4g ms the missile had turned so far that the rim of its spherical cap was lowest: beyond "
+            "the rim there is no contact; give missile.group its whole surface, and missile.shape = "
+            "\"surface\"",
+            1e3 * s->missile.rim_time);
     if (isnan(s->missile.contact_time))
         sf_sink_tell(sink, SF_WARNING, "the missile never touched the pad");
 }

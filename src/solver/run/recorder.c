@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/recorder.h"
 
+#include "core/mat3.h"
 #include "io/members.h"
 #include <stddef.h>
 #include <string.h>
@@ -18,8 +19,26 @@ void sf_recorder_free(sf_recorder *r) {
 }
 
 double sf_recorder_measure(const sf_model *m, const sf_state *s) {
-    return sf_missile_is_driven(m) ? sf_model_whole(m) * sf_missile_contact_force(m, &s->missile)
-                                   : sf_missile_reading(m, &s->missile);
+    if (sf_missile_is_driven(m))
+        return sf_model_whole(m) * sf_missile_contact_force(m, &s->missile);
+    if (!sf_missile_turns(m))
+        return sf_missile_reading(m, &s->missile);
+    const double *force = s->missile.force;
+    return sqrt(sf_dot3(force, force)) / m->missile.mass;
+}
+
+/* The least of the last three rows, as sf_history_lasting. */
+static double lasting_resultant(const sf_history *h) {
+    double least = INFINITY;
+    for (int64_t i = h->rows - 3; i < h->rows; i++)
+        least = fmin(least, i < 0 ? 0 : sf_history_resultant(h, i));
+    return least;
+}
+
+static double lasting_value(const sf_model *m, const sf_history *h) {
+    if (sf_missile_turns(m))
+        return lasting_resultant(h);
+    return sf_history_lasting(sf_missile_is_driven(m) ? h->contact_force : h->acceleration, h->rows - 1);
 }
 
 sf_extremes sf_recorder_extremes(const sf_recorder *r) {
@@ -46,8 +65,7 @@ sf_status sf_recorder_add(sf_recorder *r, const sf_model *m, const sf_state *s, 
     sf_history *h = &r->history;
     if (sf_history_add(h, m, s, err) != SF_OK)
         return err->status;
-    double value =
-        sf_history_lasting(sf_missile_is_driven(m) ? h->contact_force : h->acceleration, h->rows - 1);
+    double value = lasting_value(m, h);
     if (value > r->peak_value) {
         r->peak_value = value;
         r->peak_time = s->time;

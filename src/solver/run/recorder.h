@@ -48,8 +48,8 @@ sf_extremes sf_recorder_extremes(const sf_recorder *recorder);
 void sf_recorder_begin(sf_recorder *recorder);
 void sf_recorder_free(sf_recorder *recorder);
 
-/* The quantity whose peak is recorded: deceleration, m s-2, or the contact force, N, on a missile whose
- * motion is prescribed. */
+/* The quantity whose peak is recorded: deceleration, m s-2; of a missile that turns the resultant specific
+ * force on its centre; or the contact force, N, on a missile whose motion is prescribed. */
 double sf_recorder_measure(const sf_model *model, const sf_state *state);
 
 /* Adds the state after sf_step_evaluate: a row of history, the peak. */

@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
-    int64_t driven = sf_missile_is_driven(m);
+    int64_t driven = sf_missile_is_driven(m), turns = sf_missile_turns(m);
     const double unknown = NAN, *impact = m->missile.impact_known ? m->missile.impact : NULL;
     const double informed = sf_model_informed_strain(m);
     const double gravity = sf_missile_free_fall(m), density = sf_model_density(m);
@@ -82,6 +82,17 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
          0,
          {0},
          &driven},
+        {{"/model/missile_free", "1",
+          "1: the missile had six degrees of freedom, 0: it was guided or driven"},
+         SF_H5_I64,
+         0,
+         {0},
+         &turns},
+        {{"/model/missile_centre", "m", "centre of mass at t = 0; of a free missile"},
+         SF_H5_F64,
+         1,
+         {3, 0},
+         m->missile.centre},
         {{"/model/gravity_along", "m s-2", "acceleration of the missile in free flight, along its direction"},
          SF_H5_F64,
          0,
