@@ -42,7 +42,7 @@ static void print_impact(FILE *out, const sf_model *m) {
             speed * speed / (2 * SF_STANDARD_GRAVITY));
 }
 
-static void print_body(FILE *out, const sf_model *m) {
+static void print_freedom(FILE *out, const sf_model *m) {
     const sf_missile_card *card = &m->missile;
     double p[3];
     sf_missile_inertia_is_possible(card->inertia, p);
@@ -102,7 +102,7 @@ static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r)
     else
         print_impact(out, m);
     if (sf_missile_turns(m))
-        print_body(out, m);
+        print_freedom(out, m);
     if (m->missile.shape == SF_SHAPE_SPHERE)
         fprintf(out, "%-26sexact sphere cap, radius %.5g mm\n", "missile contact",
                 1e3 * m->missile.sphere_radius);
