@@ -117,6 +117,18 @@ static void threads_and_restarts_leave_every_bit(void **state) {
     assert_same_figures(p, "again");
 }
 
+static void large_slips_are_noted(void **state) {
+    const program_place *p = *state;
+    program_succeed(
+        p, "pre", "examples/layers/case.cfg -o slip.m.h5 %s --set pad.sliding_interfaces='[\"cover/upper\"]'",
+        COARSE);
+    program_succeed(p, "solve", "slip.m.h5 -o slip.h5 --threads 1 --no-checkpoint");
+    program_succeed(p, "post", "slip.h5 -o slip");
+    assert_int_equal(program_shell(p, "grep -q 'layers slide on each other by up to' slip/summary.json").code,
+                     0);
+    assert_int_equal(program_shell(p, "grep -q 'layers slide' out/summary.json").code, 1);
+}
+
 /* A file may stand in place of a layer's group, and a single layer is a pad of one material. */
 static void layers_read_like_the_one_material(void **state) {
     const program_place *p = *state;
@@ -223,6 +235,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(summary_tells_strain_and_energy_by_layer),
         cmocka_unit_test(threads_and_restarts_leave_every_bit),
+        cmocka_unit_test(large_slips_are_noted),
         cmocka_unit_test(layers_read_like_the_one_material),
         cmocka_unit_test(layers_that_cannot_be_meant_are_refused),
         cmocka_unit_test(layers_that_do_not_share_faces_are_refused),

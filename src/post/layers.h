@@ -42,4 +42,8 @@ const sf_layer_figure *sf_layer_figure_list(size_t *count);
 sf_layer_figures *sf_layer_figures_compute(const sf_results *results, const double *compression,
                                            const double *energy_density, sf_error *err);
 
+/* Notes by how much layers slide on each other at the peak, if that is more than 2 % of the thickness: their
+ * ties hold along the undeformed normal, which is right for small slips. */
+sf_status sf_layers_note_slip(sf_results *results, sf_error *err);
+
 #endif

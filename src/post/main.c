@@ -4,6 +4,7 @@
 #include "core/decimal.h"
 #include "core/program.h"
 #include "io/provenance.h"
+#include "post/layers.h"
 #include "post/compare.h"
 #include "post/csv.h"
 #include "post/figures.h"
@@ -299,6 +300,7 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     static const char *const known[] = {"pad.xdmf", "history.csv", "report.html", "summary.json", NULL};
     if (sf_staging_check(o->directory, known, o->force, err) != SF_OK || /* the rest when it is known */
         sf_results_open(o->results_path, &j->results, err) != SF_OK ||
+        sf_layers_note_slip(&j->results, err) != SF_OK ||
         sf_figures_compute(&j->results, o->cfc, &j->figures, err) != SF_OK)
         return err->status;
     if (o->comparing && j->figures.driven)
