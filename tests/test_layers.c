@@ -205,6 +205,47 @@ static void sliding_steps_hold_each_other_along_their_faces(void **state) {
     fixture_free(&f);
 }
 
+/* The sentence about a block of two layers that slide, held by its group `held`. */
+static sf_error refusal_of(const fixture_block *block, layering layer, const char *held) {
+    sf_error err = SF_ERROR_INIT;
+    sf_case c;
+    sf_mesh mesh;
+    sf_surface surface;
+    sf_model m;
+    sf_build_report report;
+    fixture_block_mesh(block, &mesh);
+    layers_assign(block, layer, &mesh);
+    fixture_case(&c, NULL);
+    fixture_hold(&c, (const char *const[]){held, NULL});
+    layers_make(&c, 2);
+    c.interface_count = 1;
+    c.interface_layer[0][0] = 1;
+    fixture_plate(1, 0, 0, &surface);
+    if (sf_model_build(&c, &mesh, &surface, &m, &report, NULL, &err) == SF_OK)
+        sf_hold_check(&report.hold, &m, &err);
+    sf_model_free(&m);
+    sf_surface_free(&surface);
+    sf_mesh_free(&mesh);
+    sf_case_free(&c);
+    return err;
+}
+
+static int right(const double x[3]) {
+    return x[0] > 3;
+}
+
+static void sliding_interfaces_that_cannot_be_held_are_refused(void **state) {
+    const fixture_block even = {.cells = {6, 5, 5}, .spacing = 0.01};
+    (void)state;
+    sf_error bent = refusal_of(&JITTERED, flat, "base");
+    assert_int_equal(bent.status, SF_ERR_INPUT);
+    assert_non_null(strstr(bent.text, "the interface of \"A\" and \"B\" at ("));
+    assert_non_null(strstr(bent.text, "is not normal to x, y or z"));
+    sf_error loose = refusal_of(&even, right, "plane_x");
+    assert_int_equal(loose.status, SF_ERR_INPUT);
+    assert_non_null(strstr(loose.text, "nothing keeps the layer \"B\" from being lifted or tilted"));
+}
+
 /* ---- series compression ---- */
 
 static double stress_of(const sf_material *material, double strain) {
@@ -477,6 +518,7 @@ int main(void) {
         cmocka_unit_test(without_ties_the_patch_test_fails),
         cmocka_unit_test(sliding_layers_are_free_along_their_interface_and_tied_across_it),
         cmocka_unit_test(sliding_steps_hold_each_other_along_their_faces),
+        cmocka_unit_test(sliding_interfaces_that_cannot_be_held_are_refused),
         cmocka_unit_test(strains_of_a_stack_jump_at_its_interface),
         cmocka_unit_test(waves_are_reflected_and_transmitted_at_an_impedance_step),
         cmocka_unit_test(stack_of_equal_layers_gives_the_drop_of_one),
