@@ -20,10 +20,13 @@
 
 static const double G = SF_STANDARD_GRAVITY;
 
+typedef enum symmetry { WHOLE, HALF, QUARTER } symmetry; /* HALF: the plane x = 0 */
+
 typedef struct resting {
     double friction;
     double gap; /* m, of the missile */
-    bool quarter, linear;
+    symmetry symmetry;
+    bool linear;
     double across; /* m, of the missile's place from the middle, x */
     int layers;
     double speed; /* m/s, of the missile; 0: as in the example */
@@ -46,14 +49,13 @@ static void start(fixture *f, const resting *r) {
         c.missile_card.speed = r->speed;
     if (r->linear)
         fixture_make_linear(&c);
-    if (r->quarter) {
-        const char *const planes[] = {"plane_x", "plane_y"};
-        for (; c.symmetry_count < 2; c.symmetry_count++)
-            snprintf(c.symmetry_group[c.symmetry_count], SF_CASE_NAME_SIZE, "%s", planes[c.symmetry_count]);
-        c.missile_card.mass = 2;
-    }
+    static const char *const planes[] = {"plane_x", "plane_y"};
+    for (; c.symmetry_count < (int)r->symmetry; c.symmetry_count++)
+        snprintf(c.symmetry_group[c.symmetry_count], SF_CASE_NAME_SIZE, "%s", planes[c.symmetry_count]);
+    c.missile_card.mass *= 1 << r->symmetry;
     fixture_block_mesh(&block, &mesh);
-    fixture_dome(0.02, 8, r->quarter ? 0 : 0.025 + r->across, r->quarter ? 0 : 0.02, &surface);
+    fixture_dome(0.02, 8, r->symmetry >= HALF ? 0 : 0.025 + r->across, r->symmetry == QUARTER ? 0 : 0.02,
+                 &surface);
     fixture_build(&c, &mesh, &surface, f);
     fixture_start(f);
 }
@@ -96,16 +98,17 @@ static void advance(fixture *f) {
 
 static void the_loads_carry_the_weight_below_its_centre(void **state) {
     (void)state;
-    for (int quarter = 0; quarter < 2; quarter++) {
+    static const symmetry kinds[] = {WHOLE, HALF, QUARTER};
+    for (size_t k = 0; k < 3; k++) {
         fixture f;
-        start(&f, &(resting){.gap = 1, .quarter = quarter});
+        start(&f, &(resting){.gap = 1, .symmetry = kinds[k]});
         const sf_model *m = &f.model;
         double sum = 0, moment[2] = {0}, mass = 0, first[2] = {0};
-        for (int64_t k = 0; k < m->rest_count; k++) {
-            assert_true(m->rest_load[k] > 0);
-            sum += m->rest_load[k];
+        for (int64_t c = 0; c < m->rest_count; c++) {
+            assert_true(m->rest_load[c] > 0);
+            sum += m->rest_load[c];
             for (int r = 0; r < 2; r++)
-                moment[r] += m->rest_load[k] * m->position[3 * (int64_t)m->rest_node[k] + r];
+                moment[r] += m->rest_load[c] * m->position[3 * (int64_t)m->rest_node[c] + r];
         }
         for (int64_t i = 0; i < m->node_count; i++) {
             mass += m->mass[i];
@@ -113,7 +116,7 @@ static void the_loads_carry_the_weight_below_its_centre(void **state) {
                 first[r] += m->mass[i] * m->position[3 * i + r];
         }
         assert_relative(sum, G * mass, 1e-13);
-        for (int r = 0; r < 2 && !quarter; r++)
+        for (int r = kinds[k] == HALF; r < 2 && kinds[k] != QUARTER; r++) /* x = 0 carries that along x */
             assert_relative(moment[r], G * first[r], 1e-12);
         assert_int_equal(m->rest_count, 6 * 5);
         assert_relative(m->anvil.depth, 0.03, 1e-12);
@@ -124,9 +127,10 @@ static void the_loads_carry_the_weight_below_its_centre(void **state) {
 /* The bound is 3e-10 of the settlement, g rho H^2 / 2 E = 0.37 um: rounding. */
 static void a_resting_block_keeps_still(void **state) {
     (void)state;
-    for (int quarter = 0; quarter < 2; quarter++) {
+    static const symmetry kinds[] = {WHOLE, HALF, QUARTER};
+    for (size_t k = 0; k < 3; k++) {
         fixture f;
-        start(&f, &(resting){.gap = 1, .friction = quarter ? 0 : 0.5, .quarter = quarter});
+        start(&f, &(resting){.gap = 1, .friction = k ? 0 : 0.5, .symmetry = kinds[k]});
         double weight = G * pad_mass(&f.model);
         while (f.state.time < 0.02) {
             fixture_step(&f);

@@ -16,8 +16,10 @@ cd "$folder"
 "$bin/softfall-pre" -o l.h5 --set 'geometry.parameters={side=50.0; zone_side=50.0; lower=25.0; upper=25.0; cover=25.0; fine_spacing=25.0; quarter=1;}' \
     --set pad.mesh_error_limit=10 --set 'pad.sliding_interfaces=["cover/upper"]' --set 'solver.end_time=0.1 ms' examples/layers/case.cfg >/dev/null 2>&1
 "$bin/softfall-solve" l.h5 -o lr.h5 -t 1 --no-checkpoint >/dev/null 2>&1
+"$bin/softfall-pre" -o rest.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.1 ms' --set pad.base=resting examples/compression/case.cfg >/dev/null
 cp m.h5 "$corpus/model/cube.h5"
 cp l.h5 "$corpus/model/layers.h5"
 cp lr.h5 "$corpus/results/layers.h5"
 cp h.h5 "$corpus/model/hyperfoam.h5"
+cp rest.h5 "$corpus/model/resting.h5"
 cp r.h5 "$corpus/results/cube.h5"

@@ -119,6 +119,7 @@ static void study_rocking(sf_study *study) {
     fixture f;
     int64_t fewest = 1000;
     double lift = 0, momentum = 0, vector = 0, angular = 0;
+    FILE *data = sf_study_file(study, "rocking.txt");
     start(&f, 0.3, 0, 0.5, 0.018);
     while (f.state.time < 0.15) {
         fixture_step(&f);
@@ -126,15 +127,28 @@ static void study_rocking(sf_study *study) {
         vector = larger(vector, f.state.ledger.vector_error);
         angular = larger(angular, f.state.ledger.angular_error);
         fewest = f.state.anvil_count < fewest ? f.state.anvil_count : fewest;
-        sf_step_advance(&f.model, &f.state);
+        double high = 0;
         for (int64_t c = f.model.contact_count; c < sf_model_points(&f.model); c++)
-            lift = larger(lift, f.state.contact_position[3 * c + 2]);
+            high = larger(high, f.state.contact_position[3 * c + 2]);
+        lift = larger(lift, high);
+        if (data)
+            fprintf(data, "%.6g %.6g %.6g %lld\n", 1e3 * f.state.time, 1e3 * high, f.state.anvil_force[2],
+                    (long long)f.state.anvil_count);
+        sf_step_advance(&f.model, &f.state);
     }
+    if (data)
+        fclose(data);
     sf_study_text(
         study,
         "\nA drop 18 mm off the middle tips the block: %lld of its %lld base nodes stay on the anvil, and "
         "it lifts off by %.2f mm.\n\n",
         (long long)fewest, (long long)f.model.rest_count, 1e3 * lift);
+    sf_study_plot(study, "rocking.png",
+                  "Rocking block: height of its highest base node, nodes on the anvil, anvil's force",
+                  "set xlabel 'time (ms)'\nset multiplot layout 3,1\nset ylabel 'height (mm)'\n"
+                  "plot 'base-rocking.txt' using 1:2 with lines lw 2 notitle\nset ylabel 'nodes'\n"
+                  "plot '' using 1:4 with lines lw 2 notitle\nset ylabel 'force (N)'\n"
+                  "plot '' using 1:3 with lines lw 2 notitle\nunset multiplot");
     sf_study_check(study, momentum, 0, 1e-6,
                    "momentum of missile and pad with the anvil's impulse, vertical");
     sf_study_check(study, vector, 0, 1e-6, "in space");

@@ -140,7 +140,8 @@ SOFTFALL_API void softfall_drop_free(softfall_drop *drop);
 
 /* Advances the drop by one step; the first computes the state at t = 0. `ending` (may be NULL) tells whether
  * the drop has ended with it; further steps of an ended drop change nothing. After a failure the history up
- * to the last good step can still be read, and further steps return the same failure. */
+ * to the last good step can still be read, and further steps return the same failure. A missile that reaches
+ * the anvil is a failure, too; the history has that step. */
 SOFTFALL_API softfall_status softfall_drop_step(softfall_drop *drop, softfall_ending *ending,
                                                 softfall_error *error);
 
