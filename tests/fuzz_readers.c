@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fuzz_readers.h"
+#include "solver/material/law.h"
 
 #include "cfh/rig.h"
 #include "core/curve.h"
@@ -33,17 +34,21 @@ static const char *in_folder(const char *name) {
 
 /* ---- the readers ---- */
 
+/* As the solver does with every model. */
+static void build_law(const sf_material *material) {
+    sf_material_law law;
+    sf_error flat = SF_ERROR_INIT;
+    if (material->law && sf_material_law_build(material, &law, &flat) == SF_OK)
+        sf_material_law_free(&law);
+}
+
 static sf_status read_case(const char *path, sf_error *err) {
     sf_case c;
     if (sf_case_read(path, 0, NULL, NULL, &c, err) != SF_OK)
         return err->status;
-    for (int64_t k = 0; k < sf_foam_card_of(&c.material)->curve_count;
-         k++) { /* as the solver does with every model */
-        sf_curve curve;
-        sf_error flat = SF_ERROR_INIT;
-        if (sf_curve_build(sf_foam_card_of(&c.material), k, &curve, &flat) == SF_OK)
-            sf_curve_free(&curve);
-    }
+    build_law(&c.material);
+    for (int k = 0; k < c.layer_count; k++)
+        build_law(&c.layer[k]);
     sf_case_free(&c);
     return SF_OK;
 }
