@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-order="exactness wave mms material time_step contact layers base calculix hyperfoam mesh sensitivity reproducibility identification identification_drop"
+order="exactness wave mms material time_step contact layers base missile calculix hyperfoam mesh sensitivity reproducibility identification identification_drop"
 build=${BUILD_DIR:-build}
 sections=docs/images/verification
 ran=no
