@@ -18,10 +18,20 @@ enum { MAX_DROPS = 8 };
 typedef struct setting {
     double speed; /* m s-1, of the case */
     double mass;  /* kg */
-    /* -, strain where the shortest compression table ends or the densification law begins */
+    /* -, strain where the shortest compression table ends or the densification law begins, of all layers */
     double table_end;
     char *text, *parameters; /* of the case; owned */
 } setting;
+
+/* Of layers the least. */
+static double table_end_of(const sf_case *c) {
+    double least = 1;
+    if (c->layer_count == 0)
+        return c->material.law->data_end(c->material.card);
+    for (int k = 0; k < c->layer_count; k++)
+        least = fmin(least, c->layer[k].law->data_end(c->layer[k].card));
+    return least;
+}
 
 static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *err) {
     sf_case c;
@@ -37,8 +47,7 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
     for (int k = 0; k < o->override_count; k++)
         list[count++] = o->overrides[k];
     if (sf_case_read(o->case_path, count, list, &sink, &c, err) == SF_OK) {
-        *out = (setting){c.missile_card.speed, c.missile_card.mass, c.material.law->data_end(c.material.card),
-                         c.text, c.parameters};
+        *out = (setting){c.missile_card.speed, c.missile_card.mass, table_end_of(&c), c.text, c.parameters};
         c.text = c.parameters = NULL; /* moved */
         if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_FAIL(err, SF_ERR_INPUT,
