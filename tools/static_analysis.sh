@@ -3,7 +3,7 @@
 # Runs gcc -fanalyzer, clang-tidy (.clang-tidy) and cppcheck over src/.   tools/static_analysis.sh [BUILD] [TOOL...]
 # Prints every finding that tools/static_analysis.txt does not explain, and fails if there is one; reports explanations
 # that are no longer needed. BUILD (default build) is a configured folder; TOOLs: gcc, clang-tidy, cppcheck (default: all).
-set -euo pipefail
+set -Eeuo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${1:-build}
 shift || true
@@ -21,7 +21,7 @@ run_gcc() {
     local file
     for file in $(find src -name "*.c" | sort); do
         # shellcheck disable=SC2046 # words are wanted
-        gcc -std=c17 -O2 -D_GNU_SOURCE -Isrc -I"$build/generated" $(pkg-config --cflags hdf5 gsl libconfig) \
+        gcc -std=c17 -O2 -D_GNU_SOURCE -Isrc -Iinclude -I"$build/generated" $(pkg-config --cflags hdf5 gsl libconfig) \
             -I/usr/include/suitesparse -fopenmp -fanalyzer -c "$file" -o /dev/null
     done 2>&1 | sed -nE 's/^([^ :]+):[0-9]+:[0-9]+: warning: .*\[-W(analyzer-[a-z-]+)\]$/gcc \1 \2/p'
 }
@@ -37,7 +37,7 @@ run_clang-tidy() {
 }
 
 run_cppcheck() {
-    cppcheck --std=c11 --language=c --enable=warning,performance,portability -D_GNU_SOURCE -I src -I "$build/generated" -q \
+    cppcheck --std=c11 --language=c --enable=warning,performance,portability -D_GNU_SOURCE -I src -I include -I "$build/generated" -q \
         --template='cppcheck {file} {id}' src 2>&1 | grep '^cppcheck ' || true
 }
 
