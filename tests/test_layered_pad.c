@@ -249,6 +249,43 @@ static void layers_that_do_not_share_faces_are_refused(void **state) {
     }
 }
 
+/* Three blocks whose seams meet under the missile, on a coarse mesh with copies of unlike mass: contact gives
+ * no energy, and no copy escapes it. */
+static void contact_on_seams_gives_no_energy(void **state) {
+    const program_place *p = *state;
+    static const char *const words[] = {"", "--set pad.base=resting --set missile.friction=0.5",
+                                        "--set materials.front=@examples/layers/hard_foam.cfg"};
+    program_write_text(p, "geo/seams.geo",
+                       "SetFactory(\"OpenCASCADE\");\nBox(1) = {-100, -100, 0, 100, 200, 50};\n"
+                       "Box(2) = {0, -100, 0, 100, 100, 50};\nBox(3) = {0, 0, 0, 100, 100, 50};\n"
+                       "v() = BooleanFragments{ Volume{1}; Delete; }{ Volume{2, 3}; Delete; };\n"
+                       "Physical Volume(\"left\") = Volume In BoundingBox{-101, -101, -1, 1, 101, 51};\n"
+                       "Physical Volume(\"front\") = Volume In BoundingBox{-1, -101, -1, 101, 1, 51};\n"
+                       "Physical Volume(\"back\") = Volume In BoundingBox{-1, -1, -1, 101, 101, 51};\n"
+                       "Physical Surface(\"base\") = Surface In BoundingBox{-101, -101, -1, 101, 101, 1};\n"
+                       "Physical Surface(\"top\") = Surface In BoundingBox{-101, -101, 49, 101, 101, 51};\n"
+                       "Mesh.MeshSizeMin = 25;\nMesh.MeshSizeMax = 25;\n");
+    program_write_text(
+        p, "examples/layers/seams.cfg",
+        "geometry: { file = \"../../geo/seams.geo\"; missile_file = \"../../geo/hemisphere.geo\"; length_unit = "
+        "\"mm\"; missile_parameters = { diameter = 160.0; element_size = 15.0; quarter = 0; }; };\n"
+        "pad: { mesh_error_limit = 10.0; };\nmissile: { mass = \"4.6 kg\"; velocity = \"3.5 m/s\"; };\n"
+        "solver: { end_time = \"40 ms\"; };\nmaterials: {\n"
+        "left: {\n@include \"../materials/eva35.cfg\"\n};\n"
+        "front: {\n@include \"../materials/eva35.cfg\"\n};\n"
+        "back: {\n@include \"../materials/eva35.cfg\"\n};\n};\n");
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
+        program_succeed(p, "pre", "examples/layers/seams.cfg -o seams.m.h5 --force %s", words[k]);
+        program_succeed(p, "solve", "seams.m.h5 -o seams.h5 --threads 1 --no-checkpoint --force");
+        program_succeed(p, "post", "seams.h5 -o seams --force");
+        program_bytes summary = program_read_file(program_path(p, "seams/summary.json"));
+        assert_true(figure_of(summary.data, "contact_energy_fraction", 0) > -1e-4);
+        assert_close(figure_of(summary.data, "energy_error", 0), 0, 1e-4);
+        assert_close(figure_of(summary.data, "max_penetration_mm", 0), 0, 0.02);
+        free(summary.data);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(summary_tells_strain_and_energy_by_layer),
@@ -258,6 +295,7 @@ int main(void) {
         cmocka_unit_test(layers_read_like_the_one_material),
         cmocka_unit_test(layers_that_cannot_be_meant_are_refused),
         cmocka_unit_test(layers_that_do_not_share_faces_are_refused),
+        cmocka_unit_test(contact_on_seams_gives_no_energy),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

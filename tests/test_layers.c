@@ -397,6 +397,7 @@ static void waves_are_reflected_and_transmitted_at_an_impedance_step(void **stat
 typedef struct drop {
     double peak, severity; /* m s-2; integral of (a/g)^2.5, s */
     double energy_error, momentum_error, residual, penetration;
+    double least_contact; /* of the impact energy, the lowest energy lost in contact */
     int64_t nodes;
 } drop;
 
@@ -413,17 +414,19 @@ static void run_drop(fixture *f, drop *out) {
         out->momentum_error = larger(out->momentum_error, fabs(s->ledger.momentum_error));
         out->residual = larger(out->residual, s->constraint_residual);
         out->penetration = larger(out->penetration, s->penetration);
+        out->least_contact = smaller(out->least_contact, s->ledger.contact / s->ledger.reference);
         sf_step_advance(m, s);
     }
     out->energy_error = s->ledger.largest_error;
     print_message("%lld nodes: a_max %.3f g, severity %.4f s, energy %.1e, momentum %.1e, |G v| %.1e m/s, "
-                  "penetration %.1e m\n",
+                  "penetration %.1e m, contact %.1e\n",
                   (long long)out->nodes, out->peak / 9.80665, out->severity, out->energy_error,
-                  out->momentum_error, out->residual, out->penetration);
+                  out->momentum_error, out->residual, out->penetration, out->least_contact);
 }
 
 /* A quarter of a pad of 160 x 160 x 60 mm under the hemisphere. `layer` NULL: one material. */
-static void build_drop(layering layer, int count, const double *factor, int sliding, fixture *f) {
+static void build_drop_on(int base, layering layer, int count, const double *factor, int sliding,
+                          fixture *f) {
     const fixture_block block = {.cells = {8, 8, 6}, .spacing = 0.01};
     sf_case c;
     sf_mesh mesh;
@@ -431,6 +434,7 @@ static void build_drop(layering layer, int count, const double *factor, int slid
     fixture_block_mesh(&block, &mesh);
     fixture_case(&c, NULL);
     fixture_hold(&c, (const char *const[]){"base", NULL});
+    c.base_rule = base;
     for (c.symmetry_count = 0; c.symmetry_count < 2; c.symmetry_count++)
         snprintf(c.symmetry_group[c.symmetry_count], SF_CASE_NAME_SIZE, "plane_%c", 'x' + c.symmetry_count);
     if (layer) {
@@ -451,11 +455,16 @@ static void build_drop(layering layer, int count, const double *factor, int slid
     fixture_build(&c, &mesh, &surface, f);
 }
 
+static void build_drop(layering layer, int count, const double *factor, int sliding, fixture *f) {
+    build_drop_on(SF_BASE_GLUED, layer, count, factor, sliding, f);
+}
+
 static void assert_balanced(const drop *d) {
     assert_close(d->energy_error, 0, 2e-4);
     assert_close(d->momentum_error, 0, 1e-12);
     assert_close(d->residual, 0, 1e-11);
     assert_close(d->penetration, 0, 2e-5);
+    assert_true(d->least_contact > -1e-4);
 }
 
 static const double EQUAL[] = {1, 1, 1}, STIFFENING[] = {3, 1, 4};
@@ -509,6 +518,27 @@ static void drops_on_layers_keep_energy_and_momentum(void **state) {
     }
 }
 
+/* Missile and anvil act on the copies of a seam as on one point: neither side of it runs away from them, and
+ * the contact gives no energy. */
+static void contact_on_a_seam_is_that_of_one_pad(void **state) {
+    static const int bases[] = {SF_BASE_GLUED, SF_BASE_RESTING};
+    static const double frictions[] = {0, 0.5};
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        fixture f;
+        drop d[2];
+        for (int parts = 1; parts <= 2; parts++) {
+            build_drop_on(bases[k / 2], parts == 2 ? beside : NULL, parts, EQUAL, 0, &f);
+            f.model.missile.friction = f.model.anvil.friction = frictions[k % 2];
+            run_drop(&f, &d[parts - 1]);
+            fixture_free(&f);
+        }
+        assert_balanced(&d[1]);
+        assert_close(d[1].penetration, 0, 5e-6);
+        assert_close(d[1].peak / d[0].peak, 1, 0.003);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_list_reaches_across_an_interface),
@@ -523,6 +553,7 @@ int main(void) {
         cmocka_unit_test(waves_are_reflected_and_transmitted_at_an_impedance_step),
         cmocka_unit_test(stack_of_equal_layers_gives_the_drop_of_one),
         cmocka_unit_test(drops_on_layers_keep_energy_and_momentum),
+        cmocka_unit_test(contact_on_a_seam_is_that_of_one_pad),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

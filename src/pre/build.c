@@ -263,8 +263,8 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
     return SF_OK;
 }
 
-/* Nodes of several layers at one place that are tied altogether move together: the heaviest of them is the
- * contact point of all. */
+/* Nodes of several layers at one place that are tied altogether move together: the heaviest of them
+ * stands for all as the contact point (solver/contact/contact_rows.h). */
 static int32_t contact_point(const sf_layers *layers, const sf_model *m, int32_t node) {
     int32_t origin = layers->origin[node], best = node;
     for (int64_t k = layers->copy_ptr[origin]; k < layers->copy_ptr[origin + 1]; k++) {

@@ -28,7 +28,9 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
     if (owned)
         sf_model_drop_edges(owned);
     if (sf_constraint_build(m, &op->constraint, err) != SF_OK ||
-        sf_contact_gram_build(m, &op->gram, err) != SF_OK || sf_anvil_build(m, &op->anvil, err) != SF_OK)
+        sf_contact_rows_build(m, &op->rows, err) != SF_OK ||
+        sf_contact_gram_build(m, &op->rows, &op->gram, err) != SF_OK ||
+        sf_anvil_build(m, &op->rows, &op->anvil, err) != SF_OK)
         return err->status;
     return sf_missile_surface_build(m, sf_missile_direction(m), &op->surface, err);
 }
@@ -51,6 +53,7 @@ void sf_operators_free(sf_operators *op) {
     free(op->law);
     sf_halo_free(&op->halo);
     sf_constraint_free(&op->constraint);
+    sf_contact_rows_free(&op->rows);
     sf_contact_gram_free(&op->gram);
     sf_anvil_free(&op->anvil);
     sf_missile_surface_free(&op->surface);

@@ -23,6 +23,7 @@ typedef struct sf_operators {
     sf_pairs pairs;
 
     sf_constraint constraint;
+    sf_contact_rows rows;
     sf_contact_gram gram;
     sf_anvil anvil;
     sf_missile_surface surface;

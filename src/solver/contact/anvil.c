@@ -5,21 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* load [node_count] += phi^T q0. */
-static void add_loads(const sf_model *m, double *load) {
+/* load [node_count] += Phi^T q0. */
+static void add_loads(const sf_model *m, const sf_contact_rows *rows, double *load) {
     for (int64_t c = 0; c < m->rest_count; c++)
-        for (int64_t k = m->phi_ptr[m->rest_node[c]]; k < m->phi_ptr[m->rest_node[c] + 1]; k++)
-            load[m->phi_node[k]] += m->phi_value[k] * m->rest_load[c];
+        for (int64_t k = rows->ptr[m->contact_count + c]; k < rows->ptr[m->contact_count + c + 1]; k++)
+            load[rows->node[k]] += rows->value[k] * m->rest_load[c];
 }
 
-sf_status sf_anvil_build(const sf_model *m, sf_anvil *anvil, sf_error *err) {
+sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvil *anvil, sf_error *err) {
     int64_t count = 0;
     memset(anvil, 0, sizeof *anvil);
     if (m->rest_count == 0)
         return SF_OK;
     double *load = sf_alloc(err, (unsigned long)m->node_count, sizeof *load, "weight of the pad");
     if (load)
-        add_loads(m, load);
+        add_loads(m, rows, load);
     for (int64_t i = 0; load && i < m->node_count; i++)
         count += load[i] != 0;
     anvil->node = sf_alloc(err, (unsigned long)count, sizeof *anvil->node, "weight of the pad");

@@ -4,12 +4,13 @@
  *
  * At t = 0 the pad has settled: the anvil's loads q0 (sf_model.rest_load) carry its weight. The reference
  * configuration is that state, so that weight and the stress that it causes act on the coefficients with the
- * sum -phi^T q0, a constant. */
+ * sum -Phi^T q0, a constant. */
 #ifndef SF_SOLVER_CONTACT_ANVIL_H
 #define SF_SOLVER_CONTACT_ANVIL_H
 
 #include "core/error.h"
 #include "core/model.h"
+#include "solver/contact/contact_rows.h"
 
 typedef struct sf_anvil {
     int64_t count;     /* nodes that the weight acts on; 0: the pad is held */
@@ -17,7 +18,7 @@ typedef struct sf_anvil {
     double (*pull)[3]; /* [count] N, constant */
 } sf_anvil;
 
-sf_status sf_anvil_build(const sf_model *model, sf_anvil *anvil, sf_error *err);
+sf_status sf_anvil_build(const sf_model *model, const sf_contact_rows *rows, sf_anvil *anvil, sf_error *err);
 void sf_anvil_free(sf_anvil *anvil);
 
 /* Adds the pull to force [node_count][3], N. */

@@ -56,15 +56,15 @@ static void list_near(const sf_model *m, const sf_operators *op, sf_state *s) {
 }
 
 /* Positions now and predicted without contact forces, by u_h. */
-static void predict_points(const sf_model *m, sf_state *s, double dt_v) {
-#pragma omp parallel for if (s->contact_near_count > SF_FEW_POINTS) default(none) shared(m, s, dt_v)         \
+static void predict_points(const sf_model *m, const sf_contact_rows *rows, sf_state *s, double dt_v) {
+#pragma omp parallel for if (s->contact_near_count > SF_FEW_POINTS) default(none) shared(m, rows, s, dt_v)   \
     schedule(static)
     for (int64_t near = 0; near < s->contact_near_count; near++) {
         int64_t c = s->contact_near[near], node = sf_model_point_node(m, c);
         double now[3] = {0}, step[3] = {0};
-        for (int64_t k = m->phi_ptr[node]; k < m->phi_ptr[node + 1]; k++) {
-            int64_t i = m->phi_node[k];
-            double phi = m->phi_value[k], inverse = dt_v / m->mass[i];
+        for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++) {
+            int64_t i = rows->node[k];
+            double phi = rows->value[k], inverse = dt_v / m->mass[i];
             for (int r = 0; r < 3; r++) {
                 now[r] += phi * s->d[3 * i + r];
                 step[r] += phi * (s->v[3 * i + r] + inverse * (s->force[3 * i + r] - s->reaction[3 * i + r]));
@@ -261,20 +261,20 @@ static void apply_to_partner(const sf_model *m, sf_state *s, int64_t c) {
         s->anvil_force[r] += q[r];
 }
 
-/* phi^T q to the coefficients' forces; resultants to missile and anvil. */
-static void apply_forces(const sf_model *m, sf_state *s, int64_t active) {
+/* Phi^T q to the coefficients' forces; resultants to missile and anvil. */
+static void apply_forces(const sf_model *m, const sf_contact_rows *rows, sf_state *s, int64_t active) {
     sf_missile_clear(&s->missile);
     s->contact_count = s->anvil_count = 0;
     memset(s->anvil_force, 0, sizeof s->anvil_force);
     for (int64_t a = 0; a < active; a++) {
-        int64_t c = s->contact_active[a], node = sf_model_point_node(m, c);
+        int64_t c = s->contact_active[a];
         const double *q = &s->contact_force[3 * c], *n = &s->contact_normal[3 * c];
         if (!(sf_dot3(q, n) > 0))
             continue;
         apply_to_partner(m, s, c);
-        for (int64_t k = m->phi_ptr[node]; k < m->phi_ptr[node + 1]; k++)
+        for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++)
             for (int r = 0; r < 3; r++)
-                s->force[3 * (int64_t)m->phi_node[k] + r] += m->phi_value[k] * q[r];
+                s->force[3 * (int64_t)rows->node[k] + r] += rows->value[k] * q[r];
     }
     if (s->contact_count > 0)
         sf_missile_touch(m, &s->missile, s->time);
@@ -287,13 +287,13 @@ void sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s) {
     w.response[ANVIL].direction = m->missile.direction;
     sf_anvil_pull(&op->anvil, s->force);
     bool all = use_room(m, op, s);
-    predict_points(m, s, dt_v);
+    predict_points(m, &op->rows, s, dt_v);
     if (all)
         list_near(m, op, s);
     int64_t active = find_active(m, op, s, &w);
     start_forces(m, s, active, &w);
     relax(m, op, s, active, &w);
     book_work(m, s, &w);
-    apply_forces(m, s, active);
+    apply_forces(m, &op->rows, s, active);
     sf_missile_accelerate(m, &s->missile);
 }

@@ -15,7 +15,7 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* Finds the contact forces of this step, adds them and a resting pad's weight to state->force (with phi^T)
+/* Finds the contact forces of this step, adds them and a resting pad's weight to state->force (with Phi^T)
  * and to missile and anvil, and adds the work lost since the last step to the ledger. Needs force without
  * contact, reaction of the last step, dt and dt_old. */
 void sf_contact_solve(const sf_model *model, const sf_operators *operators, sf_state *state);

@@ -7,18 +7,20 @@
 
 #include "core/error.h"
 #include "core/model.h"
+#include "solver/contact/contact_rows.h"
 
 typedef struct sf_contact_gram {
     int64_t *ptr;     /* [contacts + 1] */
     int32_t *index;   /* [..] contact point, ascending within a row */
     double *value;    /* [..] kg-1 */
     double *diagonal; /* [contacts] kg-1 */
-    double spread;    /* -, largest sum |phi| of a contact point: no point is faster than this times the
+    double spread;    /* -, largest sum |Phi| of a contact point: no point is faster than this times the
                          fastest coefficient */
     double spacing;   /* m, smallest of the missile's contact points */
 } sf_contact_gram;
 
-sf_status sf_contact_gram_build(const sf_model *model, sf_contact_gram *gram, sf_error *err);
+sf_status sf_contact_gram_build(const sf_model *model, const sf_contact_rows *rows, sf_contact_gram *gram,
+                                sf_error *err);
 void sf_contact_gram_free(sf_contact_gram *gram);
 
 #endif
