@@ -234,6 +234,21 @@ static int right(const double x[3]) {
     return x[0] > 3;
 }
 
+/* Two parts of A with B between them; the second does not reach the plane x = 0. */
+static int parted(const double x[3]) {
+    return !(x[1] < 1 || (x[1] > 4 && x[0] > 1));
+}
+
+/* B is held, and so is one part of A. */
+static void loose_part_of_a_layer_is_refused(void **state) {
+    const fixture_block even = {.cells = {6, 5, 5}, .spacing = 0.01};
+    (void)state;
+    sf_error loose = refusal_of(&even, parted, "plane_x");
+    assert_int_equal(loose.status, SF_ERR_INPUT);
+    assert_non_null(strstr(loose.text, "nothing keeps the part of the layer \"A\" about (35, 45, 25) mm"));
+    assert_int_equal(refusal_of(&even, parted, "base").status, SF_OK);
+}
+
 static void sliding_interfaces_that_cannot_be_held_are_refused(void **state) {
     const fixture_block even = {.cells = {6, 5, 5}, .spacing = 0.01};
     (void)state;
@@ -548,6 +563,7 @@ int main(void) {
         cmocka_unit_test(without_ties_the_patch_test_fails),
         cmocka_unit_test(sliding_layers_are_free_along_their_interface_and_tied_across_it),
         cmocka_unit_test(sliding_steps_hold_each_other_along_their_faces),
+        cmocka_unit_test(loose_part_of_a_layer_is_refused),
         cmocka_unit_test(sliding_interfaces_that_cannot_be_held_are_refused),
         cmocka_unit_test(strains_of_a_stack_jump_at_its_interface),
         cmocka_unit_test(waves_are_reflected_and_transmitted_at_an_impedance_step),

@@ -1,14 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/hold.h"
 
+#include "pre/bodies.h"
 #include <gsl/gsl_eigen.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { MOTIONS = 6 }; /* of each layer: along x, y, z, about x, y, z */
+enum {
+    MOTIONS = 6, /* of each part: along x, y, z, about x, y, z */
+    MOST_BODIES = 200,
+};
 
-static const double FREE = 1e-9; /* of the mean square of what is held: a motion that moves no held node */
-static const double PART = 1e-6; /* of a motion: none */
+static const double FREE =
+    1e-9; /* of the mean square of what holds a part: a motion that moves no held node */
+static const double PART = 1e-6;      /* of a motion: none */
 static const double UNDERSIDE = 1e-3; /* of the thickness */
 
 /* Middle and half size of the pad. */
@@ -25,7 +31,7 @@ static void find_box(const sf_model *m, double middle[3], double *size) {
     }
 }
 
-/* Displacement of the place r along axis c in each rigid motion of one layer. */
+/* Displacement of the place r along axis c in each rigid motion of one part. */
 static void motion_row(const double r[3], int c, double row[MOTIONS]) {
     int next = (c + 1) % 3, last = (c + 2) % 3;
     memset(row, 0, MOTIONS * sizeof *row);
@@ -34,63 +40,114 @@ static void motion_row(const double r[3], int c, double row[MOTIONS]) {
     row[3 + last] = -r[next];
 }
 
-/* Adds the square of what is forbidden: the displacement of one node, less that of another (-1: none) at the
- * same place, along axis c. */
-static void add_row(const sf_model *m, const double r[3], int c, int32_t node, int32_t other,
-                    gsl_matrix *sum) {
-    double row[MOTIONS], weight = 1 / fmax(1, (double)(m->fixed_count + m->rest_count));
-    const int32_t nodes[2] = {node, other};
+/* The sum of squares of what is forbidden. */
+typedef struct holder {
+    const sf_model *model;
+    const sf_bodies *bodies;
+    double middle[3], size;
+    gsl_matrix *sum;   /* [6 bodies][6 bodies] */
+    double *row_count; /* [bodies] */
+} holder;
+
+/* Adds the displacement of one part, less that of another (-1: none), at a node along axis c. */
+static void add_row(holder *h, int32_t node, int32_t body, int32_t other, int c) {
+    double row[MOTIONS], r[3];
+    const int32_t bodies[2] = {body, other};
+    for (int k = 0; k < 3; k++)
+        r[k] = (h->model->position[3 * (int64_t)node + k] - h->middle[k]) / h->size;
     motion_row(r, c, row);
-    for (int p = 0; p < 2; p++)
+    for (int p = 0; p < 2; p++) {
+        if (bodies[p] < 0)
+            continue;
+        h->row_count[bodies[p]]++;
         for (int q = 0; q < 2; q++) {
-            if (nodes[p] < 0 || nodes[q] < 0)
+            if (bodies[q] < 0)
                 continue;
-            size_t first = MOTIONS * (size_t)m->node_material[nodes[p]],
-                   second = MOTIONS * (size_t)m->node_material[nodes[q]];
+            size_t first = MOTIONS * (size_t)bodies[p], second = MOTIONS * (size_t)bodies[q];
             for (size_t a = 0; a < MOTIONS; a++)
                 for (size_t b = 0; b < MOTIONS; b++)
-                    *gsl_matrix_ptr(sum, first + a, second + b) +=
-                        (p == q ? 1 : -1) * row[a] * row[b] * weight;
+                    *gsl_matrix_ptr(h->sum, first + a, second + b) += (p == q ? 1 : -1) * row[a] * row[b];
         }
+    }
 }
 
-/* Displacements that are forbidden: of one node, or of one less that of another. The weight holds what rests.
- */
+/* Displacements that are forbidden: of one node, or of one less that of another. */
 typedef struct rows {
     int64_t count;
     const int32_t *node, *other; /* [count]; other NULL: of one */
     const uint8_t *mask;         /* [count]; NULL: z */
 } rows;
 
-/* Sum of the squares of what constraints, the anvil and ties forbid, as a matrix; its null space is free. */
-static void add_rows(const sf_model *m, gsl_matrix *sum, sf_hold *hold) {
-    double middle[3], size;
-    find_box(m, middle, &size);
+/* What constraints, the anvil (the weight holds what rests) and ties forbid. */
+static void add_rows(holder *h, sf_hold *hold) {
+    const sf_model *m = h->model;
+    const int32_t *body = h->bodies->node;
     const rows part[] = {{m->fixed_count, m->fixed_node, NULL, m->fixed_mask},
                          {m->rest_count, m->rest_node, NULL, NULL},
                          {m->tie_count, m->tie_node, m->tie_other, m->tie_mask}};
     for (const rows *p = part; p < part + 3; p++)
         for (int64_t k = 0; k < p->count; k++) {
-            uint8_t mask = p->mask ? p->mask[k] : SF_FIX_Z;
-            double r[3];
-            for (int i = 0; i < 3; i++)
-                r[i] = (m->position[3 * (int64_t)p->node[k] + i] - middle[i]) / size;
+            int32_t own = body[p->node[k]], other = p->other ? body[p->other[k]] : -1;
             for (int c = 0; c < 3; c++) {
-                if (!(mask & 1 << c))
+                if (!((p->mask ? p->mask[k] : SF_FIX_Z) & 1 << c))
                     continue;
                 hold->rows[c] += p->other == NULL;
-                add_row(m, r, c, p->node[k], p->other ? p->other[k] : -1, sum);
+                if (own != other)
+                    add_row(h, p->node[k], own, other, c);
             }
         }
 }
 
-static void name_motion(const gsl_matrix *vector, size_t k, size_t layer, sf_hold *hold) {
-    double part[MOTIONS];
+/* Parts of a layer that share an edge or a point only are joined there. */
+static void add_hinges(holder *h) {
+    const sf_model *m = h->model;
+    const sf_bodies *b = h->bodies;
+    for (int64_t cell = 0; cell < m->cell_count; cell++)
+        for (int64_t k = m->cell_ptr[cell]; k < m->cell_ptr[cell + 1]; k++) {
+            int32_t node = m->cell_node[k];
+            for (int c = 0; c < 3 && b->node[node] != b->cell[cell]; c++)
+                add_row(h, node, b->node[node], b->cell[cell], c);
+        }
+}
+
+/* Small parts count as much as large ones: every part's rows by their number. */
+static void scale_sum(holder *h) {
+    for (size_t i = 0; i < h->sum->size1; i++) {
+        h->row_count[i / MOTIONS] = fmax(1, h->row_count[i / MOTIONS]);
+        for (size_t j = 0; j < h->sum->size2; j++)
+            *gsl_matrix_ptr(h->sum, i, j) /=
+                sqrt(h->row_count[i / MOTIONS] * fmax(1, h->row_count[j / MOTIONS]));
+    }
+}
+
+/* The middle of a part, m; `alone`: it is the whole of its layer. */
+static void place_part(const sf_model *m, const sf_bodies *b, int64_t body, double middle[3], bool *alone) {
+    double count = 0;
+    uint8_t layer = m->node_material[b->first[body]];
+    *alone = true;
+    middle[0] = middle[1] = middle[2] = 0;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        *alone = *alone && (b->node[i] == body || m->node_material[i] != layer);
+        if (b->node[i] != body)
+            continue;
+        count++;
+        for (int c = 0; c < 3; c++)
+            middle[c] += m->position[3 * i + c];
+    }
+    for (int c = 0; c < 3; c++)
+        middle[c] /= count;
+}
+
+static void name_motion(const holder *h, const gsl_matrix *vector, size_t k, size_t body, sf_hold *hold) {
+    double part[MOTIONS], most = 0;
+    for (size_t i = 0; i < vector->size1; i++)
+        most = fmax(most, fabs(gsl_matrix_get(vector, i, k)) / sqrt(h->row_count[i / MOTIONS]));
     for (size_t a = 0; a < MOTIONS; a++)
-        part[a] = fabs(gsl_matrix_get(vector, MOTIONS * layer + a, k));
+        part[a] = fabs(gsl_matrix_get(vector, MOTIONS * body + a, k)) / sqrt(h->row_count[body]) / most;
     if (!hold->lifts && (part[2] > PART || part[3] > PART || part[4] > PART)) {
         hold->lifts = true;
-        hold->lifted = (int64_t)layer;
+        hold->lifted = h->model->node_material[h->bodies->first[body]];
+        place_part(h->model, h->bodies, (int64_t)body, hold->lifted_middle, &hold->lifted_whole);
     }
     hold->slides[0] = hold->slides[0] || part[0] > PART;
     hold->slides[1] = hold->slides[1] || part[1] > PART;
@@ -113,32 +170,62 @@ static void find_underside(const sf_model *m, sf_hold *hold) {
     hold->underside_low = low;
 }
 
-sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
-    *hold = (sf_hold){0};
-    size_t layers = (size_t)m->node_material[m->node_count - 1] + 1, size = MOTIONS * layers;
-    gsl_matrix *sum = gsl_matrix_calloc(size, size), *vector = gsl_matrix_alloc(size, size);
+/* The null space of the sum is free. */
+static sf_status find_motions(holder *h, sf_hold *hold, sf_error *err) {
+    size_t bodies = (size_t)h->bodies->count, size = MOTIONS * bodies;
+    h->sum = gsl_matrix_calloc(size, size);
+    h->row_count = calloc(bodies, sizeof *h->row_count);
+    gsl_matrix *vector = gsl_matrix_alloc(size, size);
     gsl_vector *value = gsl_vector_alloc(size);
     gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(size);
-    if (!sum || !vector || !value || !work) {
+    if (!h->sum || !h->row_count || !vector || !value || !work) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the rigid motions of the pad");
     } else {
-        add_rows(m, sum, hold);
-        gsl_eigen_symmv(sum, value, vector, work);
+        find_box(h->model, h->middle, &h->size);
+        add_rows(h, hold);
+        add_hinges(h);
+        scale_sum(h);
+        gsl_eigen_symmv(h->sum, value, vector, work);
         for (size_t k = 0; k < size; k++)
-            for (size_t layer = 0; layer < layers && !(gsl_vector_get(value, k) > FREE); layer++)
-                name_motion(vector, k, layer, hold);
-        find_underside(m, hold);
+            for (size_t body = 0; body < bodies && !(gsl_vector_get(value, k) > FREE); body++)
+                name_motion(h, vector, k, body, hold);
     }
-    gsl_matrix_free(sum);
+    gsl_matrix_free(h->sum);
     gsl_matrix_free(vector);
     gsl_vector_free(value);
     gsl_eigen_symmv_free(work);
+    free(h->row_count);
+    return err->status;
+}
+
+sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
+    sf_bodies bodies;
+    *hold = (sf_hold){0};
+    if (sf_bodies_find(m, &bodies, err) != SF_OK)
+        return err->status;
+    holder h = {.model = m, .bodies = &bodies};
+    if (bodies.count > MOST_BODIES)
+        SF_FAIL(err, SF_ERR_INPUT,
+                "the layers fall into %lld parts that are not tied to each other altogether; at most %d are "
+                "supported",
+                (long long)bodies.count, MOST_BODIES);
+    else if (find_motions(&h, hold, err) == SF_OK)
+        find_underside(m, hold);
+    sf_bodies_free(&bodies);
     return err->status;
 }
 
 sf_status sf_hold_check(const sf_hold *hold, const sf_model *m, sf_error *err) {
     if (!hold->lifts)
         return SF_OK;
+    const double *x = hold->lifted_middle;
+    if (m->material_count > 1 && hold->rows[2] > 0 && !hold->lifted_whole)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the part of the layer \"%s\" about "
+            "(%.4g, %.4g, %.4g) mm from being lifted or tilted: what holds it along z lies at a point or on a "
+            "line, or is nothing",
+            m->material[hold->lifted].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     if (m->material_count > 1 && hold->rows[2] > 0)
         return SF_FAIL(
             err, SF_ERR_INPUT,

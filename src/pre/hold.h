@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What holds the pad? Its rigid motions, and those of its layers against each other, that base, anvil,
- * symmetry planes and ties leave free. */
+/* What holds the pad? Its rigid motions, and those of its connected parts (pre/bodies.h) against each other,
+ * that base, anvil, symmetry planes and ties leave free. */
 #ifndef SF_PRE_HOLD_H
 #define SF_PRE_HOLD_H
 
@@ -11,13 +11,15 @@
 #define SF_HOLD_MOST 0.5 /* of the underside's nodes, held along z: mostly held */
 
 typedef struct sf_hold {
-    int64_t rows[3];      /* nodes held along x, y and z; those that rest are held along z */
-    bool lifts;           /* some rigid motion with a vertical part is free */
-    int64_t lifted;       /* the layer that it moves most */
-    bool slides[2];       /* along x, y */
-    bool turns;           /* about a vertical axis */
-    double underside;     /* share of the nodes of the pad's underside that are held along z or rest */
-    double underside_low; /* m, its z */
+    int64_t rows[3];         /* nodes held along x, y and z; those that rest are held along z */
+    bool lifts;              /* some rigid motion with a vertical part is free */
+    int64_t lifted;          /* the layer of a part that it moves */
+    double lifted_middle[3]; /* m, of the part */
+    bool lifted_whole;       /* the part is the whole layer */
+    bool slides[2];          /* along x, y */
+    bool turns;              /* about a vertical axis */
+    double underside;        /* share of the nodes of the pad's underside that are held along z or rest */
+    double underside_low;    /* m, its z */
 } sf_hold;
 
 /* Needs positions and constraints of the model. */
