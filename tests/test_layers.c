@@ -95,6 +95,36 @@ static void junction_of_three_layers_is_a_chain_of_ties(void **state) {
     fixture_free(&f);
 }
 
+/* A thin core between two parts of one layer. */
+static int core(const double x[3]) {
+    return x[2] > 2 && x[2] < 3;
+}
+
+/* What the other layer fills is no gap; a slit through both is one. */
+static void gaps_are_those_of_the_whole_pad(void **state) {
+    const fixture_block block = {.cells = {6, 5, 5}, .spacing = 0.01};
+    (void)state;
+    for (int slit = 0; slit < 2; slit++) {
+        fixture f;
+        sf_case c;
+        sf_mesh mesh;
+        sf_surface surface;
+        fixture_block_mesh(&block, &mesh);
+        layers_assign(&block, core, &mesh);
+        if (slit)
+            fixture_open_slit(&block, 3, 1, 0.002, &mesh);
+        fixture_case(&c, NULL);
+        fixture_hold(&c, (const char *const[]){"base", NULL});
+        layers_make(&c, 2);
+        fixture_plate(1, 0, 0, &surface);
+        fixture_build(&c, &mesh, &surface, &f);
+        assert_int_equal(f.report.hidden_count > 0, slit);
+        assert_int_equal(f.model.slit_fraction > 0, slit);
+        assert_true(!slit || fabs(f.report.hidden_distance - 0.002) < 1e-9);
+        fixture_free(&f);
+    }
+}
+
 /* ---- patch test ---- */
 
 /* Largest acceleration after the projection, of the largest that the unconstrained forces would give. */
@@ -559,6 +589,7 @@ int main(void) {
         cmocka_unit_test(no_list_reaches_across_an_interface),
         cmocka_unit_test(nodes_of_an_interface_exist_once_per_layer),
         cmocka_unit_test(junction_of_three_layers_is_a_chain_of_ties),
+        cmocka_unit_test(gaps_are_those_of_the_whole_pad),
         cmocka_unit_test(affine_field_across_interfaces_is_in_equilibrium),
         cmocka_unit_test(without_ties_the_patch_test_fails),
         cmocka_unit_test(sliding_layers_are_free_along_their_interface_and_tied_across_it),

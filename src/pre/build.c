@@ -161,10 +161,26 @@ static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dua
         for (int64_t i = 0; i < n; i++)
             m->mass[first + i] = sf_material_density(material) * domains.volume[i];
         report_invariants(&invariants, &report->invariants);
+        domains.hidden_count = c->layer_count > 1 ? 0 : domains.hidden_count; /* report_gaps */
         report_domains(&domains, report);
         take_domains(&domains, dual, first, n, m, err);
     }
     sf_domains_free(&domains);
+    return err->status;
+}
+
+/* Nodes of a layer do not see each other through another one, which is no gap: of layers the gaps are those
+ * of the whole mesh, with the larger support of each place. */
+static sf_status report_gaps(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *layers, sf_model *m,
+                             sf_build_report *report, sf_error *err) {
+    sf_domains gaps;
+    double *support = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *support, "supports");
+    for (int64_t i = 0; support && i < layers->first[layers->count]; i++)
+        support[layers->origin[i]] = fmax(support[layers->origin[i]], m->support[i]);
+    if (support && sf_domains_find_gaps(mesh, dual, support, &gaps, err) == SF_OK)
+        report_domains(&gaps, report);
+    free(support);
+    m->slit_fraction = (double)report->hidden_count / (double)mesh->node_count;
     return err->status;
 }
 
@@ -220,14 +236,16 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
         goto done;
     if (layers->count > 1) {
         if (build_layers(c, mesh, layers, m, report, err) != SF_OK ||
+            report_gaps(mesh, &dual, layers, m, report, err) != SF_OK ||
             sf_layers_split(mesh, &dual, layers, err) != SF_OK)
             goto done;
     } else if (build_layer(c, mesh, &dual, report->mesh_volume, c->layer ? c->layer : &c->material, 0, m,
                            report, err) != SF_OK) {
         goto done;
+    } else {
+        m->slit_fraction = (double)report->hidden_count / (double)mesh->node_count;
     }
     take_mesh(mesh, m, report);
-    m->slit_fraction = (double)report->hidden_count / (double)m->node_count;
 done:
     sf_dual_free(&dual);
     return err->status;

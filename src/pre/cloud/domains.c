@@ -483,6 +483,24 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
     return err->status;
 }
 
+sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const double *support,
+                               sf_domains *out, sf_error *err) {
+    memset(out, 0, sizeof *out);
+    builder b = {.mesh = mesh, .dual = dual, .out = out};
+    b.edge_reach = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge_reach, "reaches");
+    b.reach = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.reach, "reaches");
+    if (err->status == SF_OK) {
+        measure_reach(&b);
+        if (look_around(&b, support, err) == SF_OK)
+            find_gap(&b);
+    }
+    sf_visibility_free(b.hidden, mesh->node_count);
+    sf_grid_free(&b.grid);
+    free(b.edge_reach);
+    free(b.reach);
+    return err->status;
+}
+
 void sf_domains_free(sf_domains *d) {
     free(d->volume);
     free(d->ptr);

@@ -35,6 +35,9 @@ typedef struct sf_domains {
  * then SF_ERR_MODEL with the position), and `support` returns what was used. */
 sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double condition_limit, double *support,
                            sf_domains *out, sf_error *err);
+/* Only the hidden nodes of a mesh, with the supports [n] given: hidden_* of `*out`, which owns nothing. */
+sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const double *support,
+                               sf_domains *out, sf_error *err);
 void sf_domains_free(sf_domains *domains);
 
 /* Adds the integral of phi_I N over the boundary to `sum` [n][3], m2 (theory eq. 6). */
