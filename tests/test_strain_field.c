@@ -6,6 +6,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <cmocka.h>
@@ -52,7 +53,7 @@ static double collapse(void **state, double (*strain)(int i, int j, int k)) {
         for (int j = 0; j < N; j++)
             for (int i = 0; i < N; i++)
                 value[at(i, j, k)] = strain(i, j, k);
-    if (sf_strain_field_collapse(*state, value, &result, &err) != SF_OK)
+    if (sf_strain_field_collapse(*state, value, NULL, &result, &err) != SF_OK)
         fail_msg("%s", err.text);
     return result;
 }
@@ -113,11 +114,62 @@ static void nodes_that_collapse_alone_stand_out(void **state) {
     assert_close(collapse(state, checkerboard), 0.4, 1e-12);
 }
 
+/* Strain of a plug and of the pad around it, which share the plane i = 6: the nodes of the pad there follow
+ * the plug, and alone are far above their neighbours in the pad. */
+static double plug_excess(bool slips, double lone) {
+    static double position[3 * 2 * NODES], displacement[3 * 2 * NODES], compression[2 * NODES];
+    static int64_t cell_ptr[CELLS + 1];
+    static int32_t cell_node[8 * CELLS];
+    sf_results r = {.node_count = 2 * NODES,
+                    .cell_count = CELLS,
+                    .cell_nnz = 8 * CELLS,
+                    .position = position,
+                    .cell_ptr = cell_ptr,
+                    .cell_node = cell_node,
+                    .thickness = 1,
+                    .layer_count = 2};
+    double result = NAN;
+    sf_error err = SF_ERROR_INIT;
+    for (int part = 0; part < 2; part++)
+        for (int k = 0; k < N; k++)
+            for (int j = 0; j < N; j++)
+                for (int i = 0; i < N; i++) {
+                    int32_t node = part * NODES + at(i, j, k);
+                    bool used = part ? i >= 6 : i <= 6;
+                    position[3 * node] = used ? i : -1 - node;
+                    position[3 * node + 1] = j;
+                    position[3 * node + 2] = k;
+                    displacement[3 * node + 2] = slips && part ? 0.1 : 0;
+                    compression[node] = i <= 6 ? 0.6 : 0.2;
+                }
+    compression[NODES + at(6, 5, 5)] += lone;
+    int64_t used = 0, cell = 0;
+    for (int k = 0; k < N - 1; k++)
+        for (int j = 0; j < N - 1; j++)
+            for (int i = 0; i < N - 1; i++) {
+                for (int corner = 0; corner < 8; corner++)
+                    cell_node[used++] =
+                        (i >= 6) * NODES + at(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2));
+                cell_ptr[++cell] = used;
+            }
+    if (sf_strain_field_collapse(&r, compression, displacement, &result, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    return result;
+}
+
+static void layer_that_its_partner_carries_along_does_not_collapse(void **state) {
+    (void)state;
+    assert_close(plug_excess(false, 0), 0, 1e-12);
+    assert_close(plug_excess(false, 0.3), 0.3, 1e-12);
+    assert_close(plug_excess(true, 0), 0.4, 1e-12);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(smooth_strain_is_no_collapse_in_a_pad_of_any_thickness),
         cmocka_unit_test(edge_and_corner_of_a_flat_missile_are_no_collapse),
         cmocka_unit_test(nodes_that_collapse_alone_stand_out),
+        cmocka_unit_test(layer_that_its_partner_carries_along_does_not_collapse),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

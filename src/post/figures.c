@@ -225,8 +225,9 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
         f->layers = sf_layer_figures_compute(r, NULL, NULL, err);
         return err->status;
     }
-    if (sf_frame_read_fields(r, &r->peak, SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY, &peak,
-                             &problem) != SF_OK)
+    int fields = SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY |
+                 (r->layer_count > 1 ? SF_FIELD_DISPLACEMENT : 0);
+    if (sf_frame_read_fields(r, &r->peak, fields, &peak, &problem) != SF_OK)
         return sf_results_ended_well(r) ? SF_FAIL(err, problem.status, "%s", problem.text) : SF_OK;
     const double *compression = peak.field[SF_FRAME_LARGEST_COMPRESSION],
                  *energy = peak.field[SF_FRAME_ENERGY_DENSITY];
@@ -239,7 +240,7 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
             f->energy_beyond_data += f->layers[k].energy_share * f->layers[k].energy_beyond_data;
     }
     if (compression)
-        sf_strain_field_collapse(r, compression, &f->local_collapse, err);
+        sf_strain_field_collapse(r, compression, peak.field[SF_FRAME_DISPLACEMENT], &f->local_collapse, err);
     sf_frame_free(&peak);
     return err->status;
 }
