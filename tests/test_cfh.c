@@ -313,6 +313,7 @@ static void a_drop_that_is_not_to_be_used_is_left_out_with_its_reason(void **sta
     sf_cfh_points points = {0};
     sf_cfh_result result;
     const double limit[SF_CFH_CRITERIA] = {200, 1e9};
+    const sf_cfh_foams foams = {1, {{"", 0.9, "the compression table ends at"}}};
     for (int k = 0; k < POINTS; k++) {
         sf_runner_result drop = {
             .a_max_g = evaluate(&a_max, heights[k]), .hic = 100 * heights[k], .v_rebound = 1};
@@ -325,7 +326,7 @@ static void a_drop_that_is_not_to_be_used_is_left_out_with_its_reason(void **sta
             strcpy(drop.verdict, "valid with remarks: contact energy 2 %");
         }
         sf_cfh_point point = {.height = heights[k], .speed = 1};
-        sf_cfh_take_result(&drop, 0.9, &point);
+        sf_cfh_take_result(&drop, &foams, &point);
         sf_cfh_points_add(&points, &point);
     }
     assert_true(points.point[3].failed && points.point[3].grade == SF_GRADE_DO_NOT_USE);
@@ -335,6 +336,33 @@ static void a_drop_that_is_not_to_be_used_is_left_out_with_its_reason(void **sta
     sf_cfh_evaluate(&points, limit, &result);
     assert_int_equal(result.verdict, SF_CFH_FOUND);
     assert_relative(result.crossing[SF_CFH_A_MAX].height, a_max.at, 1e-6);
+}
+
+/* Each layer's strain is held against the end of its own data. */
+static void strains_of_layers_are_held_against_their_own_data(void **state) {
+    (void)state;
+    const sf_cfh_foams foams = {2,
+                                {{"core", 0.9, "the terms are known to be stable up to"},
+                                 {"cover", 0.6, "the compression table ends at"}}};
+    double strain[2] = {0.85, 0.5};
+    const sf_runner_result drop = {
+        .v_rebound = 1, .max_local_strain = 0.85, .layer_count = 2, .layer_strain = strain};
+    sf_cfh_point within = {.height = 1}, cover = {.height = 1}, core = {.height = 1};
+    sf_cfh_take_result(&drop, &foams, &within);
+    assert_string_equal(within.note, "");
+    strain[1] = 0.7;
+    sf_cfh_take_result(&drop, &foams, &cover);
+    assert_string_equal(
+        cover.note,
+        "largest local strain of the layer \"cover\" 0.700, the compression table ends at 0.600: extrapolated "
+        "curve");
+    strain[0] = 0.95;
+    strain[1] = 0.5;
+    sf_cfh_take_result(&drop, &foams, &core);
+    assert_string_equal(
+        core.note,
+        "largest local strain of the layer \"core\" 0.950, the terms are known to be stable up to 0.900: "
+        "extrapolated curve");
 }
 
 int main(void) {
@@ -350,6 +378,7 @@ int main(void) {
         cmocka_unit_test(the_rig_of_the_paper),
         cmocka_unit_test(tables_of_the_rig_that_make_no_sense_are_refused),
         cmocka_unit_test(a_drop_that_is_not_to_be_used_is_left_out_with_its_reason),
+        cmocka_unit_test(strains_of_layers_are_held_against_their_own_data),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

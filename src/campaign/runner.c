@@ -46,6 +46,19 @@ static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *ou
     sf_verdict_line(&verdict, out->verdict, sizeof out->verdict);
 }
 
+static sf_status take_layers(const sf_results *r, const sf_figures *f, sf_runner_result *out, sf_error *err) {
+    if (r->layer_count == 0 || !f->layers)
+        return SF_OK;
+    out->layer_strain = sf_alloc(err, (unsigned long)r->layer_count, sizeof *out->layer_strain, "layers");
+    if (!out->layer_strain)
+        sf_runner_result_free(out);
+    else
+        out->layer_count = r->layer_count;
+    for (int k = 0; k < out->layer_count; k++)
+        out->layer_strain[k] = f->layers[k].max_local_strain;
+    return err->status;
+}
+
 static sf_status read_result(const char *path, sf_runner_result *out, sf_error *err) {
     sf_results r;
     sf_figures f = {0};
@@ -66,7 +79,8 @@ static sf_status read_result(const char *path, sf_runner_result *out, sf_error *
                                   .curve = f.filtered};
         judge(&r, &f, out);
         f.filtered = (sf_series){0};
-        result_path(path, out, err);
+        if (take_layers(&r, &f, out, err) == SF_OK)
+            result_path(path, out, err);
     }
     sf_figures_free(&f);
     sf_results_close(&r);
@@ -104,5 +118,6 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
 void sf_runner_result_free(sf_runner_result *result) {
     sf_series_free(&result->curve);
     free(result->path);
+    free(result->layer_strain);
     *result = (sf_runner_result){0};
 }

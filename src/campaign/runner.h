@@ -39,6 +39,8 @@ typedef struct sf_runner_result {
     double v0, v_rebound;               /* m s-1; v_rebound NaN if contact had not ended */
     double max_indentation;             /* m */
     double max_local_strain;            /* - */
+    int layer_count;                    /* 0: one material */
+    double *layer_strain;               /* [layer_count] -, largest, NaN: not known; owned */
     double energy_error;                /* - */
     sf_grade grade;                     /* of the run, as softfall-post gives it */
     char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */

@@ -277,6 +277,22 @@ static sf_status find_interface(const sf_case_reader *reader, const char *name, 
                    sf_case_where_is(reader, "pad.sliding_interfaces", where), name);
 }
 
+/* Interface k, in either order of its layers, is not among those before it. */
+static sf_status check_interface_once(const sf_case_reader *reader, int k, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    const int *own = c->interface_layer[k];
+    for (int j = 0; j < k; j++) {
+        const int *other = c->interface_layer[j];
+        if ((own[0] == other[0] && own[1] == other[1]) || (own[0] == other[1] && own[1] == other[0]))
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: pad.sliding_interfaces: \"%s\" and \"%s\" are the same interface",
+                           sf_case_where_is(reader, "pad.sliding_interfaces", where), c->interface_name[j],
+                           c->interface_name[k]);
+    }
+    return SF_OK;
+}
+
 /* Rules on the layers; their names, for sentences, as the pad's group. */
 static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
@@ -293,7 +309,8 @@ static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
             "be given",
             sf_case_where_is(reader, "pad.group", where));
     for (int k = 0; k < c->interface_count; k++)
-        if (find_interface(reader, c->interface_name[k], c->interface_layer[k], err) != SF_OK)
+        if (find_interface(reader, c->interface_name[k], c->interface_layer[k], err) != SF_OK ||
+            check_interface_once(reader, k, err) != SF_OK)
             return err->status;
     for (int k = 0; k < c->layer_count; k++) {
         size_t used = k ? strlen(c->pad_group) : 0;
@@ -482,12 +499,18 @@ static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
     return err->status;
 }
 
-/* The group `materials`, if there is one. */
-static sf_status find_layers(sf_case_reader *reader, sf_error *err) {
+/* The group `materials`, if there is one; `parted`: the case file has it, and no group `material`. */
+static sf_status find_layers(sf_case_reader *reader, bool parted, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const config_setting_t *found = config_lookup(&reader->config, "materials");
     int count = found && config_setting_is_group(found) ? config_setting_length(found) : 0;
     reader->layers = found;
+    if (found && parted && config_lookup(&reader->config, "material"))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: the pad is of layers, each with a material of its own: there is no place for one "
+                       "material from outside the case file; a layer takes it as materials.NAME (--set "
+                       "materials.NAME=@FILE)",
+                       sf_case_where(reader, found, where));
     if (found && config_lookup(&reader->config, "material"))
         return SF_FAIL(
             err, SF_ERR_INPUT,
@@ -509,10 +532,11 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
         const char *path = sf_case_source_find(&reader->source, config_error_line(config), &line);
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line, config_error_text(config));
     }
+    bool parted = config_lookup(config, "materials") && !config_lookup(config, "material");
     for (int i = 0; i < count; i++)
         if (sf_case_override(config, overrides[i], err) != SF_OK)
             return err->status;
-    if (find_layers(reader, err) != SF_OK || choose_law(reader, err) != SF_OK)
+    if (find_layers(reader, parted, err) != SF_OK || choose_law(reader, err) != SF_OK)
         return err->status;
     return check_names(reader, config_root_setting(config), "", err);
 }

@@ -18,19 +18,19 @@ enum { MAX_DROPS = 8 };
 typedef struct setting {
     double speed; /* m s-1, of the case */
     double mass;  /* kg */
-    /* -, strain where the shortest compression table ends or the densification law begins, of all layers */
-    double table_end;
+    sf_cfh_foams foams;
     char *text, *parameters; /* of the case; owned */
 } setting;
 
-/* Of layers the least. */
-static double table_end_of(const sf_case *c) {
-    double least = 1;
-    if (c->layer_count == 0)
-        return c->material.law->data_end(c->material.card);
-    for (int k = 0; k < c->layer_count; k++)
-        least = fmin(least, c->layer[k].law->data_end(c->layer[k].card));
-    return least;
+static void list_foams(const sf_case *c, sf_cfh_foams *out) {
+    *out = (sf_cfh_foams){.count = c->layer_count > 0 ? c->layer_count : 1};
+    for (int k = 0; k < out->count; k++) {
+        const sf_material *material = c->layer_count > 0 ? &c->layer[k] : &c->material;
+        sf_cfh_foam *foam = &out->foam[k];
+        memcpy(foam->name, material->name, sizeof foam->name);
+        foam->end = material->law->data_end(material->card);
+        foam->words = material->law->data_end_words;
+    }
 }
 
 static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *err) {
@@ -47,7 +47,11 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
     for (int k = 0; k < o->override_count; k++)
         list[count++] = o->overrides[k];
     if (sf_case_read(o->case_path, count, list, &sink, &c, err) == SF_OK) {
-        *out = (setting){c.missile_card.speed, c.missile_card.mass, table_end_of(&c), c.text, c.parameters};
+        *out = (setting){.speed = c.missile_card.speed,
+                         .mass = c.missile_card.mass,
+                         .text = c.text,
+                         .parameters = c.parameters};
+        list_foams(&c, &out->foams);
         c.text = c.parameters = NULL; /* moved */
         if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_FAIL(err, SF_ERR_INPUT,
@@ -102,7 +106,7 @@ static sf_status simulate(const sf_cfh_options *o, sf_staging *output, sf_cfh_re
     sf_runner_drop base = {
         .case_path = o->case_path, .material = o->material, .override_count = o->override_count};
     memcpy(base.overrides, o->overrides, sizeof base.overrides);
-    const sf_cfh_series series = {report->plan, report->rig, &base, report->table_end};
+    const sf_cfh_series series = {report->plan, report->rig, &base, report->foams};
     printf("%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
            o->list_count ? o->list_count : MAX_DROPS, folder,
            report->rig->pairs ? "on the rig" : "of free fall");
@@ -138,7 +142,7 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
                             .case_text = s->text,
                             .parameters = s->parameters,
                             .mass = s->mass,
-                            .table_end = s->table_end};
+                            .foams = &s->foams};
     if (sf_staging_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
         simulate(o, output, &report, &points, err) != SF_OK)
         return err->status;

@@ -182,6 +182,13 @@ static void put_points(sf_json *json, const sf_cfh_report *r) {
     sf_json_close(json, ']');
 }
 
+static double least_end(const sf_cfh_foams *foams) {
+    double least = INFINITY;
+    for (int k = 0; k < foams->count; k++)
+        least = fmin(least, foams->foam[k].end);
+    return least;
+}
+
 sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
     FILE *file = sf_staging_open(output, "cfh.json", err);
     if (!file)
@@ -194,7 +201,7 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
     sf_json_text(&json, "case", r->case_path);
     sf_json_text(&json, "material", r->material);
     sf_json_number(&json, "missile_mass_kg", r->mass);
-    sf_json_number(&json, "compression_table_end", r->table_end);
+    sf_json_number(&json, "compression_table_end", least_end(r->foams));
     put_verdict(&json, r);
     sf_json_open(&json, "rig", '{');
     sf_json_text(&json, "file", r->rig_path);
@@ -391,7 +398,20 @@ static void put_picture(FILE *page, const sf_staging *output) {
     free(svg);
 }
 
+/* Where the data of each foam end. */
+static void describe_foams(const sf_cfh_foams *foams, char *text, size_t size) {
+    size_t used = 0;
+    for (int k = 0; k < foams->count && used < size; k++) {
+        const sf_cfh_foam *foam = &foams->foam[k];
+        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s %.3f", k ? "; " : "",
+                                 foams->count > 1 ? foam->name : "", foams->count > 1 ? ": " : "",
+                                 foam->words, foam->end);
+    }
+}
+
 static void put_drops(FILE *page, const sf_cfh_report *r) {
+    char foams[SF_CASE_MAX_LAYERS * (SF_MATERIAL_NAME_SIZE + 64)];
+    describe_foams(r->foams, foams, sizeof foams);
     sf_html_heading(page, "Crossings of the limits");
     put_criteria_table(page, r);
     sf_html_heading(page, "Simulated drops");
@@ -400,9 +420,9 @@ static void put_drops(FILE *page, const sf_cfh_report *r) {
         page,
         "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: simulated value "
         "against the fit, ln(value) quadratic in ln(height); a dash: not in the fit, or no value. The "
-        "compression table ends at a strain of %.3f; beyond it the foam's curve is extrapolated. The search "
+        "curve of a foam is extrapolated beyond the strain to which its data reach: %s. The search "
         "ended because %s.",
-        r->table_end, sf_cfh_step_text(r->ending));
+        foams, sf_cfh_step_text(r->ending));
     put_notes(page, r);
 }
 

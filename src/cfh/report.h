@@ -3,6 +3,7 @@
 #ifndef SF_CFH_REPORT_H
 #define SF_CFH_REPORT_H
 
+#include "cfh/foams.h"
 #include "cfh/search.h"
 #include "io/staging.h"
 
@@ -17,8 +18,8 @@ typedef struct sf_cfh_report {
     const sf_cfh_points *points;
     const sf_cfh_result *result;
     sf_cfh_step ending;
-    double mass;      /* kg */
-    double table_end; /* - */
+    double mass; /* kg */
+    const sf_cfh_foams *foams;
 } sf_cfh_report;
 
 /* The critical fall height in one sentence. */

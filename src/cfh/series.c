@@ -17,7 +17,20 @@ __attribute__((format(printf, 2, 3))) static void add_note(sf_cfh_point *point, 
     va_end(args);
 }
 
-void sf_cfh_take_result(const sf_runner_result *r, double table_end, sf_cfh_point *p) {
+/* Strains beyond the data of their foam, of each layer. */
+static void note_extrapolation(const sf_runner_result *r, const sf_cfh_foams *foams, sf_cfh_point *p) {
+    for (int k = 0; k < foams->count; k++) {
+        const sf_cfh_foam *foam = &foams->foam[k];
+        bool layer = foams->count > 1;
+        double strain = layer && k < r->layer_count ? r->layer_strain[k] : layer ? NAN : r->max_local_strain;
+        if (strain > foam->end + SF_CFH_STRAIN_MARGIN)
+            add_note(p, "largest local strain%s%s%s %.3f, %s %.3f: extrapolated curve",
+                     layer ? " of the layer \"" : "", layer ? foam->name : "", layer ? "\"" : "", strain,
+                     foam->words, foam->end);
+    }
+}
+
+void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf_cfh_point *p) {
     p->grade = r->grade;
     if (r->grade == SF_GRADE_DO_NOT_USE) {
         p->failed = true;
@@ -32,9 +45,7 @@ void sf_cfh_take_result(const sf_runner_result *r, double table_end, sf_cfh_poin
     p->energy_error = r->energy_error;
     if (isnan(r->v_rebound))
         add_note(p, "contact had not ended at the end of the run: a_max and HIC may be too low");
-    if (r->max_local_strain > table_end + SF_CFH_STRAIN_MARGIN)
-        add_note(p, "largest local strain %.3f, the compression table ends at %.3f: extrapolated curve",
-                 r->max_local_strain, table_end);
+    note_extrapolation(r, foams, p);
     if (r->grade == SF_GRADE_REMARKS)
         add_note(p, "%s", r->verdict);
 }
@@ -61,7 +72,7 @@ static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, double heig
         *err = failure;
         return err->status;
     }
-    sf_cfh_take_result(&result, s->table_end, p);
+    sf_cfh_take_result(&result, s->foams, p);
     if (p->failed)
         fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
     sf_runner_result_free(&result);

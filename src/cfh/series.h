@@ -4,21 +4,22 @@
 #define SF_CFH_SERIES_H
 
 #include "campaign/runner.h"
+#include "cfh/foams.h"
 #include "cfh/search.h"
 #include <signal.h>
 
-#define SF_CFH_STRAIN_MARGIN 0.02 /* -, how far beyond the compression table a strain is worth a warning */
+#define SF_CFH_STRAIN_MARGIN 0.02 /* -, how far beyond the end of its data a strain is worth a warning */
 
 typedef struct sf_cfh_series {
     const sf_cfh_plan *plan;
     const sf_cfh_rig *rig;
     const sf_runner_drop *base; /* case, material, overrides; the speed is added here */
-    double table_end;           /* -, strain up to which the compression curve is given */
+    const sf_cfh_foams *foams;
 } sf_cfh_series;
 
 /* The point at height and speed of `point` with the result of its drop: figures and, for one with remarks,
  * the verdict as a note; or, with a verdict of "do not use", a point that failed, with the reason. */
-void sf_cfh_take_result(const sf_runner_result *result, double table_end, sf_cfh_point *point);
+void sf_cfh_take_result(const sf_runner_result *result, const sf_cfh_foams *foams, sf_cfh_point *point);
 
 /* Runs the search. A drop whose simulation fails numerically becomes a point that failed, with a note; every
  * other failure ends the series. SF_INTERRUPTED: run the same command again to resume. */

@@ -544,13 +544,13 @@ static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double c
     return SF_OK;
 }
 
-static sf_status measure_step(const sf_model *m, sf_build_report *report, sf_error *err) {
-    int64_t critical = 0;
+/* `critical`: the node with the shortest step. */
+static sf_status measure_step(const sf_model *m, int64_t *critical, sf_build_report *report, sf_error *err) {
     double constant = 0;
     report->slowdown = 1;
-    if (first_step(m, &report->first_step, &critical, &constant, err) != SF_OK || sf_missile_is_driven(m))
+    if (first_step(m, &report->first_step, critical, &constant, err) != SF_OK || sf_missile_is_driven(m))
         return err->status;
-    return estimate_slowdown(m, critical, constant, report->first_step, &report->slowdown, err);
+    return estimate_slowdown(m, *critical, constant, report->first_step, &report->slowdown, err);
 }
 
 static void estimate_mesh_error(sf_model *m, sf_build_report *report) {
@@ -560,16 +560,17 @@ static void estimate_mesh_error(sf_model *m, sf_build_report *report) {
     m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
 }
 
-/* A run that would stop at its first step. */
-static sf_status check_first_step(const sf_model *m, double first, sf_error *err) {
+/* A run that would stop at its first step, of the node `critical`. */
+static sf_status check_first_step(const sf_model *m, double first, int64_t critical, sf_error *err) {
+    const sf_material *material = sf_model_material(m, critical);
     double step = m->run.step_safety * first, least = SF_SMALLEST_STEP * m->run.end_time;
     if (step >= least)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "the first stable time step is %.3g s, below %g of solver.end_time (%g s), where a run "
-        "stops: the foam is too stiff or too viscous (material.E, curve, ED, eta, DAMP), or too light",
-        step, SF_SMALLEST_STEP, m->run.end_time);
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "the first stable time step is %.3g s, below %g of solver.end_time (%g s), where a run "
+                   "stops: the foam is too stiff or too viscous (%s%s: %s, ED, eta, DAMP), or too light",
+                   step, SF_SMALLEST_STEP, m->run.end_time, material->name[0] ? "materials." : "material",
+                   material->name, material->law->stiffness_keys);
 }
 
 /* The pad has no contact with itself. */
@@ -589,6 +590,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     memset(report, 0, sizeof *report);
     double *contact_area = NULL;
     sf_layers layers = {0};
+    int64_t critical = 0;
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, surface, m, err) == SF_OK &&
@@ -596,8 +598,8 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
         sf_base_place_anvil(c, &report->hold, m);
         estimate_mesh_error(m, report);
         if (check_start(c, m, err) == SF_OK && sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK &&
-            sf_model_check(m, err) == SF_OK && measure_step(m, report, err) == SF_OK &&
-            check_first_step(m, report->first_step, err) == SF_OK) {
+            sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&
+            check_first_step(m, report->first_step, critical, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
             sf_hold_warn(&report->hold, m, sink);
             tell_slits(report, sink);
