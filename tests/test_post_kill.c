@@ -44,8 +44,7 @@ static pid_t start(const program_place *p) {
     assert_true(child >= 0);
     if (child == 0) {
         setenv("PATH", "/nowhere", 1);
-        setenv("ASAN_OPTIONS", "detect_leaks=0",
-               1); /* the leak sanitizer does not work in a traced process */
+        setenv("ASAN_OPTIONS", "detect_leaks=0", 1); /* the leak sanitizer does not work in a traced process */
         if (chdir(p->folder) != 0 || !freopen("log", "w", stdout) || !freopen("errors", "w", stderr) ||
             ptrace(PTRACE_TRACEME, 0, NULL, NULL) != 0)
             _exit(99);
