@@ -221,7 +221,7 @@ static void a_picture_that_cannot_be_made_is_replaced_by_the_reason(void **state
     assert_python(p, code);
     post_fixture(p, &(fixture_options){.untouched = true, .status = "finished"}, "");
     snprintf(code, sizeof code,
-             "%sassert 'limit 200 g: not evaluated' in shown and 'limit 1000: not evaluated' in shown\n"
+             "%sassert 'limit 200 g: not judged' in shown and 'limit 1000: not judged' in shown\n"
              "assert 'failed' not in shown\n",
              page_check);
     assert_python(p, code);

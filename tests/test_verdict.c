@@ -274,6 +274,32 @@ static void limits_pass_and_fail_beside_the_verdict(void **state) {
     close_run(&run);
 }
 
+/* 100 g until the end on the anvil is no drop that keeps 200 g. */
+static void limits_of_a_run_that_ended_early_are_not_judged(void **state) {
+    const fixture_options early[] = {
+        {.status = "the missile reached the anvil at t = 20 ms"},
+        {.status = "the step is too small"},
+        {.no_summary = true, .end_time = 0.7 * FIXTURE_DURATION},
+        {.status = "interrupted", .end_time = 0.99 * FIXTURE_DURATION},
+        {.status = "finished", .end_time = 0.5 * FIXTURE_DURATION},
+        {.untouched = true},
+    };
+    for (size_t k = 0; k < sizeof early / sizeof early[0]; k++) {
+        sound_run run = open_run(*state, early[k]);
+        judge(&run);
+        for (int l = 0; l < SF_LIMITS; l++) {
+            assert_false(run.verdict.limits[l].judged);
+            assert_false(run.verdict.limits[l].passed);
+            assert_string_equal(sf_limit_phrase(&run.verdict.limits[l]), "not judged");
+        }
+        close_run(&run);
+    }
+    sound_run run = open_run(*state, (fixture_options){.status = "interrupted"}); /* after the rebound */
+    judge(&run);
+    assert_true(run.verdict.limits[0].judged && run.verdict.limits[0].passed);
+    close_run(&run);
+}
+
 /* ---- softfall-post ---- */
 
 static void assert_prints(program_place *p, const char *expression, const char *expected) {
@@ -308,6 +334,26 @@ static void softfall_post_shows_the_verdict_first_and_in_summary_json(void **sta
                          "out/acceleration.gp && grep -q 'first 50 to' out/acceleration.gp")
             .code,
         0);
+}
+
+static void softfall_post_does_not_judge_the_limits_of_a_run_that_ended_on_the_anvil(void **state) {
+    program_place *p = *state;
+    write_fixture(p, (fixture_options){.status = "the missile reached the anvil at t = 20 ms"});
+    program_result r = program_succeed(p, "post", "results.h5 -o out --force");
+    assert_non_null(strstr(r.out, "limit of a_max    200: not judged (100)"));
+    assert_null(strstr(r.out, ": passed"));
+    assert_prints(p, "[l['passed'] for l in v['limits']]", "[None, None]");
+    assert_int_equal(program_shell(p, "grep -q 'limit 200 g: not judged' out/report.html").code, 0);
+}
+
+/* The only thing to say of such a run is its own sentence. */
+static void softfall_post_refuses_a_run_of_two_rows_with_the_sentence_of_its_end(void **state) {
+    program_place *p = *state;
+    write_fixture(p, (fixture_options){.status = "the missile reached the anvil at t = 20 ms", .nan_row = 2});
+    program_result r = program_run(p, "post", "results.h5 -o out --force");
+    assert_int_equal(r.code, 3);
+    assert_non_null(strstr(r.err, "the missile reached the anvil at t = 20 ms"));
+    assert_non_null(strstr(r.err, "2 usable rows"));
 }
 
 static void the_exit_status_of_strict_is_the_verdict(void **state) {
@@ -385,6 +431,9 @@ int main(void) {
         cmocka_unit_test(strain_beyond_the_data_is_the_share_of_its_energy),
         cmocka_unit_test(what_a_run_does_not_define_is_not_judged),
         cmocka_unit_test(limits_pass_and_fail_beside_the_verdict),
+        cmocka_unit_test(limits_of_a_run_that_ended_early_are_not_judged),
+        cmocka_unit_test(softfall_post_does_not_judge_the_limits_of_a_run_that_ended_on_the_anvil),
+        cmocka_unit_test(softfall_post_refuses_a_run_of_two_rows_with_the_sentence_of_its_end),
         cmocka_unit_test(softfall_post_shows_the_verdict_first_and_in_summary_json),
         cmocka_unit_test(the_exit_status_of_strict_is_the_verdict),
         cmocka_unit_test(a_warning_of_softfall_solve_reaches_the_verdict),

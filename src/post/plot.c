@@ -115,7 +115,7 @@ static void put_title(FILE *g, const picture *p) {
         const sf_limit *limit = &p->verdict->limits[k];
         if (isfinite(limit->value))
             fprintf(g, "%s%s %.4g, limit %.4g: %s", k ? "; " : "\\n", limit->title, limit->value,
-                    limit->bound, limit->passed ? "passed" : "failed");
+                    limit->bound, sf_limit_phrase(limit));
     }
     fputs("\"\nif (svg) { unset title }\n", g);
 }

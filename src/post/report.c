@@ -51,11 +51,12 @@ static void put_limit_tile(const page *p, const sf_limit *limit) {
         snprintf(value, sizeof value, "%.1f%s%s", limit->value, blank, unit);
     else
         snprintf(value, sizeof value, "–");
-    snprintf(remark, sizeof remark, "limit %g%s%s: %s", limit->bound, blank, unit,
-             !known          ? "not evaluated"
-             : limit->passed ? "passed"
-                             : "failed");
-    sf_html_tile(p->file, !known ? "plain" : limit->passed ? "good" : "bad", limit->title, value, remark);
+    snprintf(remark, sizeof remark, "limit %g%s%s: %s", limit->bound, blank, unit, sf_limit_phrase(limit));
+    sf_html_tile(p->file,
+                 !limit->judged  ? "plain"
+                 : limit->passed ? "good"
+                                 : "bad",
+                 limit->title, value, remark);
 }
 
 static void put_tile(const page *p, const char *title, double value, int digits, const char *unit,

@@ -174,6 +174,9 @@ sf_status sf_results_check_history(sf_results *r, const int64_t *rows, sf_error 
         sf_results_note(r, "%.180s: the rows before it are used", problem.text);
         r->history.rows = i;
     }
+    if (r->history.rows < 3 && r->has_summary && !sf_results_ended_well(r))
+        return SF_FAIL(err, SF_ERR_IO, "%s (/history has %lld usable rows, figures need at least 3)",
+                       r->status, (long long)r->history.rows);
     if (r->history.rows < 3)
         return SF_FAIL(err, SF_ERR_IO, "/history has %lld usable rows, at least 3 are needed",
                        (long long)r->history.rows);

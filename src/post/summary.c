@@ -93,7 +93,7 @@ static void put_limits(sf_json *json, const sf_verdict *v) {
         sf_json_number(json, "value", limit->value);
         sf_json_number(json, "bound", limit->bound);
         sf_json_text(json, "unit", limit->unit);
-        if (isfinite(limit->value))
+        if (limit->judged)
             sf_json_bool(json, "passed", limit->passed);
         else
             sf_json_text(json, "passed", NULL);
@@ -296,7 +296,7 @@ static void print_verdict(FILE *out, const sf_verdict *v) {
         const sf_limit *limit = &v->limits[k];
         if (isfinite(limit->value))
             fprintf(out, "  limit of %-5s %6.4g: %s (%.4g)\n", limit->title, limit->bound,
-                    limit->passed ? "passed" : "failed", limit->value);
+                    sf_limit_phrase(limit), limit->value);
     }
 }
 

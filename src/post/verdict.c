@@ -175,8 +175,22 @@ static void fill_row(int k, const sf_results *r, const sf_figures *f, sf_check *
     describe(rule, r, f, c);
 }
 
-static sf_limit limit_of(const char *key, const char *title, const char *unit, double value, double bound) {
-    return (sf_limit){key, title, unit, value, bound, value <= bound};
+const char *sf_limit_phrase(const sf_limit *limit) {
+    return !limit->judged ? "not judged" : limit->passed ? "passed" : "failed";
+}
+
+/* Peak and HIC window may lie in the part of the drop that was not computed. */
+static bool ended_early(const sf_verdict *v, const sf_figures *f) {
+    const sf_check *ending = &v->rows[SF_CHECK_ending];
+    return ending->grade == SF_GRADE_DO_NOT_USE ||
+           v->rows[SF_CHECK_ended_in_contact].grade == SF_GRADE_DO_NOT_USE ||
+           (ending->grade != SF_GRADE_VALID && !f->rebounded);
+}
+
+static sf_limit limit_of(const char *key, const char *title, const char *unit, double value, double bound,
+                         bool whole) {
+    bool judged = whole && isfinite(value);
+    return (sf_limit){key, title, unit, value, bound, judged, judged && value <= bound};
 }
 
 void sf_verdict_compute(const sf_results *results, const sf_figures *figures, const sf_limits *limits,
@@ -191,8 +205,10 @@ void sf_verdict_compute(const sf_results *results, const sf_figures *figures, co
     if (figures->driven)
         return;
     verdict->limit_count = SF_LIMITS;
-    verdict->limits[0] = limit_of("a_max_g", "a_max", "g", figures->injury.a_max_g, limits->a_max_g);
-    verdict->limits[1] = limit_of("hic", "HIC", "1", figures->injury.hic.value, limits->hic);
+    const sf_injury *injury = &figures->injury;
+    bool whole = !ended_early(verdict, figures);
+    verdict->limits[0] = limit_of("a_max_g", "a_max", "g", injury->a_max_g, limits->a_max_g, whole);
+    verdict->limits[1] = limit_of("hic", "HIC", "1", injury->hic.value, limits->hic, whole);
 }
 
 void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size) {

@@ -25,7 +25,8 @@ typedef struct sf_limit {
     const char *key, *title, *unit; /* static */
     double value;                   /* NaN: not defined by the run */
     double bound;
-    bool passed; /* value <= bound; false if the value is not defined */
+    bool judged; /* the value is that of a whole drop: the run did not end before the rebound */
+    bool passed; /* value <= bound; false if it is not judged */
 } sf_limit;
 
 typedef struct sf_limits {
@@ -50,6 +51,9 @@ typedef struct sf_verdict {
     int limit_count; /* 0: a prescribed motion has no injury figures */
     sf_limit limits[SF_LIMITS];
 } sf_verdict;
+
+/* "passed", "failed" or "not judged"; static. */
+const char *sf_limit_phrase(const sf_limit *limit);
 
 /* "valid", "valid with remarks", "do not use"; static. */
 const char *sf_verdict_phrase(sf_grade grade);
