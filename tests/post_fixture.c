@@ -219,6 +219,8 @@ sf_status fixture_write(const char *path, const fixture_options *o, sf_error *er
     put_model(file, &c, o, err);
     if (o->informed_strain > 0)
         put_scalar(file, "/model/informed_strain", o->informed_strain, err);
+    if (o->anvil_depth > 0)
+        put_scalar(file, "/model/anvil_depth", o->anvil_depth, err);
     put_history(file, o, err);
     for (int k = 0; k < FIXTURE_FRAMES; k++) {
         char group[32];

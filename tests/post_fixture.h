@@ -39,6 +39,7 @@ typedef struct fixture_options {
     const char *status;     /* NULL = rebound */
     const char *notes;      /* /summary/notes, NULL = none there */
     double informed_strain; /* > 0: /model/informed_strain */
+    double anvil_depth;     /* > 0: /model/anvil_depth (m) */
 } fixture_options;
 
 sf_status fixture_write(const char *path, const fixture_options *options, sf_error *err);

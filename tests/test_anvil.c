@@ -405,12 +405,14 @@ static void a_base_that_cannot_carry_the_pad_is_refused(void **state) {
     (void)state;
     static const struct {
         const char *base, *words;
-        double from; /* m: nodes of the base with less x are left out */
+        double from;   /* m: nodes of the base with less x are left out */
+        double raised; /* m: these nodes lie higher */
     } rows[] = {
-        {"sides", "must lie in the plane of the pad's lowest nodes", 0},
-        {"base", "does not rest on the whole of its base", 0.0345},
+        {"sides", "must lie in the plane of the pad's lowest nodes", 0, 0},
+        {"base", "does not rest on the whole of its base", 0.0345, 0.002},
+        {"base", "20 nodes in the plane of the anvil, the first at (", 0.0345, 0},
     };
-    for (size_t k = 0; k < 2; k++) {
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         const fixture_block block = {.cells = {5, 4, 3}, .spacing = 0.01};
         sf_case c;
         sf_mesh mesh;
@@ -427,6 +429,8 @@ static void a_base_that_cannot_carry_the_pad_is_refused(void **state) {
         for (int64_t i = 0; i < set->count; i++)
             if (mesh.position[3 * (int64_t)set->node[i]] >= rows[k].from)
                 set->node[kept++] = set->node[i];
+            else
+                mesh.position[3 * (int64_t)set->node[i] + 2] += rows[k].raised;
         set->count = kept;
         fixture_plate(0.1, 0.02, 0.02, &surface);
         assert_int_equal(sf_model_build(&c, &mesh, &surface, &m, &report, NULL, &err), SF_ERR_INPUT);

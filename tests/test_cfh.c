@@ -2,6 +2,7 @@
 /* Critical fall height: crossings of laws whose answer is known, the search on such laws, the rig. */
 #include "model_fixture.h"
 
+#include "cfh/report.h"
 #include "cfh/search.h"
 #include "cfh/series.h"
 #include <math.h>
@@ -146,6 +147,7 @@ static void points_that_give_no_crossing_are_refused(void **state) {
 typedef struct pad {
     law a_max, hic;
     double collapse;
+    double anvil; /* m, > 0: from there the missile reaches the anvil */
 } pad;
 
 static sf_cfh_plan plan_from(double first, double max_height) {
@@ -161,6 +163,8 @@ static sf_cfh_step search(const pad *p, const sf_cfh_plan *plan, sf_cfh_points *
         sf_cfh_point point = {.height = height, .failed = height > p->collapse};
         point.value[SF_CFH_A_MAX] = evaluate(&p->a_max, height);
         point.value[SF_CFH_HIC] = evaluate(&p->hic, height);
+        point.on_anvil = p->anvil > 0 && height >= p->anvil;
+        point.failed = point.failed || point.on_anvil;
         assert_true(points->count < plan->max_drops || plan->list_count > 0);
         assert_true(height > 0 && height <= plan->max_height);
         sf_cfh_points_add(points, &point);
@@ -181,11 +185,11 @@ static void the_search_finds_the_criterion_that_is_met_first(void **state) {
         pad pad;
         sf_cfh_criterion deciding;
     } cases[] = {
-        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY}, SF_CFH_HIC},
-        {{{200, 1.64, 1.7, 0.3}, {1000, 1.70, 2.8, 0.5}, INFINITY}, SF_CFH_A_MAX},
-        {{{200, 0.31, 1.1, 0.1}, {1000, 0.90, 2.0, 0.2}, INFINITY}, SF_CFH_A_MAX},
-        {{{200, 9.00, 0.7, 0.1}, {1000, 4.20, 2.0, 0.1}, INFINITY}, SF_CFH_HIC},
-        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.0}, SF_CFH_HIC}, /* fails not far above */
+        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0}, SF_CFH_HIC},
+        {{{200, 1.64, 1.7, 0.3}, {1000, 1.70, 2.8, 0.5}, INFINITY, 0}, SF_CFH_A_MAX},
+        {{{200, 0.31, 1.1, 0.1}, {1000, 0.90, 2.0, 0.2}, INFINITY, 0}, SF_CFH_A_MAX},
+        {{{200, 9.00, 0.7, 0.1}, {1000, 4.20, 2.0, 0.1}, INFINITY, 0}, SF_CFH_HIC},
+        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.0, 0}, SF_CFH_HIC}, /* fails not far above */
     };
     static const double first[] = {0.5, 1.0, 1.65, 3.0};
     for (size_t q = 0; q < sizeof cases / sizeof cases[0]; q++)
@@ -208,10 +212,10 @@ static void the_search_finds_the_criterion_that_is_met_first(void **state) {
 
 static void the_search_ends_at_its_limits_and_says_so(void **state) {
     (void)state;
-    const pad soft = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY};
-    const pad weak = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 1.3};
-    const pad stiff = {{200, 0.001, 1.2, 0}, {1000, 0.002, 2.4, 0}, INFINITY};
-    const pad broken = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 0};
+    const pad soft = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0};
+    const pad weak = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 1.3, 0};
+    const pad stiff = {{200, 0.001, 1.2, 0}, {1000, 0.002, 2.4, 0}, INFINITY, 0};
+    const pad broken = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 0, 0};
     sf_cfh_plan plan = plan_from(1, 1.5);
     sf_cfh_points points;
     sf_cfh_result result;
@@ -239,9 +243,36 @@ static void the_search_ends_at_its_limits_and_says_so(void **state) {
     assert_non_null(strstr(result.problem.text, "no simulation succeeded"));
 }
 
+/* "Above 0.1 m, neither reached" was the answer although a drop from 3 m had ended on the anvil. */
+static void a_drop_that_reaches_the_anvil_is_worse_than_every_limit(void **state) {
+    (void)state;
+    const pad thin = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 1.2};
+    const pad hole = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0.001};
+    sf_cfh_plan plan = plan_from(1, 10);
+    sf_cfh_points points;
+    sf_cfh_result result;
+    sf_cfh_report report = {.plan = &plan, .points = &points, .result = &result};
+    char text[512];
+    search(&thin, &plan, &points);
+    sf_cfh_evaluate(&points, plan.limit, &result);
+    assert_int_equal(result.verdict, SF_CFH_ABOVE);
+    assert_true(result.highest < 1.2 && result.anvil >= 1.2 && result.anvil < 1.5);
+    sf_cfh_verdict_text(&report, text, sizeof text);
+    assert_non_null(strstr(text, "the missile reaches the anvil"));
+    assert_non_null(strstr(text, "and below 1."));
+    search(&hole, &plan, &points);
+    sf_cfh_evaluate(&points, plan.limit, &result);
+    assert_int_equal(result.verdict, SF_CFH_BELOW);
+    assert_true(isnan(result.lowest));
+    assert_close(result.anvil, points.point[0].height, 0);
+    sf_cfh_verdict_text(&report, text, sizeof text);
+    assert_non_null(strstr(text, "below 0.0"));
+    assert_non_null(strstr(text, "the missile reaches the anvil"));
+}
+
 static void a_list_of_heights_is_followed(void **state) {
     (void)state;
-    const pad p = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.2};
+    const pad p = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.2, 0};
     sf_cfh_plan plan = plan_from(1, 10);
     sf_cfh_points points;
     sf_cfh_result result;
@@ -374,6 +405,7 @@ int main(void) {
         cmocka_unit_test(points_that_give_no_crossing_are_refused),
         cmocka_unit_test(the_search_finds_the_criterion_that_is_met_first),
         cmocka_unit_test(the_search_ends_at_its_limits_and_says_so),
+        cmocka_unit_test(a_drop_that_reaches_the_anvil_is_worse_than_every_limit),
         cmocka_unit_test(a_list_of_heights_is_followed),
         cmocka_unit_test(the_rig_of_the_paper),
         cmocka_unit_test(tables_of_the_rig_that_make_no_sense_are_refused),

@@ -180,6 +180,7 @@ static void missiles_with_edges_that_point_at_the_pad_are_refused(void **state) 
         {"Sphere(1) = {0, 0, 80, 80, -Pi/2, -Pi/6};", "s(0)", NULL},                           /* a dome */
         {"Sphere(1) = {0, 0, -80, 80, Pi/6, Pi/2};", "s(0)", "an edge at"},                    /* a bowl */
         {"Cylinder(1) = {0, 0, 0, 0, 0, 60, 40};", "s(0)", "never touches the contact group"}, /* a tube */
+        {"Box(1) = {3, 2, 0, 1, 1, 40};", "s()", "too narrow for the mesh"},
     };
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         char text[1024];

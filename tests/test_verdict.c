@@ -261,6 +261,26 @@ static void what_a_run_does_not_define_is_not_judged(void **state) {
     close_run(&run);
 }
 
+/* The fixture's base stays 50 mm below the top, in every frame. */
+static void foam_below_the_anvil_is_a_remark_and_far_below_not_to_be_used(void **state) {
+    const struct {
+        double anvil, value;
+        sf_grade grade;
+    } cases[] = {{0.05, 0, SF_GRADE_VALID},
+                 {0.045, 0.1, SF_GRADE_REMARKS},
+                 {0.035, 0.3, SF_GRADE_DO_NOT_USE},
+                 {0, NAN, SF_GRADE_VALID}};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        sound_run run = open_run(*state, (fixture_options){.anvil_depth = cases[k].anvil});
+        assert_int_equal(judge(&run), cases[k].grade);
+        assert_int_equal(row(&run, "below_anvil")->grade, cases[k].grade);
+        assert_true(isnan(cases[k].value) == isnan(row(&run, "below_anvil")->value));
+        if (!isnan(cases[k].value))
+            assert_close(row(&run, "below_anvil")->value, cases[k].value, 1e-9);
+        close_run(&run);
+    }
+}
+
 static void limits_pass_and_fail_beside_the_verdict(void **state) {
     sound_run run = open_run(*state, (fixture_options){0}); /* 100 g, HIC 1658 */
     assert_int_equal(judge(&run), SF_GRADE_VALID);
@@ -430,6 +450,7 @@ int main(void) {
         cmocka_unit_test(a_raw_peak_of_a_single_step_is_told_without_numbers),
         cmocka_unit_test(strain_beyond_the_data_is_the_share_of_its_energy),
         cmocka_unit_test(what_a_run_does_not_define_is_not_judged),
+        cmocka_unit_test(foam_below_the_anvil_is_a_remark_and_far_below_not_to_be_used),
         cmocka_unit_test(limits_pass_and_fail_beside_the_verdict),
         cmocka_unit_test(limits_of_a_run_that_ended_early_are_not_judged),
         cmocka_unit_test(softfall_post_does_not_judge_the_limits_of_a_run_that_ended_on_the_anvil),

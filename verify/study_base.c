@@ -171,7 +171,7 @@ static void study_drops(sf_study *study) {
     sf_drop drop[BASES];
     sf_study_text(
         study,
-        "\nThe drop of 4.5 m/s on 50 mm with a spacing of 7 mm:\n\n"
+        "\nThe drop of 4.5 m/s on 50 mm of the foam of verify/materials/eva_like.cfg with a spacing of 7 mm:\n\n"
         "| base | a_max (g) | HIC | rebound (m/s) | contact energy (%%) | time (s) |\n|---|---|---|---|---|---|\n");
     for (int k = 0; k < BASES; k++) {
         const char *const overrides[] = {"geometry.parameters.fine_spacing=7.0",

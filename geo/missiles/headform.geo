@@ -3,8 +3,9 @@
 //
 // The default is about the size of a head of 570 mm circumference. It is not the headform of a standard.
 //
-// Frame: the lowest point at the origin, the length along x, the width along y, the height along z. The quarter model is
-// x >= 0, y >= 0. The surface is closed, but for the symmetry planes of the quarter.
+// Frame: the length along x, the width along y, the height along z; the centre is at z = height / 2, about which tilt
+// turns the body. The lowest point is at the origin for tilt = 0 only. The quarter model is x >= 0, y >= 0. The surface
+// is closed, but for the symmetry planes of the quarter.
 
 SetFactory("OpenCASCADE");
 

@@ -67,6 +67,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .informed_strain = sf_model_informed_strain(m),
                       .expected_mesh_error = m->expected_mesh_error > 0 ? m->expected_mesh_error : NAN,
                       .slit_fraction = m->slit_fraction,
+                      .anvil_depth = m->anvil.depth,
                       .density = sf_model_density(m),
                       .impact_x = m->missile.impact_known ? m->missile.impact[0] : NAN,
                       .impact_y = m->missile.impact_known ? m->missile.impact[1] : NAN,

@@ -29,11 +29,18 @@ double sf_cfh_rig_margin(const sf_cfh_rig *rig, double margin) {
     return hypot(margin, rig->margin);
 }
 
-/* The points that succeeded, of one criterion. */
+static double anvil_height(const sf_cfh_points *points) {
+    for (int k = 0; k < points->count; k++)
+        if (points->point[k].on_anvil)
+            return points->point[k].height;
+    return NAN;
+}
+
+/* The points that succeeded, of one criterion, below a drop that ended on the anvil. */
 static int list_points(const sf_cfh_points *points, sf_cfh_criterion criterion, double *height,
                        double *value) {
     int count = 0;
-    for (int k = 0; k < points->count; k++) {
+    for (int k = 0; k < points->count && !points->point[k].on_anvil; k++) {
         if (points->point[k].failed)
             continue;
         height[count] = points->point[k].height;
@@ -58,7 +65,8 @@ static void decide(sf_cfh_result *r) {
 }
 
 void sf_cfh_evaluate(const sf_cfh_points *points, const double *limit, sf_cfh_result *result) {
-    *result = (sf_cfh_result){.lowest = NAN, .highest = NAN, .problem = SF_ERROR_INIT};
+    *result = (sf_cfh_result){
+        .lowest = NAN, .highest = NAN, .anvil = anvil_height(points), .problem = SF_ERROR_INIT};
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         double height[SF_CFH_MAX_POINTS], value[SF_CFH_MAX_POINTS];
         sf_error problem = SF_ERROR_INIT;
@@ -74,6 +82,10 @@ void sf_cfh_evaluate(const sf_cfh_points *points, const double *limit, sf_cfh_re
     }
     if (isnan(result->lowest)) {
         result->problem = (sf_error)SF_ERROR_INIT;
+        if (!isnan(result->anvil)) {
+            result->verdict = SF_CFH_BELOW;
+            return;
+        }
         SF_FAIL(&result->problem, SF_ERR_NUMERIC, "no simulation succeeded");
     }
     if (result->problem.status == SF_OK)

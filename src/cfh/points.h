@@ -18,6 +18,7 @@ typedef struct sf_cfh_point {
     double speed;   /* m s-1, at contact */
     bool failed;    /* no figures: the simulation failed, or its verdict is "do not use"; only height, speed,
                        grade and note are set */
+    bool on_anvil;  /* it failed as the missile reached the anvil: worse than every limit */
     sf_grade grade; /* of the run; "do not use" if it failed */
     double value[SF_CFH_CRITERIA]; /* g, - */
     double v_rebound;              /* m s-1, NaN: contact had not ended */
@@ -34,15 +35,18 @@ typedef struct sf_cfh_points {
 
 typedef enum sf_cfh_verdict {
     SF_CFH_FOUND,
-    SF_CFH_ABOVE,   /* no limit was reached: the critical height is above the highest point */
-    SF_CFH_BELOW,   /* a limit was exceeded at the lowest point: it is below that */
-    SF_CFH_UNKNOWN, /* no simulation succeeded, or no crossing could be read: `problem` says why */
+    SF_CFH_ABOVE,   /* no limit was reached: the critical height is above the highest point, and below `anvil`
+                     */
+    SF_CFH_BELOW,   /* a limit was exceeded, or the anvil reached, at the lowest point: it is below that */
+    SF_CFH_UNKNOWN, /* no simulation succeeded or reached the anvil, or no crossing could be read: `problem`
+                       says why */
 } sf_cfh_verdict;
 
 typedef struct sf_cfh_result {
     sf_cfh_verdict verdict;
-    sf_cfh_criterion deciding; /* of FOUND and BELOW */
-    double lowest, highest;    /* m, of the simulations that succeeded */
+    sf_cfh_criterion deciding; /* of FOUND and BELOW; unless `lowest` is NaN */
+    double lowest, highest;    /* m, of the simulations that succeeded, below `anvil`; NaN: none */
+    double anvil;              /* m, lowest height from which the missile reached the anvil; NaN: none */
     sf_cfh_crossing crossing[SF_CFH_CRITERIA];
     sf_error problem; /* of UNKNOWN */
 } sf_cfh_result;

@@ -31,11 +31,26 @@ void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
                  deciding(r)->height, deciding(r)->low, deciding(r)->high, name, limit, unit);
         break;
     case SF_CFH_ABOVE:
+        if (!isnan(v->anvil)) {
+            snprintf(
+                text, size,
+                "Critical fall height above %.3f m and below %.3f m of free fall: neither a_max %g g nor HIC %g is "
+                "reached, but from %.3f m the missile reaches the anvil.",
+                v->highest, v->anvil, r->plan->limit[SF_CFH_A_MAX], r->plan->limit[SF_CFH_HIC], v->anvil);
+            break;
+        }
         snprintf(text, size,
                  "Critical fall height above %.3f m of free fall: neither a_max %g g nor HIC %g is reached.",
                  v->highest, r->plan->limit[SF_CFH_A_MAX], r->plan->limit[SF_CFH_HIC]);
         break;
     case SF_CFH_BELOW:
+        if (isnan(v->lowest)) {
+            snprintf(
+                text, size,
+                "Critical fall height below %.3f m of free fall: from there the missile reaches the anvil.",
+                v->anvil);
+            break;
+        }
         snprintf(text, size,
                  "Critical fall height below %.3f m of free fall: %s exceeds %g%s at the lowest height.",
                  v->lowest, name, limit, unit);
@@ -44,6 +59,11 @@ void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
         snprintf(text, size, "Critical fall height not determined: %s.", v->problem.text);
         break;
     }
+}
+
+/* Of SF_CFH_BELOW. */
+static double upper_bound(const sf_cfh_result *v) {
+    return isnan(v->lowest) ? v->anvil : v->lowest;
 }
 
 /* The same on the rig; "" without a rig or a height. */
@@ -58,7 +78,7 @@ static void rig_text(const sf_cfh_report *r, char *text, size_t size) {
         height = r->result->highest;
         side = "above ";
     } else if (r->result->verdict == SF_CFH_BELOW) {
-        height = r->result->lowest;
+        height = upper_bound(r->result);
         side = "below ";
     }
     if (r->rig->pairs == 0 || isnan(height))
@@ -120,12 +140,13 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     sf_json_open(json, "critical_fall_height", '{');
     sf_json_text(json, "verdict", words[v->verdict]);
     sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
-    sf_json_text(json, "deciding", decided ? sf_cfh_name(v->deciding) : NULL);
+    sf_json_text(json, "deciding", !decided ? NULL : isnan(v->lowest) ? "anvil" : sf_cfh_name(v->deciding));
     put_heights(json, r, found ? deciding(r)->height : NAN, found ? deciding(r)->margin : NAN);
     sf_json_number(json, "speed_m_s", found ? sf_cfh_speed(deciding(r)->height) : NAN);
     sf_json_number(json, "confidence", 0.95);
     sf_json_number(json, "lowest_simulated_m", v->lowest);
     sf_json_number(json, "highest_simulated_m", v->highest);
+    sf_json_number(json, "reaches_anvil_m", v->anvil);
     sf_json_text(json, "search_ended", sf_cfh_step_text(r->ending));
     sf_json_close(json, '}');
 }
@@ -270,10 +291,13 @@ static void height_text(const sf_cfh_report *r, double scale, char *text, size_t
         snprintf(text, size, "%.3f m", scale * deciding(r)->height);
         break;
     case SF_CFH_ABOVE:
-        snprintf(text, size, "> %.3f m", scale * v->highest);
+        if (isnan(v->anvil))
+            snprintf(text, size, "> %.3f m", scale * v->highest);
+        else
+            snprintf(text, size, "%.3f to %.3f m", scale * v->highest, scale * v->anvil);
         break;
     case SF_CFH_BELOW:
-        snprintf(text, size, "< %.3f m", scale * v->lowest);
+        snprintf(text, size, "< %.3f m", scale * upper_bound(v));
         break;
     case SF_CFH_UNKNOWN:
         snprintf(text, size, "–");

@@ -160,7 +160,7 @@ const char *sf_cfh_step_text(sf_cfh_step step) {
     case SF_CFH_AT_MIN_HEIGHT:
         return "a limit is exceeded down to 1 cm";
     case SF_CFH_COLLAPSED:
-        return "no limit is reached up to the height at which the simulation fails or is not to be used";
+        return "no limit is reached up to the height at which the simulation fails, reaches the anvil or is not to be used";
     case SF_CFH_AT_CAP:
         return "the number of drops is at its cap";
     default:

@@ -63,6 +63,7 @@ static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, double heig
     drop.overrides[drop.override_count++] = velocity;
     if (sf_runner_run(runner, &drop, &result, &failure) == SF_ERR_NUMERIC) {
         p->failed = true;
+        p->on_anvil = strstr(failure.text, SF_ENDED_ON_ANVIL) != NULL;
         p->grade = SF_GRADE_DO_NOT_USE;
         add_note(p, "the simulation failed: %s", failure.text);
         fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);

@@ -46,6 +46,8 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "`energy_beyond_data`", "there the material's curve is extrapolated, and with it the peak")                       \
     X(anvil, 0.9, 0.95, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \
       "the missile reaches the anvil; its stiffness is not in the model")                                              \
+    X(below_anvil, 0.01, 0.2, SF_AS_PERCENT, "foam below the anvil", "`below_anvil_mm` / `thickness_mm`", \
+      "the anvil acts on the surfaces of `pad.fixed` only: other foam passes through it and is too soft") \
     X(notes, 0, INFINITY, SF_AS_NUMBER, "notes of the programs", "number of `notes` that do not only repeat `ending`",                                  \
       "a program warned of the run or left something out")
 /* clang-format on */

@@ -245,6 +245,39 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
     return err->status;
 }
 
+/* Raises *depth (m) to that of the deepest node of the frame below z = plane. */
+static sf_status add_depth(const sf_results *r, const sf_frame_head *head, double plane, double *depth,
+                           sf_error *err) {
+    sf_frame frame;
+    if (sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT, &frame, err) != SF_OK)
+        return err->status;
+    const double *u = frame.field[SF_FRAME_DISPLACEMENT];
+    for (int64_t i = 0; u && i < r->node_count; i++)
+        *depth = fmax(*depth, plane - (r->position[3 * i + 2] + u[3 * i + 2]));
+    sf_frame_free(&frame);
+    return SF_OK;
+}
+
+/* What a failed run left of its frames may be damaged. */
+static sf_status compute_below_anvil(const sf_results *r, sf_figures *f, sf_error *err) {
+    double high = -INFINITY, depth = 0;
+    sf_error problem = SF_ERROR_INIT;
+    if (!(r->anvil_depth > 0) || r->frame_count + r->has_peak == 0)
+        return SF_OK;
+    for (int64_t i = 0; i < r->node_count; i++)
+        high = fmax(high, r->position[3 * i + 2]);
+    double plane = high - r->anvil_depth;
+    for (int64_t k = 0; k < r->frame_count && problem.status == SF_OK; k++)
+        add_depth(r, &r->frames[k], plane, &depth, &problem);
+    if (problem.status == SF_OK && r->has_peak)
+        add_depth(r, &r->peak, plane, &depth, &problem);
+    if (problem.status == SF_OK)
+        f->below_anvil = depth;
+    else if (sf_results_ended_well(r))
+        SF_FAIL(err, problem.status, "%s", problem.text);
+    return err->status;
+}
+
 static void compute_compression(const sf_results *r, sf_figures *f) {
     const sf_history *h = &r->history;
     const double *work = h->energy_external;
@@ -296,7 +329,7 @@ sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *
         goto done;
     compute_energies(results, f);
     compute_extremes(results, f);
-    if (compute_fields(results, f, err) != SF_OK)
+    if (compute_fields(results, f, err) != SF_OK || compute_below_anvil(results, f, err) != SF_OK)
         goto done;
     if (f->driven) {
         compute_compression(results, f);

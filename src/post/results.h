@@ -60,6 +60,7 @@ typedef struct sf_results {
                                the file does not say */
     double informed_strain; /* -, up to which data inform the material (of layers the least); NaN: the file
                                does not say */
+    double anvil_depth;     /* m, below the undeformed pad's top; 0: there is none; NaN: the file does not say */
     int layer_count;        /* of a pad of several materials; 0: one */
     uint8_t *node_layer;    /* [node_count] number of the layer */
     char **layer_name;      /* [layer_count] parts of layer_names */

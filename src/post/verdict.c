@@ -93,6 +93,10 @@ static double anvil_value(const sf_results *r, const sf_figures *f) {
     return f->max_mean_strain;
 }
 
+static double below_anvil_value(const sf_results *r, const sf_figures *f) {
+    return f->below_anvil / r->thickness;
+}
+
 static double notes_value(const sf_results *r, const sf_figures *f) {
     (void)f;
     int count = 0;
@@ -134,7 +138,7 @@ static const char *first_note(const sf_results *r) {
 
 /* The sentence of solver/run/ending.c is the reason, not only a failure. */
 static bool ended_on_anvil(const sf_results *r) {
-    static const char reason[] = "the missile reached the anvil";
+    static const char reason[] = SF_ENDED_ON_ANVIL;
     return r->has_summary && strncmp(r->status, reason, sizeof reason - 1) == 0;
 }
 

@@ -52,6 +52,26 @@ static sf_status mark_resting(const sf_node_set *set, const sf_model *m, const s
     return SF_OK;
 }
 
+/* The anvil presses the nodes of the base only: others in its plane would pass through it. */
+static sf_status check_whole_base(const sf_model *m, const sf_base_marks *marks, sf_error *err) {
+    double low = lowest_node(m);
+    int64_t count = 0, first = -1;
+    for (int64_t i = 0; i < m->node_count; i++)
+        if (!marks->rest[i] && m->position[3 * i + 2] <= low + LOWEST * m->thickness) {
+            first = count == 0 ? i : first;
+            count++;
+        }
+    if (count == 0)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "pad.fixed: %lld nodes in the plane of the anvil, the first at (%.4g, %.4g, %.4g) mm, are in "
+        "none of its groups: a resting pad (pad.base = \"resting\") would pass through the anvil there; "
+        "name its whole underside",
+        (long long)count, 1e3 * m->position[3 * first], 1e3 * m->position[3 * first + 1],
+        1e3 * m->position[3 * first + 2]);
+}
+
 /* A resting node is free to rise. */
 static sf_status check_resting(const sf_model *m, const sf_base_marks *marks, sf_error *err) {
     for (int64_t i = 0; i < m->node_count; i++)
@@ -84,6 +104,8 @@ sf_status sf_base_mark(const sf_case *c, const sf_mesh *mesh, const sf_model *m,
         if (!set || mark_smooth("pad.sliding", set, m, marks, err) != SF_OK)
             return err->status;
     }
+    if (c->base_rule == SF_BASE_RESTING && check_whole_base(m, marks, err) != SF_OK)
+        return err->status;
     return check_resting(m, marks, err);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/build.h"
 
+#include "core/mat3.h"
 #include "core/motion.h"
 #include "core/stability.h"
 #include "pre/base.h"
@@ -407,17 +408,49 @@ static sf_status check_freedom(const sf_case *c, const sf_model *m, sf_error *er
                    (long long)m->symmetry_factor);
 }
 
+static double across(const double direction[3], const double a[3], const double b[3]) {
+    double r[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, along = sf_dot3(r, direction);
+    return sqrt(fmax(sf_dot3(r, r) - along * along, 0));
+}
+
+/* Why the missile meets no contact node, `miss`: is it over them, but passes between them? */
+static sf_status tell_miss(const sf_model *m, const sf_surface *surface, const sf_error *miss,
+                           sf_error *err) {
+    const double *d = m->missile.direction, *low = surface->position;
+    double width = 0, nearest = INFINITY, spacing = 0;
+    for (int64_t k = 1; k < surface->node_count; k++)
+        low = sf_dot3(&surface->position[3 * k], d) > sf_dot3(low, d) ? &surface->position[3 * k] : low;
+    for (int64_t k = 0; k < surface->node_count; k++)
+        width = fmax(width, across(d, low, &surface->position[3 * k]));
+    for (int64_t k = 0; k < m->contact_count; k++) {
+        int64_t i = m->contact_node[k];
+        double distance = across(d, low, &m->position[3 * i]);
+        spacing = distance < nearest ? m->spacing[i] : spacing;
+        nearest = fmin(nearest, distance);
+    }
+    if (miss->status == SF_ERR_MODEL && width < 2 * spacing && nearest < 2 * spacing)
+        return SF_FAIL(
+            err, SF_ERR_MODEL,
+            "the missile is too narrow for the mesh: no part of it is farther than %.3g mm from its "
+            "lowest point, across its direction, and it passes between the contact nodes, which are "
+            "%.3g mm apart there: take a finer mesh",
+            1e3 * width, 1e3 * spacing);
+    return SF_FAIL(err, miss->status, "%s", miss->text);
+}
+
 /* Places the missile `gap` away from first contact and moves its surface into the model. */
 static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
     double distance = 0, impact[3];
+    sf_error miss = SF_ERROR_INIT;
     m->missile = c->missile_card;
     if (check_freedom(c, m, err) != SF_OK || sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
         sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
         sf_impact_place(c, m, surface, &m->missile, err) != SF_OK ||
-        sf_missile_take_body(c, surface, &m->missile, err) != SF_OK ||
-        sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
-                            err) != SF_OK)
+        sf_missile_take_body(c, surface, &m->missile, err) != SF_OK)
         return err->status;
+    if (sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
+                            &miss) != SF_OK)
+        return tell_miss(m, surface, &miss, err);
     double travel = distance - m->missile.gap;
     for (int64_t k = 0; k < 3 * surface->node_count; k++)
         surface->position[k] += travel * m->missile.direction[k % 3];
@@ -452,7 +485,8 @@ static sf_status check_start(const sf_case *c, const sf_model *m, sf_error *err)
         c->contact_group, 1e3 * depth, 1e3 * m->anvil.depth);
 }
 
-/* A driven missile does not stop at the anvil. */
+/* A prescribed motion stays above the plane of the pad's underside: where the anvil is there, it would end
+ * the run (solver/run/ending.h). */
 static sf_status check_depth(const sf_model *m, sf_error *err) {
     double depth = sf_missile_card_depth(&m->missile, sf_motion_measure(m).displacement);
     if (!sf_missile_is_driven(m) || depth < m->thickness * (1 - 1e-9)) /* a difference of coordinates */
