@@ -123,6 +123,61 @@ static void vn600_is_described(void **state) {
     free(json.data);
 }
 
+/* The example's material is what the fit writes, and says which numbers are at a bound. */
+static void vn600_slow_is_the_fit(void **state) {
+    program_place *place = *state;
+    sf_case fitted, example;
+    const char *source = getenv("SF_SOURCE_DIR");
+    program_result r = program_succeed(
+        place, "fit", "compression %s/examples/fit/hyperfoam/vn600_quasistatic.cfg -o slow", source);
+    assert_non_null(strstr(r.out, "nu 0.45 (at its bound)\n"));
+    assert_null(strstr(r.out, "+- 0\n"));
+    assert_null(strstr(r.err, "does not describe"));
+    program_shell(place, "cp %s/examples/materials/vn600_slow.cfg .", source);
+    assert_int_equal(program_shell(place, "grep -q 'nu 0.45 (at its bound)' vn600_slow.cfg").code, 0);
+    read_back(place, "slow/material.cfg", &fitted);
+    read_back(place, "vn600_slow.cfg", &example);
+    const sf_hyperfoam_card *a = fitted.material.card, *b = example.material.card;
+    for (int k = 0; k < 2; k++) {
+        assert_relative(a->term[k].mu, b->term[k].mu, 1e-3);
+        assert_relative(a->term[k].alpha, b->term[k].alpha, 1e-2);
+        assert_relative(a->term[k].nu, b->term[k].nu, 1e-3);
+    }
+    assert_relative(a->hysteresis_shape, b->hysteresis_shape, 1e-3);
+    assert_true(a->damp == b->damp);
+    sf_case_free(&fitted);
+    sf_case_free(&example);
+}
+
+/* At 10 per second no hyperfoam describes VN600: the program says so, and so does the file. */
+static void poor_fit_is_marked(void **state) {
+    program_place *place = *state;
+    program_result r =
+        program_succeed(place, "fit", "compression %s/examples/fit/hyperfoam/vn600_10_per_s.cfg -o fast",
+                        getenv("SF_SOURCE_DIR"));
+    assert_non_null(strstr(r.err, "does not describe this test"));
+    assert_int_equal(
+        program_shell(place, "grep -q 'does not describe this test.* 20 %%' fast/material.cfg").code, 0);
+}
+
+/* By the ratio of the whole law, not of a term: VN600 has a small term of 0.45. */
+static void large_poisson_ratio_is_warned_of(void **state) {
+    program_place *place = *state;
+    static const char *const sets[] = {
+        "", "--set material.term_1.nu=0.4",
+        "--set material.term_1='{ mu = \"60 kPa\"; alpha = 8.0; beta = 2.0; }' --set material.term_2.nu=0.4",
+        "--set material.term_1='{ mu = \"60 kPa\"; alpha = 8.0; beta = 1.1; }' --set material.term_2.nu=0.34"};
+    static const bool warned[] = {false, true, true, false};
+    for (int k = 0; k < 4; k++) {
+        program_result r = program_succeed(
+            place, "pre",
+            "%s/examples/compression/vn600.cfg -f -o p.h5 --set geometry.parameters.spacing=25 %s",
+            getenv("SF_SOURCE_DIR"), sets[k]);
+        if ((strstr(r.err, "have a Poisson ratio of") != NULL) != warned[k])
+            fail_msg("%s: %s", sets[k], r.err);
+    }
+}
+
 static void bad_files_are_refused(void **state) {
     program_place *place = *state;
     static const struct {
@@ -192,6 +247,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_law_is_found_from_one_file),
         cmocka_unit_test(vn600_is_described),
+        cmocka_unit_test(vn600_slow_is_the_fit),
+        cmocka_unit_test(poor_fit_is_marked),
+        cmocka_unit_test(large_poisson_ratio_is_warned_of),
         cmocka_unit_test(bad_files_are_refused),
         cmocka_unit_test(pressed_cube_has_the_stress_of_free_sides),
     };

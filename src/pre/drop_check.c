@@ -312,6 +312,16 @@ static void tell_density(const sf_model *m, const sf_sink *sink) {
                      m->missile.mass, 1e6 * solid.volume);
 }
 
+/* ---- materials ---- */
+
+static void tell_cautions(const sf_model *m, const sf_sink *sink) {
+    char text[512];
+    for (int64_t k = 0; k < m->material_count; k++)
+        if (m->material[k].law->caution &&
+            m->material[k].law->caution(m->material[k].card, text, sizeof text))
+            sf_sink_tell(sink, SF_WARNING, "%s", text);
+}
+
 /* ---- spacing ---- */
 
 enum { REASON_SIZE = 256 };
@@ -348,6 +358,7 @@ void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, cons
     char reason[REASON_SIZE];
     tell_free_planes(c, mesh, sink);
     tell_density(m, sink);
+    tell_cautions(m, sink);
     if (!(m->expected_mesh_error >= sf_good_run_limits()->mesh))
         return;
     describe_spacing(m, zone, reason);

@@ -18,7 +18,8 @@
 sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                         sf_error *err);
 
-/* Warns of a symmetry group of the geometry that the case does not hold, and of a coarse mesh. */
+/* Warns of a symmetry group of the geometry that the case does not hold, of a material where the solver is
+ * known to be weak (sf_law.caution), and of a coarse mesh. */
 void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                   const sf_sink *sink);
 

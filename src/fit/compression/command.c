@@ -96,7 +96,7 @@ static sf_status run(const options *o, sf_error *err) {
     if (hyperfoam && o->cube.case_path)
         return SF_FAIL(err, SF_ERR_INPUT, "--simulate does not work with law = \"hyperfoam\" in %s", o->path);
     if (hyperfoam)
-        return sf_hyperfoam_fit_file(o->path, o->directory, o->force, stdout, err);
+        return sf_hyperfoam_fit_file(o->path, o->directory, o->force, stdout, &sink, err);
     if (sf_compression_output_check(o->directory, o->force, err) != SF_OK ||
         (o->cube.case_path &&
          sf_plain_hash(o->cube.case_path, "case file", SF_PLAIN_TEXT, &ignored, err) != SF_OK) ||

@@ -12,7 +12,8 @@
 #include <string.h>
 
 static const char *const output_names[] = {"fit.csv", "fit.json", "material.cfg", NULL};
-enum { LAW_HYPERFOAM = 1, NAME_SIZE = 64, LEAST_LATERAL = 6 };
+enum { LAW_HYPERFOAM = 1, NAME_SIZE = 64, LEAST_LATERAL = 6, MISFIT_SIZE = 256 };
+static const char AT_BOUND[] = " (at its bound)";
 #define LAW_WORDS "low_density_foam|hyperfoam"
 
 typedef struct input {
@@ -151,14 +152,30 @@ static sf_status read_root(const sf_config *file, input *in, sf_error *err) {
 
 /* ---- output ---- */
 
+static void put_error(FILE *out, double error, bool at_bound) {
+    if (at_bound)
+        fputs(AT_BOUND, out);
+    else if (isfinite(error))
+        fprintf(out, " +- %.2g", error);
+}
+
+static void put_unloading(FILE *out, const sf_hyperfoam_fit *fit) {
+    const bool *at_bound = fit->unloading_at_bound;
+    fprintf(out, "  unloading: HU %.4g%s, SHAPE %.4g%s, ALPHA %.4g%s; rms %.2g %% of the largest stress\n",
+            fit->card.hysteresis_hu, at_bound[0] ? AT_BOUND : "", fit->card.hysteresis_shape,
+            at_bound[1] ? AT_BOUND : "", fit->card.hysteresis_alpha, at_bound[2] ? AT_BOUND : "",
+            100 * fit->unloading_rms);
+}
+
 static void put_terms(FILE *out, const input *in, const sf_hyperfoam_fit *fit) {
     for (int k = 0; k < in->terms; k++) {
         const sf_hyperfoam_term *t = &fit->card.term[k];
         const double *e = fit->error[k];
-        fprintf(out, "  term %d: mu %.5g kPa +- %.2g %%, alpha %.4g +- %.2g, nu %.4g", k + 1, 1e-3 * t->mu,
-                100 * e[0], t->alpha, e[1], t->nu);
-        if (isfinite(e[2]))
-            fprintf(out, " +- %.2g", e[2]);
+        fprintf(out, "  term %d: mu %.5g kPa +- %.2g %%, alpha %.4g", k + 1, 1e-3 * t->mu, 100 * e[0],
+                t->alpha);
+        put_error(out, e[1], fit->at_bound[k][1]);
+        fprintf(out, ", nu %.4g", t->nu);
+        put_error(out, e[2], fit->at_bound[k][2]);
         fputs("\n", out);
     }
     fprintf(out, "  -ln(lateral stretch)/ln(axial stretch): %.3g at 1 %% strain, %.3g at %.3g %%\n",
@@ -168,20 +185,38 @@ static void put_terms(FILE *out, const input *in, const sf_hyperfoam_fit *fit) {
         fprintf(out, ", lateral strain %.2g %% of the largest", 100 * fit->lateral_rms);
     fputs("\n", out);
     if (isfinite(fit->unloading_rms))
-        fprintf(out, "  unloading: HU %.4g, SHAPE %.4g, ALPHA %.4g; rms %.2g %% of the largest stress\n",
-                fit->card.hysteresis_hu, fit->card.hysteresis_shape, fit->card.hysteresis_alpha,
-                100 * fit->unloading_rms);
+        put_unloading(out, fit);
+}
+
+/* What a poor fit misses. */
+static void describe_misfit(const sf_hyperfoam_fit *fit, char text[MISFIT_SIZE]) {
+    const struct {
+        const char *name;
+        double rms;
+    } parts[] = {{"stress while loading", fit->stress_rms},
+                 {"lateral strain", fit->lateral_rms},
+                 {"stress of unloading", fit->unloading_rms}};
+    int used =
+        snprintf(text, MISFIT_SIZE, "the fit does not describe this test, rms over the largest value:");
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+        if (isfinite(parts[k].rms))
+            used += snprintf(text + used, MISFIT_SIZE - (size_t)used, "%s %s %.2g %%", k > 0 ? "," : "",
+                             parts[k].name, 100 * parts[k].rms);
 }
 
 static sf_status write_material(const sf_staging *output, const input *in, const sf_hyperfoam_fit *fit,
                                 sf_error *err) {
-    char *text = NULL;
+    char *text = NULL, misfit[MISFIT_SIZE];
     size_t size;
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the comments of the material file");
     fprintf(out, "Identified by softfall-fit compression from\n  %s at %.6g 1/s, to a strain of %.4g\n",
             in->data.test.path, in->data.test.rate, in->data.test.largest_strain);
+    if (sf_hyperfoam_fit_is_poor(fit)) {
+        describe_misfit(fit, misfit);
+        fprintf(out, "WARNING: %s\n", misfit);
+    }
     put_terms(out, in, fit);
     fprintf(out, "Beyond that strain and at other rates it is extrapolation. +-: standard errors.\n");
     fclose(out);
@@ -242,6 +277,8 @@ static sf_status write_json(const sf_staging *output, const input *in, const sf_
         sf_json_number(&json, "alpha_error", fit->error[k][1]);
         sf_json_number(&json, "nu", fit->card.term[k].nu);
         sf_json_number(&json, "nu_error", fit->error[k][2]);
+        sf_json_bool(&json, "alpha_at_bound", fit->at_bound[k][1]);
+        sf_json_bool(&json, "nu_at_bound", fit->at_bound[k][2]);
         sf_json_close(&json, '}');
     }
     sf_json_close(&json, ']');
@@ -249,6 +286,7 @@ static sf_status write_json(const sf_staging *output, const input *in, const sf_
     sf_json_number(&json, "poisson_at_largest_strain", fit->poisson[1]);
     sf_json_number(&json, "stress_rms", fit->stress_rms);
     sf_json_number(&json, "lateral_rms", fit->lateral_rms);
+    sf_json_bool(&json, "describes_the_test", !sf_hyperfoam_fit_is_poor(fit));
     sf_json_number(&json, "HU", fit->card.hysteresis_hu);
     sf_json_number(&json, "SHAPE", fit->card.hysteresis_shape);
     sf_json_number(&json, "ALPHA", fit->card.hysteresis_alpha);
@@ -271,7 +309,7 @@ static sf_status write_all(const input *in, const sf_hyperfoam_fit *fit, const c
 }
 
 sf_status sf_hyperfoam_fit_file(const char *path, const char *directory, bool force, FILE *log,
-                                sf_error *err) {
+                                const sf_sink *sink, sf_error *err) {
     input in = {.name = "foam",
                 .card = {.hysteresis_hu = 1,
                          .hysteresis_shape = 1,
@@ -282,6 +320,7 @@ sf_status sf_hyperfoam_fit_file(const char *path, const char *directory, bool fo
                          .stable_to = 0.9}};
     sf_config file;
     sf_hyperfoam_fit fit;
+    char misfit[MISFIT_SIZE];
     if (sf_staging_check(directory, output_names, force, err) == SF_OK) {
         if (sf_config_open(path, &file, err) == SF_OK)
             read_root(&file, &in, err);
@@ -296,6 +335,10 @@ sf_status sf_hyperfoam_fit_file(const char *path, const char *directory, bool fo
             fprintf(log, "%s: hyperfoam of %d term%s\n", in.name, in.terms, in.terms > 1 ? "s" : "");
             put_terms(log, &in, &fit);
             fprintf(log, "Files in %s: material.cfg, fit.json, fit.csv\n", directory);
+            fflush(log);
+            describe_misfit(&fit, misfit);
+            if (sf_hyperfoam_fit_is_poor(&fit))
+                sf_sink_tell(sink, SF_WARNING, "%s", misfit);
         }
     }
     input_free(&in);

@@ -4,6 +4,7 @@
 #define SF_FIT_COMPRESSION_HYPERFOAM_COMMAND_H
 
 #include "core/error.h"
+#include "core/sink.h"
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -11,8 +12,8 @@
 sf_status sf_hyperfoam_fit_asked(const char *path, bool *asked, sf_error *err);
 
 /* Reads the file and its test, fits, and writes material.cfg, fit.json and fit.csv into `directory`; prints
- * the result to `log`. */
+ * the result to `log`, and warns of a fit that does not describe the test. */
 sf_status sf_hyperfoam_fit_file(const char *path, const char *directory, bool force, FILE *log,
-                                sf_error *err);
+                                const sf_sink *sink, sf_error *err);
 
 #endif

@@ -8,7 +8,11 @@
 #include <string.h>
 
 enum { MOST = 3 * SF_HYPERFOAM_TERMS, STARTS = 6, TURNS = 200 };
-static const double LARGEST_NU = 0.45, LARGEST_ALPHA = 49;
+static const double LARGEST_NU = 0.45, LARGEST_ALPHA = 49, LEAST_ALPHA = 0.02;
+static const double AT_BOUND = 1e-3; /* of the range */
+static const double POOR = 0.1;      /* rms over the largest value */
+/* HU, SHAPE, ALPHA. */
+static const double UNLOADING_LEAST[3] = {1e-4, 0.05, 0.1}, UNLOADING_RANGE[3] = {1 - 1e-4, 20, 4.9};
 static const double starts[STARTS] = {40, 14, 4, -1, -3, -8}; /* of alpha: from yield to densification */
 
 void sf_hyperfoam_data_free(sf_hyperfoam_data *data) {
@@ -54,7 +58,7 @@ static void take_terms(const problem *p, const gsl_vector *x, sf_hyperfoam_card 
         double alpha = gsl_vector_get(x, (size_t)(each * k + 1));
         t->mu = exp(fmin(30, gsl_vector_get(x, (size_t)(each * k))));
         t->alpha = LARGEST_ALPHA * tanh(alpha / LARGEST_ALPHA);
-        t->alpha = fabs(t->alpha) < 0.02 ? copysign(0.02, t->alpha) : t->alpha;
+        t->alpha = fabs(t->alpha) < LEAST_ALPHA ? copysign(LEAST_ALPHA, t->alpha) : t->alpha;
         if (each == 3)
             t->nu = LARGEST_NU * logistic(gsl_vector_get(x, (size_t)(each * k + 2)));
     }
@@ -85,9 +89,9 @@ static int deviate(const gsl_vector *x, void *data, gsl_vector *out) {
 }
 
 static void take_unloading(const gsl_vector *x, sf_hyperfoam_card *card) {
-    card->hysteresis_hu = 1e-4 + (1 - 1e-4) * logistic(gsl_vector_get(x, 0));
-    card->hysteresis_shape = 0.05 + 20 * logistic(gsl_vector_get(x, 1));
-    card->hysteresis_alpha = 0.1 + 4.9 * logistic(gsl_vector_get(x, 2));
+    card->hysteresis_hu = UNLOADING_LEAST[0] + UNLOADING_RANGE[0] * logistic(gsl_vector_get(x, 0));
+    card->hysteresis_shape = UNLOADING_LEAST[1] + UNLOADING_RANGE[1] * logistic(gsl_vector_get(x, 1));
+    card->hysteresis_alpha = UNLOADING_LEAST[2] + UNLOADING_RANGE[2] * logistic(gsl_vector_get(x, 2));
 }
 
 static int deviate_unloading(const gsl_vector *x, void *data, gsl_vector *out) {
@@ -157,6 +161,19 @@ static void start(const problem *p, const int choice[SF_HYPERFOAM_TERMS], gsl_ve
     }
 }
 
+static bool is_at_end(double part) {
+    return part < AT_BOUND || part > 1 - AT_BOUND;
+}
+
+static void find_bounds(const problem *p, const gsl_vector *x, sf_hyperfoam_fit *fit) {
+    int each = per_term(p);
+    for (int k = 0; k < p->terms; k++) {
+        double alpha = fabs(fit->card.term[k].alpha);
+        fit->at_bound[k][1] = alpha <= LEAST_ALPHA || alpha > (1 - AT_BOUND) * LARGEST_ALPHA;
+        fit->at_bound[k][2] = each == 3 && is_at_end(logistic(gsl_vector_get(x, (size_t)(each * k + 2))));
+    }
+}
+
 static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix *covariance, double factor,
                         sf_hyperfoam_fit *fit) {
     int each = per_term(p);
@@ -166,7 +183,9 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
             bool fitted = k < p->terms && j < each;
             double part = fitted && j == 2 ? logistic(gsl_vector_get(x, at)) : 0;
             double scale = j == 2 ? LARGEST_NU * part * (1 - part) : 1;
-            fit->error[k][j] = fitted ? scale * sqrt(factor * gsl_matrix_get(covariance, at, at)) : NAN;
+            fit->error[k][j] = fitted && !fit->at_bound[k][j]
+                                   ? scale * sqrt(factor * gsl_matrix_get(covariance, at, at))
+                                   : NAN;
         }
 }
 
@@ -189,6 +208,7 @@ static sf_status fit_terms(problem *p, sf_hyperfoam_fit *fit, sf_error *err) {
         least = search(deviate, p, count, best, covariance);
     if (isfinite(least)) {
         take_terms(p, best, &fit->card);
+        find_bounds(p, best, fit);
         take_errors(p, best, covariance, least / (double)(count > size ? count - size : 1), fit);
     } else {
         SF_FAIL(err, SF_ERR_NUMERIC, "no search for %d terms of the hyperfoam converges", p->terms);
@@ -221,6 +241,8 @@ static sf_status fit_unloading(problem *p, sf_hyperfoam_fit *fit, sf_error *err)
         double sum = search(deviate_unloading, p, count, x, NULL);
         if (isfinite(sum)) {
             take_unloading(x, &fit->card);
+            for (size_t k = 0; k < 3; k++)
+                fit->unloading_at_bound[k] = is_at_end(logistic(gsl_vector_get(x, k)));
             fit->unloading_rms = sqrt(sum / (double)count);
         }
     }
@@ -230,11 +252,8 @@ static sf_status fit_unloading(problem *p, sf_hyperfoam_fit *fit, sf_error *err)
     return err->status;
 }
 
-/* -ln of the lateral stretch over ln of the axial one. */
-static double poisson(const sf_hyperfoam *foam, double strain) {
-    double lateral = 0, energy;
-    sf_hyperfoam_free_stress(foam, strain, &lateral, &energy);
-    return -log1p(lateral) / log1p(-strain);
+bool sf_hyperfoam_fit_is_poor(const sf_hyperfoam_fit *fit) {
+    return fit->stress_rms > POOR || fit->lateral_rms > POOR || fit->unloading_rms > POOR;
 }
 
 static void measure(const problem *p, sf_hyperfoam_fit *fit) {
@@ -248,8 +267,8 @@ static void measure(const problem *p, sf_hyperfoam_fit *fit) {
         sf_hyperfoam_free_stress(&foam, p->data->lateral_at[i], &lateral, &energy);
         side += pow(lateral - p->data->lateral[i], 2);
     }
-    fit->poisson[0] = poisson(&foam, 0.01);
-    fit->poisson[1] = poisson(&foam, t->largest_strain);
+    fit->poisson[0] = sf_hyperfoam_poisson(&foam, 0.01);
+    fit->poisson[1] = sf_hyperfoam_poisson(&foam, t->largest_strain);
     fit->stress_rms = sqrt(stress / t->loading) / t->largest_stress;
     fit->lateral_rms =
         p->data->lateral_count ? sqrt(side / p->data->lateral_count) / p->largest_lateral : NAN;

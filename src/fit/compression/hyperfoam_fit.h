@@ -18,13 +18,19 @@ typedef struct sf_hyperfoam_data {
 void sf_hyperfoam_data_free(sf_hyperfoam_data *data);
 
 typedef struct sf_hyperfoam_fit {
-    sf_hyperfoam_card card;              /* terms and unloading; the rest as given */
-    double error[SF_HYPERFOAM_TERMS][3]; /* standard errors: mu over mu, alpha, nu; NaN: not fitted */
+    sf_hyperfoam_card card;               /* terms and unloading; the rest as given */
+    double error[SF_HYPERFOAM_TERMS][3];  /* standard errors: mu over mu, alpha, nu; NaN: not fitted, or at
+                                             its bound */
+    bool at_bound[SF_HYPERFOAM_TERMS][3]; /* mu (never), alpha, nu */
+    bool unloading_at_bound[3];           /* HU, SHAPE, ALPHA */
     double poisson[2];    /* -, -ln(lateral stretch)/ln(axial stretch), at 1 % strain and at the largest */
     double stress_rms;    /* -, of the deviations while loading, over the largest stress */
     double lateral_rms;   /* -, the same of the lateral strain; NaN: none */
     double unloading_rms; /* -, of the stress of unloading, over the largest; NaN: none */
 } sf_hyperfoam_fit;
+
+/* Is a deviation above a tenth of the largest value: the law does not describe the test? */
+bool sf_hyperfoam_fit_is_poor(const sf_hyperfoam_fit *fit);
 
 /* Stress (Pa, compression positive), lateral strain and W (J m-3) of loading with free sides at an axial
  * strain; `lateral` is also the start of the search. */

@@ -4,6 +4,7 @@
 #include "solver/material/hyperfoam.h"
 #include "solver/material/foam_parameters.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 /* ---- parameters ---- */
@@ -148,6 +149,22 @@ static double rest_modulus(const void *card) {
     return sf_hyperfoam_build(card).rest;
 }
 
+static const double LARGEST_POISSON = 0.35; /* that ran on every mesh tried (theory, section 4) */
+
+static bool caution(const void *card, char *text, size_t size) {
+    sf_hyperfoam foam = sf_hyperfoam_build(card);
+    double ratio = fmax(sf_hyperfoam_poisson(&foam, 0.01), sf_hyperfoam_poisson(&foam, 0.5));
+    if (!(ratio > LARGEST_POISSON + 1e-6))
+        return false;
+    snprintf(
+        text, size,
+        "hyperfoam: the terms have a Poisson ratio of %.3g; above %g the stabilisation stiffens the pad on "
+        "coarse meshes and may end the run (at a spacing of a fifth of the thickness 0.4 did): halve the spacing "
+        "and compare",
+        ratio, LARGEST_POISSON);
+    return true;
+}
+
 /* The sum of a row of d2W, as in the update. */
 static void rest_bounds(const void *card, double length, double *tangent, double *viscosity) {
     const sf_hyperfoam_card *foam = card;
@@ -218,6 +235,7 @@ const sf_law sf_hyperfoam_law = {
     .stiffness_keys = "term_1.mu, term_1.alpha ...",
     .informed_strain = informed_strain,
     .rest_bounds = rest_bounds,
+    .caution = caution,
     .history = history,
     .history_count = sizeof history / sizeof history[0],
     .build = build,

@@ -126,6 +126,11 @@ sf_hyperfoam_point sf_hyperfoam_evaluate(const sf_hyperfoam *foam, const double 
     return out;
 }
 
+double sf_hyperfoam_poisson(const sf_hyperfoam *foam, double strain) {
+    double stretch[3] = {1 - strain, 1, 1};
+    return sf_hyperfoam_release(foam, 1, stretch) ? -log(stretch[1]) / log(stretch[0]) : NAN;
+}
+
 bool sf_hyperfoam_release(const sf_hyperfoam *foam, int held, double stretch[3]) {
     enum { TURNS = 60 };
     const double largest = 0.2; /* of a change of the logarithm */
