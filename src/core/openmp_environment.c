@@ -108,6 +108,10 @@ FIRST static bool stays(const char *entry) {
         keep_fault(k, value);
         return false;
     }
+#ifdef __SANITIZE_THREAD__
+    if (after(entry, "OMP_TOOL_LIBRARIES="))
+        return true; /* libarcher, without which the sanitizer does not see what barriers order */
+#endif
     return !after(entry, "OMP_") && !after(entry, "GOMP_");
 }
 
