@@ -92,6 +92,22 @@ static int cell_vertices(const sf_raw_mesh *raw, size_t cell) {
     return sf_cell_topology_of(raw->cell_type[cell])->vertices;
 }
 
+void sf_raw_face_sort(size_t tag[SF_RAW_FACE]) {
+    for (int i = 1; i < SF_RAW_FACE; i++)
+        for (int j = i; j > 0 && tag[j] < tag[j - 1]; j--) {
+            size_t swap = tag[j];
+            tag[j] = tag[j - 1];
+            tag[j - 1] = swap;
+        }
+}
+
+int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]) {
+    for (int i = 0; i < SF_RAW_FACE; i++)
+        if (a[i] != b[i])
+            return a[i] < b[i] ? -1 : 1;
+    return 0;
+}
+
 int sf_raw_mesh_face_size(const sf_raw_mesh *raw, size_t face) {
     return raw->face_node[SF_RAW_FACE * face + 3] != 0 ? 4 : 3;
 }

@@ -14,26 +14,10 @@ typedef struct cell_face {
     int face;
 } cell_face;
 
-static int compare_tags(const size_t *a, const size_t *b) {
-    for (int i = 0; i < SF_RAW_FACE; i++)
-        if (a[i] != b[i])
-            return a[i] < b[i] ? -1 : 1;
-    return 0;
-}
-
 static int compare_face(const void *a, const void *b) {
     const cell_face *p = a, *q = b;
-    int tags = compare_tags(p->tag, q->tag);
+    int tags = sf_raw_face_compare(p->tag, q->tag);
     return tags ? tags : (p->cell > q->cell) - (p->cell < q->cell);
-}
-
-static void sort_tags(size_t tag[SF_RAW_FACE]) {
-    for (int i = 1; i < SF_RAW_FACE; i++)
-        for (int j = i; j > 0 && tag[j] < tag[j - 1]; j--) {
-            size_t swap = tag[j];
-            tag[j] = tag[j - 1];
-            tag[j - 1] = swap;
-        }
 }
 
 typedef struct hull_builder {
@@ -66,7 +50,7 @@ static sf_status list_faces(hull_builder *b, sf_error *err) {
             *face = (cell_face){.cell = k, .face = f};
             for (int a = 0; a < shape->face_size[f]; a++)
                 face->tag[a] = raw->cell_node[SF_RAW_CELL * k + (size_t)shape->face[f][a]];
-            sort_tags(face->tag);
+            sf_raw_face_sort(face->tag);
         }
     }
     qsort(b->list, b->count, sizeof *b->list, compare_face);
@@ -75,28 +59,28 @@ static sf_status list_faces(hull_builder *b, sf_error *err) {
 
 /* Does the face at i of the list belong to one cell only? */
 static bool is_outer(const hull_builder *b, size_t i) {
-    return (i == 0 || compare_tags(b->list[i - 1].tag, b->list[i].tag) != 0) &&
-           (i + 1 == b->count || compare_tags(b->list[i + 1].tag, b->list[i].tag) != 0);
+    return (i == 0 || sf_raw_face_compare(b->list[i - 1].tag, b->list[i].tag) != 0) &&
+           (i + 1 == b->count || sf_raw_face_compare(b->list[i + 1].tag, b->list[i].tag) != 0);
 }
 
 /* Joins cells through faces, and marks those that a face of the group belongs to. */
 static void find_cells(hull_builder *b) {
     const sf_raw_mesh *raw = b->raw;
     for (size_t i = 1; i < b->count; i++)
-        if (compare_tags(b->list[i - 1].tag, b->list[i].tag) == 0)
+        if (sf_raw_face_compare(b->list[i - 1].tag, b->list[i].tag) == 0)
             b->parent[find_root(b->parent, b->list[i].cell)] = find_root(b->parent, b->list[i - 1].cell);
     for (size_t f = 0; f < raw->face_count; f++) {
         size_t wanted[SF_RAW_FACE], low = 0, high = b->count;
         memcpy(wanted, raw->face_node + SF_RAW_FACE * f, sizeof wanted);
-        sort_tags(wanted);
+        sf_raw_face_sort(wanted);
         while (low < high) {
             size_t middle = (low + high) / 2;
-            if (compare_tags(b->list[middle].tag, wanted) < 0)
+            if (sf_raw_face_compare(b->list[middle].tag, wanted) < 0)
                 low = middle + 1;
             else
                 high = middle;
         }
-        if (low < b->count && compare_tags(b->list[low].tag, wanted) == 0)
+        if (low < b->count && sf_raw_face_compare(b->list[low].tag, wanted) == 0)
             b->ours[find_root(b->parent, b->list[low].cell)] = 1;
     }
 }

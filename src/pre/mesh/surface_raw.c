@@ -18,19 +18,7 @@ typedef struct face_key {
 
 static int compare_key(const void *a, const void *b) {
     const face_key *p = a, *q = b;
-    for (int i = 0; i < SF_RAW_FACE; i++)
-        if (p->tag[i] != q->tag[i])
-            return p->tag[i] < q->tag[i] ? -1 : 1;
-    return 0;
-}
-
-static void sort_tags(size_t tag[SF_RAW_FACE]) {
-    for (int i = 1; i < SF_RAW_FACE; i++)
-        for (int j = i; j > 0 && tag[j] < tag[j - 1]; j--) {
-            size_t swap = tag[j];
-            tag[j] = tag[j - 1];
-            tag[j - 1] = swap;
-        }
+    return sf_raw_face_compare(p->tag, q->tag);
 }
 
 /* Shared by the steps below. */
@@ -61,7 +49,7 @@ static sf_status prepare(surface_builder *b, sf_error *err) {
             if (b->keys[f].tag[a] != 0 && !node_position(b, b->keys[f].tag[a]))
                 return SF_FAIL(err, SF_ERR_INPUT, "a face uses node %zu, which the mesh does not have",
                                b->keys[f].tag[a]);
-        sort_tags(b->keys[f].tag);
+        sf_raw_face_sort(b->keys[f].tag);
         b->keys[f].face = f;
     }
     qsort(b->keys, raw->face_count, sizeof *b->keys, compare_key);
@@ -88,7 +76,7 @@ static sf_status match_cells(surface_builder *b, sf_error *err) {
             face_key wanted = {0};
             for (int a = 0; a < shape->face_size[f]; a++)
                 wanted.tag[a] = node[shape->face[f][a]];
-            sort_tags(wanted.tag);
+            sf_raw_face_sort(wanted.tag);
             face_key *found = bsearch(&wanted, b->keys, raw->face_count, sizeof *b->keys, compare_key);
             if (!found)
                 continue;
