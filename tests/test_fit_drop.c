@@ -2,7 +2,7 @@
 /* Identification from drops: the gas curve, the columns against the foam law and the closed form, space
  * mapping against what it approximates, the input's refusals, and a whole fit on a coarse mesh. */
 #include "extreme.h"
-#include "fit/column.h"
+#include "surrogate/column.h"
 #include "fit/drop/input.h"
 #include "fit/gas_curve.h"
 #include "fit/space_mapping.h"

@@ -7,7 +7,7 @@
 #include "solver/material/foam.h"
 #include "study.h"
 
-#include "fit/column.h"
+#include "surrogate/column.h"
 #include "fit/drop/parameters.h"
 #include "fit/space_mapping.h"
 #include "point_fixture.h"

@@ -8,7 +8,7 @@
 #define SF_FIT_DROP_FIT_H
 
 #include "campaign/runner.h"
-#include "fit/column.h"
+#include "surrogate/column.h"
 #include "fit/drop/input.h"
 #include "fit/drop/memory.h"
 #include "fit/space_mapping.h"

@@ -6,8 +6,8 @@
  *
  * P is the uniaxial nominal stress of the law (sf_law.uniaxial). A three-dimensional pad is somewhat stiffer.
  * It costs milliseconds: the surrogate of identification. */
-#ifndef SF_FIT_COLUMN_H
-#define SF_FIT_COLUMN_H
+#ifndef SF_SURROGATE_COLUMN_H
+#define SF_SURROGATE_COLUMN_H
 
 #include "post/results.h"
 #include "post/signal.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "fit/column.h"
+#include "surrogate/column.h"
 
 #include "core/units.h"
 #include "post/injury.h"
