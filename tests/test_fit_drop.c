@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Identification from drops: the gas curve, the columns against the foam law and the closed form, space
+/* Identification from drops: the columns against the foam law and the closed form, space
  * mapping against what it approximates, the input's refusals, and a whole fit on a coarse mesh. */
 #include "extreme.h"
 #include "surrogate/column.h"
 #include "fit/drop/input.h"
-#include "fit/gas_curve.h"
+#include "fit/form/gas.h"
 #include "fit/space_mapping.h"
 #include "foam_fixture.h"
 #include "program_fixture.h"
@@ -21,33 +21,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-static const sf_gas_curve eva = {0.4136e6, 7.4e3, 134e3, 23e3, 2.8};
-
-static void gas_curve_rises_from_its_modulus(void **state) {
-    (void)state;
-    assert_true(sf_gas_curve_stress(&eva, 0) == 0);
-    assert_true(fabs(sf_gas_curve_stress(&eva, 1e-7) / 1e-7 / eva.modulus - 1) < 1e-5);
-    for (int k = 1; k < 98; k++)
-        assert_true(sf_gas_curve_stress(&eva, 0.01 * k) > sf_gas_curve_stress(&eva, 0.01 * (k - 1)));
-}
-
-static void gas_curve_table_is_the_curve(void **state) {
-    (void)state;
-    sf_error err = SF_ERROR_INIT;
-    sf_foam_card card = {.densification_limit = 1};
-    sf_curve curve;
-    assert_int_equal(sf_gas_curve_tabulate(&eva, &card, &err), SF_OK);
-    assert_int_equal(sf_curve_build(&card, 0, &curve, &err), SF_OK);
-    for (int k = 1; k < 1990; k++) {
-        double strain = 0.0005 * k, stress, slope, energy;
-        if (strain > 0.975)
-            break;
-        sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
-        assert_true(fabs(stress / sf_gas_curve_stress(&eva, strain) - 1) < 0.003);
-    }
-    sf_curve_free(&curve);
-    sf_foam_card_free(&card);
-}
+static const sf_gas_curve eva = {0.4136e6, 7.4e3, 134e3, 23e3, 2.8, 0};
 
 /* Compression, release, compression again at changing speed: the point is lane 0 of the batch. */
 static void assert_uniaxial_is_the_law(const point_card *card) {
@@ -378,7 +352,10 @@ static void bad_input_gets_one_sentence(void **state) {
         {GOOD "name = \"" LONG_NAME "\";\n", "longer than 63 and 159 characters"},
         {MATERIAL "drops = ( { case = \"none.cfg\"; HIC = 3.0; } );\n", "none.cfg cannot be read"},
         {GOOD "colour = 3;\n", "unknown key \"colour\""},
-        {GOOD "curve_form = \"spline\";\n", "gas or table is expected"},
+        {GOOD "curve_form = \"foam\";\n", "one of gas|gas_solid|rusch|avalle|spline|table is expected"},
+        {GOOD "curve_form = \"gas_solid\";\n", "needs solid_density"},
+        {GOOD "solid_density = \"60 kg/m3\";\n", "solids that foams are made of"},
+        {GOOD "unknown = ( { name = \"avalle_A\"; } );\n", "is no parameter of curve_form = \"gas\""},
         {GOOD "name = \"a/b\";\n", "no slashes"},
         {GOOD "name = \"fit-curve\";\n", "not fit..."},
         {GOOD "start: { p0 = \"600 kPa\"; };\n", "is not below E"},
@@ -388,7 +365,7 @@ static void bad_input_gets_one_sentence(void **state) {
         {GOOD "start: { m = 0.5; };\n", "m is 0.5, outside 1 to 10"},
         {GOOD "start = 3;\n", "start must be a group"},
         {GOOD "unknown = ( { name = \"p1\"; } );\n", "\"p1\" is no parameter of the foam"},
-        {GOOD "unknown = ( { name = \"stress_scale\"; } );\n", "belongs to curve_form = \"table\""},
+        {GOOD "unknown = ( { name = \"stress_scale\"; } );\n", "is no parameter of curve_form = \"gas\""},
         {GOOD "unknown = ( { name = \"eta\"; } );\n", "eta is 0 in the start material"},
         {GOOD "unknown = ( { name = \"p0\"; }, { name = \"p0\"; } );\n", "p0 is unknown twice"},
         {GOOD "unknown = ( { name = \"p0\"; prior_sd = 0.0; } );\n", "prior_sd is 0, outside"},
@@ -639,8 +616,6 @@ static void killed_fit_ends_with_the_same_material(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gas_curve_rises_from_its_modulus),
-        cmocka_unit_test(gas_curve_table_is_the_curve),
         cmocka_unit_test(column_point_is_the_foam_law),
         cmocka_unit_test(columns_are_the_closed_form),
         cmocka_unit_test(column_drop_keeps_energy),

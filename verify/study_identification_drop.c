@@ -166,7 +166,7 @@ int main(int argc, char **argv) {
     point_card card;
     point_card_init(&card);
     point_card_add(&card, 0, 4, strain, stress);
-    laboratory lab = {.form = {.gas = true, .base = card.card}};
+    laboratory lab = {.form = {.curve = &sf_form_gas, .base = card.card}};
     lab.form.base.modulus = 0.4136e6;
     lab.form.base.hysteresis_hu = 0.01;
     tally t = {.converged = 0};

@@ -116,7 +116,8 @@ static uint64_t hash_inputs(const sf_drop_fit *fit) {
     const sf_material material = sf_foam_material(&base);
     uint64_t hash = sf_hash(SF_HASH_START, &fit->memory->program, sizeof fit->memory->program);
     hash = sf_material_hash(hash, &material);
-    hash = sf_hash(hash, &in->form.gas, sizeof in->form.gas);
+    hash = sf_hash(hash, in->form.curve->name, strlen(in->form.curve->name));
+    hash = sf_hash(hash, &in->form.solid_density, sizeof in->form.solid_density);
     hash = sf_hash(hash, in->start, sizeof in->start);
     hash = sf_hash(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
     for (int d = 0; d < in->drop_count; d++) {

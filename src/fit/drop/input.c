@@ -144,6 +144,34 @@ static sf_status read_drops(const sf_config *config, const config_setting_t *roo
 
 /* ---- material and parameters ---- */
 
+/* The density of the solid, and with it the start values. */
+static sf_status read_solid(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                            sf_error *err) {
+    sf_error inner = SF_ERROR_INIT;
+    SF_TRY(sf_config_quantity(config, root, "solid_density", SF_DENSITY, false, 0, &in->form.solid_density,
+                              err));
+    if (in->form.solid_density > 0 && sf_foam_form_check_solid(&in->form, &inner) != SF_OK)
+        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err, "%s",
+                                inner.text);
+    sf_foam_form_start(&in->form, in->start);
+    return SF_OK;
+}
+
+/* gas_solid needs the solid fraction: by density, given, or sought. */
+static sf_status check_solid_fraction(const sf_config *config, const config_setting_t *root,
+                                      const sf_fit_input *in, sf_error *err) {
+    const config_setting_t *start = config_setting_get_member(root, "start");
+    bool known = in->form.solid_density > 0 || (start && config_setting_get_member(start, "solid_fraction"));
+    for (int k = 0; k < in->unknown_count; k++)
+        known = known || in->unknown[k] == SF_PARAMETER_SOLID_FRACTION;
+    if (in->form.curve == &sf_form_gas_solid && !known)
+        return sf_config_refuse(
+            config, config_setting_get_member(root, "curve_form"), err,
+            "curve_form = \"gas_solid\" needs solid_density, the density of the solid in the "
+            "cell walls, or solid_fraction as an unknown");
+    return SF_OK;
+}
+
 /* The start material, read as the first drop's case would. */
 static sf_status read_material(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                                sf_error *err) {
@@ -157,9 +185,11 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
         sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
         sf_config_file(config, root, "material", true, &in->material_path, err) != SF_OK)
         return err->status;
-    if (strcmp(form, "gas") != 0 && strcmp(form, "table") != 0)
+    in->form.curve = sf_curve_form_find(form);
+    if (!in->form.curve)
         return sf_config_refuse(config, config_setting_get_member(root, "curve_form"), err,
-                                "curve_form is \"%s\": gas or table is expected", form);
+                                "curve_form is \"%.80s\": one of %s is expected", form,
+                                sf_curve_form_words());
     if (strpbrk(name, "/\"'\\\n\r") || strncmp(name, "fit", 3) == 0)
         return sf_config_refuse(
             config, config_setting_get_member(root, "name"), err,
@@ -186,9 +216,7 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
         if (err->status != SF_OK)
             return err->status;
     }
-    in->form.gas = strcmp(form, "gas") == 0;
-    sf_foam_form_start(&in->form, in->start);
-    return SF_OK;
+    return read_solid(config, root, in, err);
 }
 
 static sf_status read_start(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
@@ -239,10 +267,9 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
     sf_foam_parameter p = sf_parameter_find(name);
     if (p == SF_PARAMETER_COUNT)
         return sf_config_refuse(config, entry, err, "\"%.80s\" is no parameter of the foam", name);
-    const sf_parameter_info *about = sf_parameter_get(p);
-    if (in->form.gas ? about->of_table : about->of_gas)
-        return sf_config_refuse(config, entry, err, "%s belongs to curve_form = \"%s\"", name,
-                                in->form.gas ? "table" : "gas");
+    if (!sf_curve_form_uses(in->form.curve, p))
+        return sf_config_refuse(config, entry, err, "%s is no parameter of curve_form = \"%s\"", name,
+                                in->form.curve->name);
     for (int k = 0; k < in->unknown_count; k++)
         if (in->unknown[k] == p)
             return sf_config_refuse(config, entry, err, "%s is unknown twice", name);
@@ -253,31 +280,29 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
     int k = in->unknown_count++;
     in->unknown[k] = p;
     in->prior[k] = in->start[p];
-    in->prior_sd[k] = about->prior_sd;
+    in->prior_sd[k] = sf_foam_form_prior_sd(&in->form, p);
     return sf_config_number(config, entry, "prior_sd", false, 1e-3, 10, &in->prior_sd[k], err);
 }
 
-/* Without a list: the gas curve's parameters and one viscosity; or the scale of the table. */
+/* Without a list: those that are usual for the form. */
 static sf_status read_unknowns(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                                sf_error *err) {
-    static const sf_foam_parameter usual[2][5] = {
-        {SF_PARAMETER_STRESS_SCALE, SF_PARAMETER_ED},
-        {SF_PARAMETER_S0, SF_PARAMETER_P0, SF_PARAMETER_B, SF_PARAMETER_M, SF_PARAMETER_ED}};
+    sf_foam_parameter usual[SF_PARAMETER_COUNT];
     const config_setting_t *list;
     if (sf_config_list(config, root, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err) != SF_OK)
         return err->status;
     for (int k = 0; list && k < config_setting_length(list); k++)
         if (read_unknown(config, config_setting_get_elem(list, (unsigned)k), in, err) != SF_OK)
             return err->status;
-    for (int k = 0; !list && k < (in->form.gas ? 5 : 2); k++) {
-        sf_foam_parameter p = usual[in->form.gas][k];
-        if (!(in->start[p] > 0)) /* a material without the branch */
+    int count = list ? 0 : sf_foam_form_usual(&in->form, usual);
+    for (int k = 0; k < count; k++) {
+        if (!(in->start[usual[k]] > 0)) /* a material without the branch */
             continue;
-        in->unknown[in->unknown_count] = p;
-        in->prior[in->unknown_count] = in->start[p];
-        in->prior_sd[in->unknown_count++] = sf_parameter_get(p)->prior_sd;
+        in->unknown[in->unknown_count] = usual[k];
+        in->prior[in->unknown_count] = in->start[usual[k]];
+        in->prior_sd[in->unknown_count++] = sf_foam_form_prior_sd(&in->form, usual[k]);
     }
-    return SF_OK;
+    return check_solid_fraction(config, root, in, err);
 }
 
 sf_status sf_fit_input_read(const char *path, sf_fit_input *in, sf_error *err) {
@@ -286,7 +311,8 @@ sf_status sf_fit_input_read(const char *path, sf_fit_input *in, sf_error *err) {
     if (sf_config_open(path, &config, err) == SF_OK &&
         sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err) == SF_OK) {
         const config_setting_t *root = config_root_setting(&config.config);
-        if (sf_config_names(&config, root, "name|title|material|curve_form|start|unknown|drops|predict",
+        if (sf_config_names(&config, root,
+                            "name|title|material|curve_form|solid_density|start|unknown|drops|predict",
                             err) == SF_OK &&
             read_drops(&config, root, "drops", false, in, err) == SF_OK &&
             read_drops(&config, root, "predict", true, in, err) == SF_OK &&

@@ -2,65 +2,65 @@
 #include "fit/drop/parameters.h"
 
 #include "core/curve.h"
-#include "fit/gas_curve.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const sf_parameter_info info[SF_PARAMETER_COUNT] = {
-    [SF_PARAMETER_E] = {"E", SF_PRESSURE, "MPa", 1e6, 1e3, 1e10, 0.1, false, false,
-                        "modulus, and initial slope"},
-    [SF_PARAMETER_S0] = {"s0", SF_PRESSURE, "kPa", 1e3, 1, 1e9, 0.7, true, false,
-                         "yield stress of the cell walls"},
-    [SF_PARAMETER_P0] = {"p0", SF_PRESSURE, "kPa", 1e3, 1, 1e9, 0.3, true, false, "gas pressure"},
-    [SF_PARAMETER_B] = {"B", SF_PRESSURE, "kPa", 1e3, 1e-3, 1e9, 1, true, false, "densification stress"},
-    [SF_PARAMETER_M] = {"m", SF_QUANTITY_COUNT, "", 1, 1, 10, 0.3, true, false, "densification exponent"},
-    [SF_PARAMETER_STRESS_SCALE] = {"stress_scale", SF_QUANTITY_COUNT, "", 1, 1e-3, 1e3, 0.3, false, true,
-                                   "factor on the tabulated curve"},
-    [SF_PARAMETER_EXPONENT] = {"exponent", SF_QUANTITY_COUNT, "", 1, 0.1, 50, 0.3, false, true,
-                               "exponent of the densification law"},
-    [SF_PARAMETER_HU] = {"HU", SF_QUANTITY_COUNT, "", 1, 1e-4, 1, 0.5, false, false,
-                         "hysteretic unloading factor"},
-    [SF_PARAMETER_SHAPE] = {"SHAPE", SF_QUANTITY_COUNT, "", 1, 1e-2, 100, 0.5, false, false,
-                            "shape of unloading"},
-    [SF_PARAMETER_DAMP] = {"DAMP", SF_QUANTITY_COUNT, "", 1, 1e-4, 10, 0.5, false, false,
-                           "viscous coefficient"},
-    [SF_PARAMETER_ED] = {"ED", SF_PRESSURE, "MPa", 1e6, 1, 1e10, 1, false, false,
-                         "modulus of the Maxwell branch"},
-    [SF_PARAMETER_BETA1] = {"BETA1", SF_RATE, "1/s", 1, 1e-6, 1e9, 1, false, false, "its decay rate"},
-    [SF_PARAMETER_ETA] = {"eta", SF_VISCOSITY, "Pa s", 1, 1e-3, 1e6, 1, false, false, "Kelvin viscosity"},
-};
+static const double LEAST_SOLID = 300, MOST_SOLID = 20000; /* kg m-3 */
+static const double MOST_FRACTION = 0.5;
+static const double UNKNOWN_SOLID_SD = 0.5; /* of the logarithm */
 
-const sf_parameter_info *sf_parameter_get(sf_foam_parameter parameter) {
-    return &info[parameter];
+sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err) {
+    double solid = form->solid_density, foam = form->base.density;
+    if (!(solid >= LEAST_SOLID && solid <= MOST_SOLID))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3", solid,
+                       LEAST_SOLID, MOST_SOLID);
+    if (!(foam < MOST_FRACTION * solid))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than half solid", solid,
+            foam);
+    return SF_OK;
 }
 
-sf_foam_parameter sf_parameter_find(const char *name) {
-    int k = 0;
-    while (k < SF_PARAMETER_COUNT && strcmp(info[k].name, name) != 0)
-        k++;
-    return (sf_foam_parameter)k;
-}
-
-void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]) {
-    const sf_foam_card *base = &form->base;
-    double pressure = fmin(101325, base->modulus / 2);
+static void start_common(const sf_foam_card *base, double value[SF_PARAMETER_COUNT]) {
     const double start[SF_PARAMETER_COUNT] = {
         [SF_PARAMETER_E] = base->modulus,
-        [SF_PARAMETER_S0] = 0.02 * base->modulus,
-        [SF_PARAMETER_P0] = pressure,
-        [SF_PARAMETER_B] = pressure / 4,
-        [SF_PARAMETER_M] = 3,
         [SF_PARAMETER_STRESS_SCALE] = 1,
         [SF_PARAMETER_EXPONENT] = base->densification_exponent,
         [SF_PARAMETER_HU] = base->hysteresis_hu,
         [SF_PARAMETER_SHAPE] = base->hysteresis_shape,
+        [SF_PARAMETER_ALPHA] = base->hysteresis_alpha,
         [SF_PARAMETER_DAMP] = base->damp,
         [SF_PARAMETER_ED] = base->maxwell_modulus,
         [SF_PARAMETER_BETA1] = base->maxwell_rate,
         [SF_PARAMETER_ETA] = base->kelvin_viscosity,
     };
     memcpy(value, start, sizeof start);
+}
+
+void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]) {
+    start_common(&form->base, value);
+    value[SF_PARAMETER_SOLID_FRACTION] =
+        form->solid_density > 0 ? form->base.density / form->solid_density : 0;
+    form->curve->start(value);
+}
+
+double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter parameter) {
+    const sf_form_entry *entry = sf_curve_form_entry(form->curve, parameter);
+    if (parameter == SF_PARAMETER_SOLID_FRACTION && !(form->solid_density > 0))
+        return UNKNOWN_SOLID_SD;
+    return entry ? entry->prior_sd : sf_parameter_get(parameter)->prior_sd;
+}
+
+int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARAMETER_COUNT]) {
+    int count = 0;
+    for (int k = 0; k < form->curve->entry_count; k++)
+        if (form->curve->entry[k].usual)
+            usual[count++] = form->curve->entry[k].parameter;
+    usual[count++] = SF_PARAMETER_ED;
+    return count;
 }
 
 /* A copy of `count` items; NULL for none. */
@@ -97,30 +97,17 @@ sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARA
     card->modulus = value[SF_PARAMETER_E];
     card->hysteresis_hu = fmin(1, value[SF_PARAMETER_HU]);
     card->hysteresis_shape = value[SF_PARAMETER_SHAPE];
+    card->hysteresis_alpha = value[SF_PARAMETER_ALPHA];
     card->damp = value[SF_PARAMETER_DAMP];
     card->maxwell_modulus = value[SF_PARAMETER_ED];
     card->maxwell_rate = value[SF_PARAMETER_BETA1];
     card->kelvin_viscosity = value[SF_PARAMETER_ETA];
-    card->densification_exponent = value[SF_PARAMETER_EXPONENT];
-    for (int64_t k = 0; k < card->curve_points; k++)
-        card->curve_stress[k] *= value[SF_PARAMETER_STRESS_SCALE];
-    if (form->gas) {
-        const sf_gas_curve curve = {.modulus = value[SF_PARAMETER_E],
-                                    .yield = value[SF_PARAMETER_S0],
-                                    .pressure = value[SF_PARAMETER_P0],
-                                    .factor = value[SF_PARAMETER_B],
-                                    .exponent = value[SF_PARAMETER_M]};
-        card->densification_start = 0; /* at the table's end, rule H1 */
-        card->densification_rule = SF_DENSIFICATION_H1;
-        card->densification_limit = 1;
-        card->densification_exponent = 0;
-        if (!(curve.pressure < curve.modulus && curve.exponent > 1))
-            SF_FAIL(err, SF_ERR_NUMERIC,
-                    "p0 = %g Pa is not below E = %g Pa, or m = %g not above 1: no rising curve of initial "
-                    "slope E",
-                    curve.pressure, curve.modulus, curve.exponent);
-        else
-            sf_gas_curve_tabulate(&curve, card, err);
+    if (form->curve->stress) {
+        sf_curve_form_tabulate(form->curve, value, card, err);
+    } else {
+        card->densification_exponent = value[SF_PARAMETER_EXPONENT];
+        for (int64_t k = 0; k < card->curve_points; k++)
+            card->curve_stress[k] *= value[SF_PARAMETER_STRESS_SCALE];
     }
     if (err->status != SF_OK)
         sf_foam_card_free(card);

@@ -431,8 +431,7 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
             "The drops inform the curve between strains of %.2f and %.2f; beyond, its form "
             "determines it.\n",
             low, high);
-    if (fit->input->form.gas)
-        fputs("Curve: s0 (1 - exp(-(E - p0) e / s0)) + p0 x + B x^m with x = e / (1 - e).\n", f);
+    fprintf(f, "Curve: %s.\n", fit->input->form.curve->formula);
     if (fclose(f) != 0)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
     const sf_material_text text = {fit->input->title, provenance};
