@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/posterior/chains.h"
+
+#include "fit/posterior/convergence.h"
+#include <gsl/gsl_randist.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { N = SF_POSTERIOR_MOST, START_TRIES = 50 };
+static const double FREEDOM = 8, START_STRETCH = 2, INDEPENDENT = 0.6, SHORT = 0.3;
+
+sf_chains_options sf_chains_defaults(uint64_t seed) {
+    return (sf_chains_options){.chains = 4,
+                               .seed = seed,
+                               .burn_in_rounds = 4,
+                               .round = 250,
+                               .most_steps = 8000,
+                               .most_kept = 1000,
+                               .rhat = 1.02,
+                               .effective = 400};
+}
+
+/* One chain at work. */
+typedef struct walker {
+    gsl_rng *random;
+    double u[N], log_density, log_proposal;
+    double *path; /* [steps][n] of a round, and their densities */
+    double *density;
+    long long accepted, proposed, evaluations;
+} walker;
+
+typedef struct work {
+    const sf_target *target;
+    const sf_chains_options *options;
+    sf_mixture proposal, jump; /* of independence steps; its factor of random walks */
+    walker *walker;
+    sf_chains *out;
+    int room;       /* states that `sample` of each chain has room for */
+    double *column; /* [chains][kept] of one quantity */
+} work;
+
+/* ---- steps ---- */
+
+static void propose_jump(const work *w, walker *c, double *u) {
+    int n = w->target->parameters;
+    double z[N], scale = 2.38 / sqrt(n);
+    if (gsl_rng_uniform(c->random) < SHORT)
+        scale *= 0.1;
+    for (int i = 0; i < n; i++)
+        z[i] = gsl_ran_ugaussian(c->random);
+    for (int i = 0; i < n; i++) {
+        u[i] = c->u[i];
+        for (int j = 0; j <= i; j++)
+            u[i] += scale * w->jump.part[0].factor[i][j] * z[j];
+    }
+}
+
+static void step(const work *w, walker *c) {
+    double u[N];
+    bool independent = gsl_rng_uniform(c->random) < INDEPENDENT;
+    if (independent)
+        sf_mixture_draw(&w->proposal, c->random, u);
+    else
+        propose_jump(w, c, u);
+    double density = sf_target_at(w->target, u), proposal = sf_mixture_log_density(&w->proposal, u),
+           ratio = density - c->log_density + (independent ? c->log_proposal - proposal : 0);
+    c->evaluations++;
+    c->proposed++;
+    if (!(log(gsl_rng_uniform_pos(c->random)) < ratio))
+        return;
+    c->accepted++;
+    c->log_density = density;
+    c->log_proposal = proposal;
+    memcpy(c->u, u, (size_t)w->target->parameters * sizeof *u);
+}
+
+static void walk(const work *w, walker *c) {
+    int n = w->target->parameters;
+    c->log_proposal = sf_mixture_log_density(&w->proposal, c->u); /* it may have changed */
+    for (int k = 0; k < w->options->round; k++) {
+        step(w, c);
+        memcpy(&c->path[k * n], c->u, (size_t)n * sizeof *c->u);
+        c->density[k] = c->log_density;
+    }
+}
+
+static void walk_all(const work *w) {
+#pragma omp parallel for schedule(dynamic)
+    for (int k = 0; k < w->options->chains; k++)
+        walk(w, &w->walker[k]);
+}
+
+/* ---- burn-in ---- */
+
+static void place(const work *w, walker *c) {
+    sf_mixture wide = w->proposal;
+    for (int i = 0; i < wide.parameters; i++)
+        for (int j = 0; j <= i; j++)
+            wide.part[0].factor[i][j] *= START_STRETCH;
+    for (int k = 0; k < START_TRIES; k++) {
+        sf_mixture_draw(&wide, c->random, c->u);
+        c->log_density = sf_target_at(w->target, c->u);
+        c->evaluations++;
+        if (isfinite(c->log_density))
+            return;
+    }
+    memcpy(c->u, w->proposal.part[0].centre, (size_t)w->target->parameters * sizeof *c->u);
+    c->log_density = sf_target_at(w->target, c->u);
+}
+
+static sf_status place_all(const work *w, sf_error *err) {
+#pragma omp parallel for schedule(dynamic)
+    for (int k = 0; k < w->options->chains; k++)
+        place(w, &w->walker[k]);
+    for (int k = 0; k < w->options->chains; k++)
+        if (!isfinite(w->walker[k].log_density))
+            return SF_FAIL(err, SF_ERR_NUMERIC, "no start of a Markov chain has a probability density");
+    return SF_OK;
+}
+
+/* The proposals from the round's states of all chains; unchanged where they span no volume. */
+static sf_status match(work *w, sf_error *err) {
+    int n = w->target->parameters, round = w->options->round, count = w->options->chains * round;
+    double *all = sf_alloc(err, (unsigned long)(count * n), sizeof *all, "samples");
+    double mean[N] = {0}, covariance[N * N] = {0};
+    sf_mixture proposal, jump;
+    sf_error none = SF_ERROR_INIT;
+    if (!all)
+        return err->status;
+    for (int c = 0; c < w->options->chains; c++)
+        memcpy(&all[c * round * n], w->walker[c].path, (size_t)(round * n) * sizeof *all);
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            mean[i] += all[k * n + i] / count;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                covariance[i * n + j] += (all[k * n + i] - mean[i]) * (all[k * n + j] - mean[j]) / count;
+    if (sf_mixture_single(n, mean, covariance, FREEDOM, &jump, &none) == SF_OK &&
+        sf_mixture_fit(n, count, all, FREEDOM, &proposal, &none) == SF_OK) {
+        w->jump = jump;
+        w->proposal = proposal;
+    }
+    free(all);
+    return err->status;
+}
+
+static sf_status burn_in(work *w, sf_error *err) {
+    if (place_all(w, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < w->options->burn_in_rounds; k++) {
+        walk_all(w);
+        if (match(w, err) != SF_OK)
+            return err->status;
+    }
+    for (int c = 0; c < w->options->chains; c++)
+        w->walker[c].accepted = w->walker[c].proposed = 0;
+    w->out->proposal = w->proposal;
+    return SF_OK;
+}
+
+/* ---- what is kept ---- */
+
+/* Every second state only. */
+static void thin(work *w) {
+    sf_chains *r = w->out;
+    size_t n = (size_t)r->parameters, q = (size_t)r->quantities;
+    for (int c = 0; c < r->chains; c++)
+        for (int k = 0; k < r->kept / 2; k++) {
+            size_t to = (size_t)(c * w->room + k), from = (size_t)(c * w->room + 2 * k + 1);
+            memmove(&r->sample[to * n], &r->sample[from * n], n * sizeof(double));
+            if (q > 0)
+                memmove(&r->quantity[to * q], &r->quantity[from * q], q * sizeof(double));
+            r->log_density[to] = r->log_density[from];
+        }
+    r->kept /= 2;
+    r->thinning *= 2;
+}
+
+static const double UNKNOWN = -1e300; /* begins quantities that were not observed yet */
+
+/* Adds the round's states. */
+static void keep(work *w, int steps_before) {
+    sf_chains *r = w->out;
+    int n = r->parameters;
+    for (int k = 0; k < w->options->round; k++) {
+        if ((steps_before + k + 1) % r->thinning != 0)
+            continue;
+        for (int c = 0; c < r->chains; c++) {
+            int to = c * w->room + r->kept;
+            memcpy(&r->sample[to * n], &w->walker[c].path[k * n], (size_t)n * sizeof(double));
+            r->log_density[to] = w->walker[c].density[k];
+            if (r->quantities > 0)
+                r->quantity[to * r->quantities] = UNKNOWN;
+        }
+        r->kept++;
+    }
+    while (r->kept >= w->options->most_kept)
+        thin(w);
+}
+
+static void observe(work *w) {
+    sf_chains *r = w->out;
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int s = 0; s < r->chains * r->kept; s++) {
+        int at = s / r->kept * w->room + s % r->kept;
+        double *q = &r->quantity[at * r->quantities];
+        if (q[0] == UNKNOWN)
+            w->target->observe(w->target->context, &r->sample[at * r->parameters],
+                               sf_seed_of(w->options->seed, (uint64_t)r->thinning * 1000000 + (uint64_t)at),
+                               q);
+    }
+}
+
+/* Diagnostics of one column of `values` [chains][room][width]. */
+static bool judge(work *w, const double *values, int width, int column, int which) {
+    sf_chains *r = w->out;
+    for (int c = 0; c < r->chains; c++)
+        for (int k = 0; k < r->kept; k++)
+            w->column[c * r->kept + k] = values[(c * w->room + k) * width + column];
+    r->rhat[which] = sf_split_rhat(r->chains, r->kept, w->column);
+    r->effective[which] = sf_effective_size(r->chains, r->kept, w->column);
+    return r->rhat[which] < w->options->rhat && r->effective[which] > w->options->effective;
+}
+
+static bool is_reached(work *w, bool last) {
+    sf_chains *r = w->out;
+    bool reached = true;
+    for (int i = 0; i < r->parameters; i++)
+        reached = judge(w, r->sample, r->parameters, i, i) && reached;
+    if (r->quantities == 0 || (!reached && !last))
+        return reached;
+    observe(w);
+    for (int i = 0; i < r->quantities; i++)
+        reached = judge(w, r->quantity, r->quantities, i, r->parameters + i) && reached;
+    return reached;
+}
+
+static void sample(work *w) {
+    sf_chains *r = w->out;
+    for (int steps = 0; steps < w->options->most_steps && !r->converged; steps += w->options->round) {
+        walk_all(w);
+        keep(w, steps);
+        r->converged = is_reached(w, steps + w->options->round >= w->options->most_steps);
+    }
+}
+
+/* ---- the whole ---- */
+
+/* [chains][room] becomes [chains][kept]. */
+static void pack(const work *w) {
+    sf_chains *r = w->out;
+    size_t n = (size_t)r->parameters, q = (size_t)r->quantities, kept = (size_t)r->kept;
+    for (size_t c = 1; c < (size_t)r->chains; c++) {
+        size_t from = c * (size_t)w->room, to = c * kept;
+        memmove(&r->sample[to * n], &r->sample[from * n], kept * n * sizeof(double));
+        memmove(&r->log_density[to], &r->log_density[from], kept * sizeof(double));
+        if (q > 0)
+            memmove(&r->quantity[to * q], &r->quantity[from * q], kept * q * sizeof(double));
+    }
+}
+
+static sf_status allocate(work *w, sf_error *err) {
+    sf_chains *r = w->out;
+    const sf_chains_options *o = w->options;
+    unsigned long n = (unsigned long)r->parameters, q = (unsigned long)r->quantities,
+                  chains = (unsigned long)r->chains, round = (unsigned long)o->round;
+    w->room = o->most_kept + o->round;
+    unsigned long all = chains * (unsigned long)w->room;
+    w->walker = sf_alloc(err, chains, sizeof *w->walker, "Markov chains");
+    w->column = sf_alloc(err, all, sizeof(double), "Markov chains");
+    r->sample = sf_alloc(err, all * n, sizeof(double), "Markov chains");
+    r->log_density = sf_alloc(err, all, sizeof(double), "Markov chains");
+    r->quantity = sf_alloc(err, all * q, sizeof(double), "Markov chains");
+    r->rhat = sf_alloc(err, n + q, sizeof(double), "Markov chains");
+    r->effective = sf_alloc(err, n + q, sizeof(double), "Markov chains");
+    for (int c = 0; c < r->chains && err->status == SF_OK; c++) {
+        walker *k = &w->walker[c];
+        k->random = gsl_rng_alloc(gsl_rng_mt19937);
+        k->path = sf_alloc(err, round * n, sizeof(double), "Markov chains");
+        k->density = sf_alloc(err, round, sizeof(double), "Markov chains");
+        if (!k->random)
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
+        gsl_rng_set(k->random, (unsigned long)sf_seed_of(o->seed, (uint64_t)c) & 0xffffffffu);
+    }
+    return err->status;
+}
+
+static void release(work *w) {
+    for (int c = 0; w->walker && c < w->options->chains; c++) {
+        if (w->walker[c].random)
+            gsl_rng_free(w->walker[c].random);
+        free(w->walker[c].path);
+        free(w->walker[c].density);
+    }
+    free(w->walker);
+    free(w->column);
+}
+
+sf_status sf_chains_run(const sf_target *target, const double *start, const double *covariance,
+                        const sf_chains_options *options, sf_chains *r, sf_error *err) {
+    *r = (sf_chains){.parameters = target->parameters,
+                     .quantities = target->quantities,
+                     .chains = options->chains,
+                     .thinning = 1};
+    work w = {.target = target, .options = options, .out = r};
+    if (sf_mixture_single(target->parameters, start, covariance, FREEDOM, &w.proposal, err) != SF_OK)
+        return err->status;
+    w.jump = w.proposal;
+    if (allocate(&w, err) == SF_OK && burn_in(&w, err) == SF_OK) {
+        long long accepted = 0, proposed = 0;
+        sample(&w);
+        pack(&w);
+        for (int c = 0; c < r->chains; c++) {
+            accepted += w.walker[c].accepted;
+            proposed += w.walker[c].proposed;
+            r->evaluations += w.walker[c].evaluations;
+        }
+        r->accepted = (double)accepted / (double)proposed;
+    }
+    release(&w);
+    return err->status;
+}
+
+void sf_chains_free(sf_chains *r) {
+    free(r->sample);
+    free(r->log_density);
+    free(r->quantity);
+    free(r->rhat);
+    free(r->effective);
+    *r = (sf_chains){0};
+}

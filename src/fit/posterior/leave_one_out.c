@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/posterior/leave_one_out.h"
+
+#include "fit/posterior/evidence.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_GROUPS = 32 };
+static const double USABLE = 0.5, WIDER = 2; /* of the variances, where the chains without a group start */
+
+/* The target without one group. */
+typedef struct without {
+    const sf_grouped *grouped;
+    int group;
+} without;
+
+static double density_without(const void *context, const double *u) {
+    const without *w = context;
+    double conditional[MOST_GROUPS], all = w->grouped->split(w->grouped->target.context, u, conditional);
+    return all - conditional[w->group];
+}
+
+/* log p(y_g | others, u) of every sample: [samples][groups]. */
+static double *split_all(const sf_grouped *g, const double *sample, int count, sf_error *err) {
+    double *all = sf_alloc(err, (unsigned long)(count * g->groups), sizeof *all, "leave-one-out densities");
+    if (all) {
+#pragma omp parallel for schedule(dynamic, 8)
+        for (int s = 0; s < count; s++)
+            g->split(g->target.context, &sample[s * g->target.parameters], &all[s * g->groups]);
+    }
+    return all;
+}
+
+/* By weights 1 / p(y_g | others, u); `scratch` [count]. */
+static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
+                       sf_error *err) {
+    double *sum = sf_alloc(err, (unsigned long)count, sizeof *sum, "weights");
+    if (!sum)
+        return err->status;
+    for (int s = 0; s < count; s++)
+        scratch[s] = -all[s * groups + g];
+    out->pareto_k = sf_pareto_smooth(count, scratch, err);
+    out->converged = out->pareto_k < USABLE;
+    for (int s = 0; s < count; s++)
+        sum[s] = scratch[s] + all[s * groups + g];
+    out->log_density = sf_log_mean(count, sum) - sf_log_mean(count, scratch);
+    free(sum);
+    return err->status;
+}
+
+/* Where the chains without the group start: mean and widened covariance of those with it. */
+static void find_start(const sf_chains *c, double *mean, double *covariance) {
+    int n = c->parameters, count = c->chains * c->kept;
+    memset(mean, 0, (size_t)n * sizeof *mean);
+    memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            mean[i] += c->sample[k * n + i] / count;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                covariance[i * n + j] +=
+                    WIDER * (c->sample[k * n + i] - mean[i]) * (c->sample[k * n + j] - mean[j]) / count;
+}
+
+static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
+                        const sf_chains_options *options, sf_left_out *out, sf_error *err) {
+    double mean[SF_POSTERIOR_MOST], covariance[SF_POSTERIOR_MOST * SF_POSTERIOR_MOST];
+    const without context = {g, group};
+    const sf_target target = {
+        .parameters = g->target.parameters, .log_density = density_without, .context = &context};
+    sf_chains_options own = *options;
+    sf_chains chains;
+    own.seed = sf_seed_of(options->seed, (uint64_t)(500 + group));
+    find_start(whole, mean, covariance);
+    if (sf_chains_run(&target, mean, covariance, &own, &chains, err) == SF_OK) {
+        int count = chains.chains * chains.kept;
+        double *all = split_all(g, chains.sample, count, err);
+        if (all) {
+            for (int s = 0; s < count; s++)
+                all[s] = all[s * g->groups + group];
+            out->log_density = sf_log_mean(count, all);
+            out->sampled = true;
+            out->converged = chains.converged;
+        }
+        free(all);
+    }
+    sf_chains_free(&chains);
+    return err->status;
+}
+
+sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const sf_chains_options *options,
+                           sf_left_out *out, sf_error *err) {
+    int count = chains->chains * chains->kept;
+    if (g->groups > MOST_GROUPS)
+        return SF_FAIL(err, SF_ERR_INPUT, "%d groups of data: at most %d are left out one by one", g->groups,
+                       MOST_GROUPS);
+    double *all = split_all(g, chains->sample, count, err),
+           *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");
+    for (int k = 0; k < g->groups && err->status == SF_OK; k++) {
+        out[k] = (sf_left_out){.converged = false};
+        if (weigh(all, g->groups, k, count, scratch, &out[k], err) == SF_OK && !out[k].converged)
+            sample(g, k, chains, options, &out[k], err);
+    }
+    free(all);
+    free(scratch);
+    return err->status;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Leave-one-out predictive densities of groups of data (all data of a drop are one group): log p(y_g | all
+ * others), from the chains of the whole posterior by Pareto-smoothed importance weights or, where these
+ * have no variance (k > 0.5), from chains of the posterior without the group. */
+#ifndef SF_FIT_POSTERIOR_LEAVE_ONE_OUT_H
+#define SF_FIT_POSTERIOR_LEAVE_ONE_OUT_H
+
+#include "fit/posterior/chains.h"
+
+typedef struct sf_grouped {
+    sf_target target; /* of all data */
+    int groups;
+    /* The target's log density at u; `conditional` [groups] gets log p(y_g | other groups, u). */
+    double (*split)(const void *context, const double *u, double *conditional);
+} sf_grouped;
+
+typedef struct sf_left_out {
+    double log_density; /* log p(y_g | other groups) */
+    double pareto_k;    /* of the importance weights */
+    bool sampled;       /* by chains of its own */
+    bool converged;     /* they did; true for weights that can be used */
+} sf_left_out;
+
+/* `out` [groups], from the samples of `chains`; chains of their own with `options`, without quantities. */
+sf_status sf_leave_one_out(const sf_grouped *grouped, const sf_chains *chains,
+                           const sf_chains_options *options, sf_left_out *out, sf_error *err);
+
+#endif
