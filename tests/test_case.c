@@ -636,6 +636,13 @@ static void rate_curves_are_checked(void **state) {
 #define RATES(list)                                                                                          \
     GEOMETRY MISSILE SOLVER "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = " list "; };\n"
     assert_refused(RATES("( )"), NULL, "material.curves must be a list", NULL);
+    assert_refused(GOOD, "material.rate_factor=0.1", "material.rate_reference is missing", NULL);
+    assert_refused(
+        GEOMETRY MISSILE SOLVER
+        "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\";\n"
+        "rate_factor = 0.1; rate_reference = \"1 1/s\"; curves = (\n"
+        "{ rate = \"1 1/s\"; file = \"foam.csv\"; }, { rate = \"9 1/s\"; file = \"fast.csv\"; } ); };\n",
+        NULL, "case.cfg:5: material.rate_factor is 0.1 and there are 2 curves at several rates", NULL);
     assert_refused(RATES("( { rate = \"1 1/s\"; } )"), NULL, "each entry must be { rate", NULL);
     assert_refused(RATES("( { rate = \"1 1/s\"; file = \"\"; } )"), NULL, "the name of a curve's CSV file",
                    NULL);

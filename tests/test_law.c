@@ -120,8 +120,8 @@ static void make_material(const sf_law *law, sf_material *m) {
     memcpy(curves->curve_stress, eva.stress, 120 * sizeof(double));
 }
 
-/* The default card; one with hysteresis, Maxwell branch and Kelvin viscosity; that with ALPHA, and for the
- * hyperfoam lateral strain, a second term and a rate factor. */
+/* The default card; one with hysteresis, Maxwell branch and Kelvin viscosity; that with ALPHA and a rate
+ * factor, and for the hyperfoam lateral strain and a second term. */
 static void make_variant(const sf_law *law, int variant, sf_material *m) {
     make_material(law, m);
     if (variant > 0) {
@@ -133,11 +133,12 @@ static void make_variant(const sf_law *law, int variant, sf_material *m) {
         card->kelvin_viscosity = 300;
         card->hysteresis_alpha = variant == 2 ? 0.3 : 1;
     }
+    if (variant == 2)
+        ((sf_foam_shared *)m->card)->rate_factor = 0.3;
     if (variant == 2 && law == &sf_hyperfoam_law) {
         sf_hyperfoam_card *card = m->card;
         card->term[0].nu = 0.2;
         card->term[1] = (sf_hyperfoam_term){.mu = 3e4, .alpha = -2, .beta = 0.1};
-        card->rate_factor = 0.3;
     }
 }
 

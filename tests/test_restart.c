@@ -123,6 +123,19 @@ static void hyperfoam_goes_on_with_the_same_bits(void **state) {
     run_assert_same(p, "hyper_full.h5", "hyper_parts.h5");
 }
 
+/* And of the low-density foam with a rate factor: the filtered rate is part of a checkpoint. */
+static void rate_factor_goes_on_with_the_same_bits(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "pre",
+                    "'%s' -o rate.h5 %s --set 'material.ED=0 Pa' --set material.rate_factor=0.2 --set "
+                    "material.rate_reference='\"1 1/s\"' --set solver.end_time='\"6 ms\"'",
+                    fixture_source(EXAMPLE), program_coarse(20));
+    program_succeed(p, "solve", "rate.h5 -o rate_full.h5 --threads 1");
+    program_succeed(p, "solve", "rate.h5 -o rate_parts.h5 --end-time '2.3 ms' --threads 2");
+    program_succeed(p, "solve", "--restart rate_parts.h5 --end-time '6 ms' --threads 2");
+    run_assert_same(p, "rate_full.h5", "rate_parts.h5");
+}
+
 /* Runs to the end with a signal after a random time, again and again, at least `least` times. The file opens
  * after each; post-processing reads it. */
 static void run_with_signals(const program_place *p, const char *results, const int *numbers, int count,
@@ -702,6 +715,7 @@ int main(void) {
         cmocka_unit_test(killed_campaign_makes_progress_in_every_life),
         cmocka_unit_test(finished_run_goes_on_to_a_later_end),
         cmocka_unit_test(hyperfoam_goes_on_with_the_same_bits),
+        cmocka_unit_test(rate_factor_goes_on_with_the_same_bits),
         cmocka_unit_test(interrupted_run_goes_on),
         cmocka_unit_test(killed_run_loses_nothing),
         cmocka_unit_test(interruption_at_once_leaves_a_checkpoint),

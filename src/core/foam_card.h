@@ -9,8 +9,8 @@
 
 enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
 
-/* Density, hysteresis and viscosity of a foam law. A card holds them as the members of SF_FOAM_SHARED, at its
- * beginning. */
+/* Density, hysteresis, viscosity and rate of a foam law. A card holds them as the members of SF_FOAM_SHARED,
+ * at its beginning. */
 #define SF_FOAM_SHARED                                                                                       \
     double density;          /* kg m-3, of the undeformed foam */                                            \
     double hysteresis_hu;    /* -, HU, 0 < HU <= 1; 1 = no hysteresis */                                     \
@@ -21,6 +21,9 @@ enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
     double maxwell_modulus;  /* Pa, ED >= 0; 0 = no Maxwell branch */                                        \
     double maxwell_rate;     /* s-1, BETA1 > 0 */                                                            \
     double kelvin_viscosity; /* Pa s, eta >= 0 */                                                            \
+    double rate_factor;      /* -, by which stress of loading grows with each decade of rate; 0: none */     \
+    double rate_reference;   /* s-1, rate up to which it does not */                                         \
+    double rate_filter_time; /* s, time constant of the strain rate */                                       \
     double informed_strain;  /* -, up to here the data of the material inform the law; 0 = data_end */
 typedef struct sf_foam_shared {
     SF_FOAM_SHARED
@@ -40,7 +43,6 @@ typedef struct sf_foam_card {
     double densification_start;    /* -, strain from which the law replaces the table; 0 = its end */
     double densification_limit;    /* -, strain eps_L at which the stress becomes infinite; 1 for rule H1 */
     double densification_exponent; /* -, exponent; 0 = the one that makes the additive constant vanish */
-    double rate_filter_time;       /* s, time constant of the strain-rate filter when curve_count > 1 */
     union {
         struct {
             SF_LAW_CURVES

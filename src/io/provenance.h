@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "io/h5.h"
 
-enum { SF_FORMAT_VERSION = 5 };
+enum { SF_FORMAT_VERSION = 6 };
 
 /* A case's text holds the files that it includes, each below the line "# from NAME:". */
 #define SF_INCLUDED_BEGIN "# from "

@@ -398,6 +398,7 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
                        .damp = c->damp,
                        .maxwell_modulus = maxwell ? e[SF_ESTIMATE_ED].value : 0,
                        .maxwell_rate = maxwell ? e[SF_ESTIMATE_BETA1].value : 5000,
+                       .rate_filter_time = 1e-4,
                        .tension_cutoff = 1e30,
                        .densification_rule = e[SF_ESTIMATE_LIMIT].present && e[SF_ESTIMATE_LIMIT].value < 1
                                                  ? SF_DENSIFICATION_H2
@@ -405,7 +406,6 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
                        .densification_start = fit->data.start,
                        .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
                        .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value,
-                       .rate_filter_time = 1e-4,
                        .curve_count = fit->rate_count,
                        .curve_points = (int64_t)points};
     card->curve_rate = sf_alloc(err, rates, sizeof *card->curve_rate, "curve rates");

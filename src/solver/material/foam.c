@@ -7,7 +7,7 @@
 
 sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) {
     *foam = (sf_foam){
-        .options = sf_foam_options_build(&card->shared, card->rate_filter_time),
+        .options = sf_foam_options_build(&card->shared),
         .modulus = card->modulus,
         .cutoff = card->tension_cutoff,
         .curve_count = card->curve_count,
@@ -114,6 +114,7 @@ static void overstress(const void *numbers, double dt, sf_law_batch *b, const sf
 void sf_foam_update(const sf_foam *foam, double dt, sf_law_batch *b) {
     const sf_foam_kind kind = {.numbers = foam,
                                .rest = rest_stiffness(foam),
+                               .compression = true,
                                .loading = base_law,
                                .overstress = foam->curve_count > 1 ? overstress : NULL};
     sf_foam_point_update(&foam->options, &kind, dt, b);
@@ -128,7 +129,9 @@ double sf_foam_uniaxial(const sf_foam *foam, double dt, double strain, sf_uniaxi
         stress = fmax(foam->modulus * strain, -foam->cutoff);
         energy = 0.5 * stress * stress / foam->modulus - stress * (stress / foam->modulus - strain);
     }
-    stress *= sf_foam_axial_factor(&foam->options, energy, point);
+    double factor = sf_foam_axial_factor(&foam->options, energy, point),
+           gain = sf_foam_axial_gain(&foam->options, dt, green_rate, stretch, point);
+    stress *= strain > 0 ? factor + gain : factor;
     if (foam->curve_count > 1)
         stress += sf_foam_overstress(foam, strain,
                                      sf_foam_axial_filter(&foam->options, dt, green_rate, stretch, point),

@@ -12,6 +12,9 @@ bool sf_foam_has_maxwell(const void *card) {
 bool sf_foam_has_kelvin(const void *card) {
     return ((const sf_foam_shared *)card)->kelvin_viscosity > 0;
 }
+bool sf_foam_has_rate_factor(const void *card) {
+    return ((const sf_foam_shared *)card)->rate_factor > 0;
+}
 bool sf_foam_has_informed(const void *card) {
     return ((const sf_foam_shared *)card)->informed_strain > 0;
 }
@@ -37,5 +40,11 @@ sf_status sf_foam_check_shared_keys(const sf_foam_shared *foam, const sf_given *
         return SF_FAIL(err, SF_ERR_INPUT,
                        "material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for example "
                        "BETA1 = \"5000 1/s\"");
+    *place = "material.rate_reference";
+    if (foam->rate_factor > 0 && !given->is(given->reader, "material", "rate_reference"))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "material.rate_reference is missing: a rate factor needs the rate at which it is 1, for "
+            "example rate_reference = \"0.01 1/s\"");
     return SF_OK;
 }

@@ -9,6 +9,7 @@
 bool sf_foam_has_length(const void *card);
 bool sf_foam_has_maxwell(const void *card);
 bool sf_foam_has_kelvin(const void *card);
+bool sf_foam_has_rate_factor(const void *card);
 bool sf_foam_has_informed(const void *card);
 
 /* What SHAPE and ALPHA allow together; SF_ERR_MODEL. */
@@ -47,6 +48,16 @@ sf_status sf_foam_check_shared_keys(const sf_foam_shared *card, const sf_given *
     {"material", "eta", SF_PARAMETER_QUANTITY, "\"0 Pa s\"", SF_FOAM_AT(kelvin_viscosity), \
      "Kelvin viscosity; bounds the time step", .quantity = SF_VISCOSITY, .high = 1e9, \
      SF_FOAM_IN("Pa s", 1), .acts = sf_foam_has_kelvin}
+#define SF_FOAM_RATE_FACTOR(reference) \
+    {"material", "rate_factor", SF_PARAMETER_NUMBER, "0.0", SF_FOAM_AT(rate_factor), \
+     "part by which the stress of loading grows with each decade of the strain rate above `rate_reference`", \
+     .high = 10.0, .acts = sf_foam_has_rate_factor}, \
+    {"material", "rate_reference", SF_PARAMETER_QUANTITY, "\"0.01 1/s\"", SF_FOAM_AT(rate_reference), \
+     reference, .quantity = SF_RATE, .low = 1e-9, .high = 1e6, SF_FOAM_IN("1/s", 1), .acts = sf_foam_has_rate_factor}
+#define SF_FOAM_RATE_FILTER(use, has) \
+    {"material", "rate_filter_time", SF_PARAMETER_QUANTITY, "\"0.1 ms\"", SF_FOAM_AT(rate_filter_time), \
+     "time constant of the strain rate " use, .quantity = SF_TIME, .low = 1e-9, .high = 1e3, \
+     SF_FOAM_IN("ms", 1e-3), .acts = has}
 #define SF_FOAM_INFORMED \
     {"material", "informed_strain", SF_PARAMETER_NUMBER, "0.0", SF_FOAM_AT(informed_strain), \
      "largest compressive strain about which the material's data say something; 0 = where the table or its use ends; " \

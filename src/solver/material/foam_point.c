@@ -7,7 +7,7 @@
 enum { XX, YY, ZZ, XY, YZ, XZ };
 static const int SYM[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
 
-sf_foam_options sf_foam_options_build(const sf_foam_shared *card, double filter_time) {
+sf_foam_options sf_foam_options_build(const sf_foam_shared *card) {
     sf_foam_options o = {
         .density = card->density,
         .hu = card->hysteresis_hu,
@@ -16,7 +16,9 @@ sf_foam_options sf_foam_options_build(const sf_foam_shared *card, double filter_
         .maxwell = card->maxwell_modulus,
         .maxwell_rate = card->maxwell_rate,
         .kelvin = card->kelvin_viscosity,
-        .filter_time = filter_time,
+        .rate_factor = card->rate_factor,
+        .rate_reference = card->rate_reference,
+        .filter_time = card->rate_filter_time,
     };
     sf_unloading_build(card->hysteresis_hu, card->hysteresis_shape, card->hysteresis_alpha, &o.unloading);
     return o;
@@ -90,12 +92,35 @@ void sf_foam_point_filter(const sf_foam_options *foam, double dt, sf_law_batch *
     b->history[SF_FOAM_RATE][l] += -expm1(-dt / foam->filter_time) * (fastest - b->history[SF_FOAM_RATE][l]);
 }
 
-/* The law's overstress, and its work. */
-static void rate_stress(const sf_foam_kind *kind, double dt, sf_law_batch *b, const sf_foam_loading *law,
-                        sf_foam_rate *rate) {
+/* The rate factor: loading stresses times 1 + c log10(rate / reference). Its tangent is that of loading times
+ * the same, and what a change of the filtered rate does to all three. */
+static void rate_factor(const sf_foam_options *foam, bool compression, double dt, sf_law_batch *b,
+                        const sf_foam_loading *law, sf_foam_rate *rate) {
+    for (int l = 0; l < SF_LANES; l++) {
+        sf_foam_point_filter(foam, dt, b, rate, l);
+        double now = b->history[SF_FOAM_RATE][l], sum = 0;
+        if (!(now > foam->rate_reference))
+            continue;
+        double gain = foam->rate_factor * log10(now / foam->rate_reference);
+        for (int i = 0; i < 3; i++) {
+            double t = compression && law->t[i][l] > 0 ? 0 : law->t[i][l];
+            rate->part[i][l] += gain * t / b->stretch[i][l];
+            sum += t * t;
+        }
+        rate->factor[l] += gain;
+        rate->extra[l] += foam->rate_factor / (M_LN10 * now) * sqrt(sum) / foam->filter_time;
+    }
+}
+
+/* The overstress of the rate, and its work. */
+static void rate_stress(const sf_foam_options *foam, const sf_foam_kind *kind, double dt, sf_law_batch *b,
+                        const sf_foam_loading *law, sf_foam_rate *rate) {
     double before[3][SF_LANES];
     memcpy(before, rate->part, sizeof before);
-    kind->overstress(kind->numbers, dt, b, law, rate);
+    if (kind->overstress)
+        kind->overstress(kind->numbers, dt, b, law, rate);
+    else
+        rate_factor(foam, kind->compression, dt, b, law, rate);
     for (int l = 0; l < SF_LANES; l++)
         for (int i = 0; i < 3; i++)
             b->work[l] += (rate->part[i][l] - before[i][l]) * sf_foam_point_green_rate(rate, i, l) * dt;
@@ -140,9 +165,9 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
         b->work[l] = rate.extra[l] = 0;
         rate.factor[l] = b->factor[l];
     }
-    if (kind->overstress && dt > 0) {
+    if ((kind->overstress || foam->rate_factor > 0) && dt > 0) {
         memcpy(rate.rate_of_e, rate_of_e, sizeof rate.rate_of_e);
-        rate_stress(kind, dt, b, &law, &rate);
+        rate_stress(foam, kind, dt, b, &law, &rate);
     }
     compose(rate.part, rate.v, s);
     damp_viscosity(foam, b, eta);
@@ -265,6 +290,14 @@ double sf_foam_axial_filter(const sf_foam_options *foam, double dt, double green
     double *rate = &point->history[SF_FOAM_RATE], fastest = fmax(0, -green_rate / stretch);
     *rate += -expm1(-dt / foam->filter_time) * (fastest - *rate);
     return *rate;
+}
+
+double sf_foam_axial_gain(const sf_foam_options *foam, double dt, double green_rate, double stretch,
+                          sf_uniaxial *point) {
+    if (!(foam->rate_factor > 0))
+        return 0;
+    double rate = sf_foam_axial_filter(foam, dt, green_rate, stretch, point);
+    return foam->rate_factor * fmax(0, log10(rate / foam->rate_reference));
 }
 
 double sf_foam_axial_viscous(const sf_foam_options *foam, double dt, double green_rate, sf_uniaxial *point) {

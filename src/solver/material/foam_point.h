@@ -14,19 +14,20 @@
 
 /* Numbers of hysteresis and viscosity. A law's numbers hold them as the members of SF_FOAM_OPTIONS. */
 #define SF_FOAM_OPTIONS                                                                                      \
-    double density;      /* kg m-3 */                                                                        \
-    double hu, shape;    /* - */                                                                             \
-    double damp;         /* - */                                                                             \
-    double maxwell;      /* Pa, ED */                                                                        \
-    double maxwell_rate; /* s-1, BETA1 */                                                                    \
-    double kelvin;       /* Pa s, eta */                                                                     \
-    double filter_time;  /* s */                                                                             \
+    double density;                     /* kg m-3 */                                                         \
+    double hu, shape;                   /* - */                                                              \
+    double damp;                        /* - */                                                              \
+    double maxwell;                     /* Pa, ED */                                                         \
+    double maxwell_rate;                /* s-1, BETA1 */                                                     \
+    double kelvin;                      /* Pa s, eta */                                                      \
+    double rate_factor, rate_reference; /* -, s-1 */                                                         \
+    double filter_time;                 /* s */                                                              \
     sf_unloading unloading;
 typedef struct sf_foam_options {
     SF_FOAM_OPTIONS
 } sf_foam_options;
 
-sf_foam_options sf_foam_options_build(const sf_foam_shared *card, double filter_time);
+sf_foam_options sf_foam_options_build(const sf_foam_shared *card);
 
 /* Rows of sf_law_batch.history. */
 enum {
@@ -56,9 +57,10 @@ typedef struct sf_foam_rate {
 /* What a law is. */
 typedef struct sf_foam_kind {
     const void *numbers;
-    double rest; /* Pa, the larger slope at rest */
+    double rest;      /* Pa, the larger slope at rest */
+    bool compression; /* the rate factor acts on compressed directions alone */
     void (*loading)(const void *numbers, double stretch[3][SF_LANES], sf_foam_loading *out);
-    /* NULL: none */
+    /* Of a law's own, instead of the rate factor. NULL: none */
     void (*overstress)(const void *numbers, double dt, sf_law_batch *batch, const sf_foam_loading *law,
                        sf_foam_rate *rate);
 } sf_foam_kind;
@@ -80,6 +82,10 @@ double sf_foam_axial_factor(const sf_foam_options *options, double energy, sf_un
 /* The filtered rate (s-1) after the step. */
 double sf_foam_axial_filter(const sf_foam_options *options, double dt, double green_rate, double stretch,
                             sf_uniaxial *point);
+/* What the rate factor adds to the factor on the stress of loading; 0 without one. Advances the filtered
+ * rate. */
+double sf_foam_axial_gain(const sf_foam_options *options, double dt, double green_rate, double stretch,
+                          sf_uniaxial *point);
 /* Second Piola-Kirchhoff stress (Pa) of Maxwell branch and Kelvin viscosity. */
 double sf_foam_axial_viscous(const sf_foam_options *options, double dt, double green_rate,
                              sf_uniaxial *point);

@@ -12,9 +12,6 @@
 static const sf_hyperfoam_term *term(const void *card, int k) {
     return &((const sf_hyperfoam_card *)card)->term[k];
 }
-static bool has_rate(const void *card) {
-    return ((const sf_hyperfoam_card *)card)->rate_factor > 0;
-}
 
 /* What of term k acts. */
 #define ACTS(k)                                                                                              \
@@ -48,14 +45,8 @@ static const sf_parameter parameters[] = {
     {"material", "stable_to", SF_PARAMETER_NUMBER, "0.9", AT(stable_to),
      "strain up to which the terms must be stable (Drucker), in compression, tension and shear", .low = 0.01, .high = 0.99},
     SF_FOAM_PARAMETERS,
-    {"material", "rate_factor", SF_PARAMETER_NUMBER, "0.0", AT(rate_factor),
-     "part by which the stress of loading grows with each decade of the strain rate above `rate_reference`",
-     .high = 10.0, .acts = has_rate},
-    {"material", "rate_reference", SF_PARAMETER_QUANTITY, "\"0.01 1/s\"", AT(rate_reference),
-     "strain rate of the terms", .quantity = SF_RATE, .low = 1e-9, .high = 1e6, SF_FOAM_IN("1/s", 1), .acts = has_rate},
-    {"material", "rate_filter_time", SF_PARAMETER_QUANTITY, "\"0.1 ms\"", AT(rate_filter_time),
-     "time constant of the strain rate in `rate_factor`", .quantity = SF_TIME, .low = 1e-9, .high = 1e3,
-     SF_FOAM_IN("ms", 1e-3), .acts = has_rate},
+    SF_FOAM_RATE_FACTOR("strain rate of the terms"),
+    SF_FOAM_RATE_FILTER("in `rate_factor`", sf_foam_has_rate_factor),
     SF_FOAM_INFORMED,
     TERM(0, "material.term_1", NULL, NULL),
     TERM(1, "material.term_2", "\"0 kPa\"", "2.0"),
@@ -128,11 +119,6 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
     SF_TRY(sf_foam_check_shared_keys(&foam->shared, given, place, err));
     if (check_terms(foam, place, &inner) != SF_OK)
         return SF_FAIL(err, SF_ERR_INPUT, "%s", inner.text);
-    *place = "material.rate_reference";
-    if (foam->rate_factor > 0 && !given->is(given->reader, "material", "rate_reference"))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "material.rate_reference is missing: a rate factor needs the rate of the terms, for "
-                       "example rate_reference = \"0.01 1/s\"");
     return SF_OK;
 }
 
@@ -179,7 +165,7 @@ static void rest_bounds(const void *card, double length, double *tangent, double
 
 static const sf_history_variable history[] = {
     {"peak", "J m-3", SF_FOAM_PEAK, 1, NULL},
-    {"rate", "s-1", SF_FOAM_RATE, 1, has_rate},
+    {"rate", "s-1", SF_FOAM_RATE, 1, sf_foam_has_rate_factor},
     {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
 };
 
@@ -208,11 +194,8 @@ static double uniaxial(const void *numbers, double dt, double strain, sf_uniaxia
     const sf_hyperfoam *foam = numbers;
     sf_hyperfoam_point p = confined(foam, strain);
     double stretch = 1 - strain, green_rate = sf_foam_green_rate(dt, strain, point);
-    double factor = sf_foam_axial_factor(&foam->options, p.energy, point);
-    if (foam->rate_factor > 0) {
-        double rate = sf_foam_axial_filter(&foam->options, dt, green_rate, stretch, point);
-        factor += foam->rate_factor * fmax(0, log10(rate / foam->rate_reference));
-    }
+    double factor = sf_foam_axial_factor(&foam->options, p.energy, point) +
+                    sf_foam_axial_gain(&foam->options, dt, green_rate, stretch, point);
     point->strain = strain;
     return -factor * p.t[0] - stretch * sf_foam_axial_viscous(&foam->options, dt, green_rate, point);
 }

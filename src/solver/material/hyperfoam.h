@@ -25,10 +25,7 @@ typedef struct sf_hyperfoam_card {
         };
         sf_foam_shared shared;
     };
-    double rate_factor;    /* -, by which the stress of loading grows with each decade of the rate; 0: none */
-    double rate_reference; /* s-1, rate of the terms */
-    double rate_filter_time; /* s */
-    double stable_to;        /* -, strain up to which the terms must be stable */
+    double stable_to; /* -, strain up to which the terms must be stable */
     sf_hyperfoam_term term[SF_HYPERFOAM_TERMS];
 } sf_hyperfoam_card;
 
@@ -39,7 +36,6 @@ typedef struct sf_hyperfoam {
         };
         sf_foam_options options;
     };
-    double rate_factor, rate_reference;
     double rest; /* Pa, modulus of confined compression at rest */
     int count;
     double mu[SF_HYPERFOAM_TERMS], alpha[SF_HYPERFOAM_TERMS], beta[SF_HYPERFOAM_TERMS];

@@ -10,9 +10,7 @@ double sf_hyperfoam_beta(const sf_hyperfoam_term *term) {
 }
 
 sf_hyperfoam sf_hyperfoam_build(const sf_hyperfoam_card *card) {
-    sf_hyperfoam foam = {.options = sf_foam_options_build(&card->shared, card->rate_filter_time),
-                         .rate_factor = card->rate_factor,
-                         .rate_reference = card->rate_reference};
+    sf_hyperfoam foam = {.options = sf_foam_options_build(&card->shared)};
     for (int k = 0; k < SF_HYPERFOAM_TERMS; k++)
         if (card->term[k].mu != 0) {
             foam.mu[foam.count] = card->term[k].mu;
@@ -73,31 +71,8 @@ static SF_KERNEL void loading(const void *numbers, double stretch[3][SF_LANES], 
     }
 }
 
-/* The rate factor: loading stresses times 1 + c log10(rate / reference). Its tangent is that of loading times
- * the same, and what a change of the filtered rate does to all three. */
-static void overstress(const void *numbers, double dt, sf_law_batch *b, const sf_foam_loading *law,
-                       sf_foam_rate *rate) {
-    const sf_hyperfoam *foam = numbers;
-    for (int l = 0; l < SF_LANES; l++) {
-        sf_foam_point_filter(&foam->options, dt, b, rate, l);
-        double now = b->history[SF_FOAM_RATE][l], sum = 0;
-        if (!(now > foam->rate_reference))
-            continue;
-        double gain = foam->rate_factor * log10(now / foam->rate_reference);
-        for (int i = 0; i < 3; i++) {
-            rate->part[i][l] += gain * law->t[i][l] / b->stretch[i][l];
-            sum += law->t[i][l] * law->t[i][l];
-        }
-        rate->factor[l] += gain;
-        rate->extra[l] += foam->rate_factor / (M_LN10 * now) * sqrt(sum) / foam->filter_time;
-    }
-}
-
 void sf_hyperfoam_update(const sf_hyperfoam *foam, double dt, sf_law_batch *b) {
-    const sf_foam_kind kind = {.numbers = foam,
-                               .rest = foam->rest,
-                               .loading = loading,
-                               .overstress = foam->rate_factor > 0 ? overstress : NULL};
+    const sf_foam_kind kind = {.numbers = foam, .rest = foam->rest, .loading = loading};
     sf_foam_point_update(&foam->options, &kind, dt, b);
 }
 

@@ -17,7 +17,7 @@ static bool has_cutoff(const void *card) {
     return ((const sf_foam_card *)card)->tension_cutoff != NO_CUTOFF;
 }
 static bool has_rates(const void *card) {
-    return ((const sf_foam_card *)card)->curve_count > 1;
+    return ((const sf_foam_card *)card)->curve_count > 1 || sf_foam_has_rate_factor(card);
 }
 static bool has_limit(const void *card) {
     return ((const sf_foam_card *)card)->densification_limit < 1;
@@ -38,9 +38,8 @@ static const sf_parameter parameters[] = {
     {"material", "tension_cutoff", SF_PARAMETER_QUANTITY, "\"none\"", AT(tension_cutoff),
      "largest tensile nominal stress, or \"none\"", .quantity = SF_PRESSURE, SF_FOAM_POSITIVE, .high = 1e12,
      .words = "none", .word_value = NO_CUTOFF, SF_FOAM_IN("kPa", 1e3), .acts = has_cutoff},
-    {"material", "rate_filter_time", SF_PARAMETER_QUANTITY, "\"0.1 ms\"", AT(rate_filter_time),
-     "time constant of the strain rate that chooses among `curves`", .quantity = SF_TIME, .low = 1e-9, .high = 1e3,
-     SF_FOAM_IN("ms", 1e-3), .acts = has_rates},
+    SF_FOAM_RATE_FACTOR("strain rate of `curve`"),
+    SF_FOAM_RATE_FILTER("that chooses among `curves` or acts in `rate_factor`", has_rates),
     SF_FOAM_INFORMED,
     {"material.densification", "rule", SF_PARAMETER_CHOICE, "\"H1\"", AT(densification_rule),
      "law beyond the table: H1: A + B/(1 - strain)^n; H2: A + B/(limit - strain)^m; value and slope continuous",
@@ -96,6 +95,18 @@ static sf_status check_densification(const sf_foam_card *foam, const sf_given *g
     return SF_OK;
 }
 
+/* Both would act on the same stress. */
+static sf_status check(const void *card, sf_error *err) {
+    const sf_foam_card *foam = card;
+    SF_TRY(sf_foam_check_shared(card, err));
+    if (foam->rate_factor > 0 && foam->curve_count > 1)
+        return SF_FAIL(
+            err, SF_ERR_MODEL,
+            "rate_factor is %g and there are %lld curves at several rates; a foam has one or the other",
+            foam->rate_factor, (long long)foam->curve_count);
+    return SF_OK;
+}
+
 static sf_status check_keys(const void *card, const sf_given *given, const char **place, sf_error *err) {
     const sf_foam_card *foam = card;
     if (foam->curve_count == 0)
@@ -103,6 +114,10 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
             err, place, "material",
             "material.curve is missing: the compression curve's CSV file (or curves: several of them)");
     SF_TRY(sf_foam_check_shared_keys(&foam->shared, given, place, err));
+    sf_error inner = SF_ERROR_INIT;
+    *place = "material.rate_factor";
+    if (check(foam, &inner) != SF_OK)
+        return SF_FAIL(err, SF_ERR_INPUT, "material.%s", inner.text);
     return check_densification(foam, given, place, err);
 }
 
@@ -183,7 +198,7 @@ const sf_law sf_low_density_foam = {
     .rest_modulus = rest_modulus,
     .length = offsetof(sf_foam_card, damp_length),
     .curves = offsetof(sf_foam_card, curves),
-    .check = sf_foam_check_shared,
+    .check = check,
     .check_keys = check_keys,
     .data_end = data_end,
     .data_end_words = "the compression table ends at",

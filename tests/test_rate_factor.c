@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rate factor of the low-density foam (theory eq. O4). */
+#include "solver/material/foam.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "foam_fixture.h"
+#include "post_check.h"
+
+static const double FACTOR = 0.15, REFERENCE = 1, TAU = 1e-4; /* -, s-1, s */
+
+static void make_foam(double hu, double alpha, double maxwell, sf_foam *foam) {
+    static point_card card;
+    point_card_init(&card);
+    point_card_add_eva(&card, 0, 60, 0.8, 1);
+    card.card.hysteresis_hu = hu;
+    card.card.hysteresis_alpha = alpha;
+    card.card.maxwell_modulus = maxwell;
+    card.card.maxwell_rate = 5000;
+    card.card.rate_factor = FACTOR;
+    card.card.rate_reference = REFERENCE;
+    card.card.rate_filter_time = TAU;
+    foam_build(&card, foam);
+}
+
+/* Nominal stress of the curve, Pa, and its energy, J m-3. */
+static double curve_stress(const sf_foam *foam, double strain, double *energy) {
+    double stress, slope;
+    sf_curve_evaluate(&foam->curve[0], strain, &stress, &slope, energy);
+    return stress;
+}
+
+static double gain_at(double rate) {
+    return FACTOR * fmax(0, log10(rate / REFERENCE));
+}
+
+/* At a constant rate v of engineering strain the filtered rate is v (1 - exp(-t / tau)), the stress the
+ * curve's times 1 + c log10(rate / reference). */
+static void loading_at_a_constant_rate_is_the_closed_form(void **state) {
+    (void)state;
+    static const double speeds[] = {0.5, 5, 90, 400};
+    sf_foam foam;
+    make_foam(0.01, 1, 0, &foam);
+    for (int k = 0; k < 4; k++) {
+        sf_law_batch batch;
+        sf_uniaxial point = {0};
+        double f[9], energy, dt = 1e-4 / speeds[k];
+        foam_reset(&batch);
+        for (int n = 1; n <= 6000; n++) {
+            double strain = 1e-4 * n, filtered = speeds[k] * -expm1(-n * dt / TAU);
+            foam_uniaxial(1 - strain, f);
+            foam_step(&foam, dt, f, &batch);
+            double stress = curve_stress(&foam, strain, &energy) * (1 + gain_at(filtered));
+            assert_relative(-batch.p[0][0], stress, 1e-4);
+            assert_relative(sf_foam_uniaxial(&foam, dt, strain, &point), stress, 1e-4);
+        }
+        assert_true(k == 0 ||
+                    -batch.p[0][0] > (1 + 0.9 * gain_at(speeds[k])) * curve_stress(&foam, 0.6, &energy));
+    }
+    sf_foam_free(&foam);
+}
+
+/* In unloading the factor of hysteresis acts on the curve alone; the gain fades with the filtered rate. */
+static void unloading_acts_on_the_curve_alone(void **state) {
+    (void)state;
+    sf_foam foam;
+    sf_law_batch batch;
+    double f[9], energy, peak, dt = 1e-6;
+    make_foam(0.1, 1, 0, &foam);
+    foam_reset(&batch);
+    for (int n = 1; n <= 5000; n++) {
+        foam_uniaxial(1 - 1e-4 * n, f);
+        foam_step(&foam, dt, f, &batch);
+    }
+    double start = batch.history[SF_FOAM_RATE][0];
+    curve_stress(&foam, 0.5, &peak);
+    for (int n = 1; n <= 900; n++) {
+        double strain = 0.5 - 1e-4 * n, rate = start * exp(-n * dt / TAU);
+        foam_uniaxial(1 - strain, f);
+        foam_step(&foam, dt, f, &batch);
+        double stress = curve_stress(&foam, strain, &energy);
+        double factor = 1 - 0.9 * (1 - energy / peak);
+        assert_relative(-batch.p[0][0], stress * (factor + gain_at(rate)), 1e-9);
+        assert_relative(batch.factor[0], factor, 1e-9);
+        assert_relative(batch.stored[0] + batch.lost[0],
+                        peak - (peak - energy) * (0.1 + 0.45 * (1 + energy / peak)), 1e-6);
+    }
+    sf_foam_free(&foam);
+}
+
+/* The work of the gain is what the total work exceeds stored and lost energy by, and is never given back in
+ * a cycle, at any speed. */
+static void work_closes_the_balance_and_dissipates(void **state) {
+    (void)state;
+    for (double time = 1e-3; time < 0.2; time *= 3) {
+        sf_foam foam;
+        sf_law_batch batch;
+        double f[9], viscous = 0, total = 0, old = 0, before = 0, most = 0;
+        const int steps = 20000;
+        make_foam(0.05, 0.5, 0, &foam);
+        foam_reset(&batch);
+        for (int n = 1; n <= steps; n++) {
+            double strain = 0.35 * (1 - cos(2 * M_PI * n / steps));
+            foam_uniaxial(1 - strain, f);
+            foam_step(&foam, time / steps, f, &batch);
+            total -= 0.5 * (batch.p[0][0] + old) * (strain - before);
+            old = batch.p[0][0];
+            before = strain;
+            viscous += batch.work[0];
+            most = fmax(most, viscous);
+            double inner = batch.stored[0] + batch.lost[0];
+            assert_true(fabs(total - inner - viscous) < 2e-3 * (inner + 1));
+        }
+        assert_true(viscous > 0.02 * batch.lost[0]);
+        assert_true(time < 80 * TAU || viscous > 0.99 * most); /* the gain fades in about 7 tau */
+        sf_foam_free(&foam);
+    }
+}
+
+/* Curves that are the multiples 1 + c k at the reference times 10^k are the same law: stress, work and
+ * filtered rate, in any motion; the tensile directions have no gain in either. */
+static void curves_that_are_multiples_are_the_same_law(void **state) {
+    (void)state;
+    static point_card card;
+    sf_foam factor, family;
+    uint64_t seed = 3;
+    make_foam(0.1, 1, 1e6, &factor);
+    point_card_init(&card);
+    for (int k = 0; k < 3; k++)
+        point_card_add_eva(&card, REFERENCE * pow(10, k), 60, 0.8, 1 + FACTOR * k);
+    card.card.hysteresis_hu = 0.1;
+    card.card.maxwell_modulus = 1e6;
+    card.card.maxwell_rate = 5000;
+    foam_build(&card, &family);
+    for (int trial = 0; trial < 500; trial++) {
+        double old[9], f[9];
+        sf_law_batch a, b;
+        point_deformation(&seed, 0.3, 1.2, old);
+        for (int k = 0; k < 9; k++)
+            f[k] = old[k] + point_random(&seed, -50, 50) * 1e-6;
+        foam_reset(&a);
+        foam_step(&factor, 0, old, &a);
+        for (int l = 0; l < SF_LANES; l++)
+            a.history[SF_FOAM_RATE][l] = point_random(&seed, 0, 90);
+        b = a;
+        foam_step(&factor, 1e-6, f, &a);
+        foam_step(&family, 1e-6, f, &b);
+        for (int l = 0; l < SF_LANES; l++) {
+            double p[2][9];
+            foam_get(a.p, l, p[0]);
+            foam_get(b.p, l, p[1]);
+            assert_true(point_distance(9, p[0], p[1]) < 1e-9 * point_norm(9, p[1]));
+            assert_close(a.work[l], b.work[l], 1e-9 * point_norm(9, p[1]) * 1e-4);
+            assert_true(a.history[SF_FOAM_RATE][l] == b.history[SF_FOAM_RATE][l]);
+            assert_true(a.stored[l] == b.stored[l] && a.lost[l] == b.lost[l]);
+        }
+    }
+    sf_foam_free(&factor);
+    sf_foam_free(&family);
+}
+
+static void update(const void *numbers, double dt, sf_law_batch *batch) {
+    sf_foam_update(numbers, dt, batch);
+}
+
+static void bounds_cover_the_numerical_tangent(void **state) {
+    (void)state;
+    uint64_t seed = 12;
+    for (int variant = 0; variant < 4; variant++) {
+        sf_foam foam;
+        make_foam(variant ? 0.02 : 1, 1, variant == 2 ? 3e6 : 0, &foam);
+        foam.modulus = variant == 3 ? 1e4 : foam.modulus;
+        const point_law law = {.update = update, .numbers = &foam, .maxwell = foam.maxwell, .away = true};
+        for (int trial = 0; trial < 1000; trial++)
+            point_law_assert_bounds(&law, &seed, 0.2, 1.2, 1e-6);
+        sf_foam_free(&foam);
+    }
+}
+
+static void both_kinds_of_rate_are_refused(void **state) {
+    (void)state;
+    static point_card card;
+    sf_error err = SF_ERROR_INIT;
+    point_card_init(&card);
+    point_card_add_eva(&card, 1, 60, 0.8, 1);
+    point_card_add_eva(&card, 100, 60, 0.8, 1.5);
+    card.card.maxwell_rate = 5000;
+    sf_material m = sf_foam_material(&card.card);
+    assert_int_equal(sf_material_check(&m, 0, &err), SF_OK);
+    card.card.rate_factor = 0.1;
+    card.card.rate_reference = 1;
+    assert_int_equal(sf_material_check(&m, 0, &err), SF_ERR_MODEL);
+    assert_non_null(strstr(err.text, "rate_factor is 0.1 and there are 2 curves"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(loading_at_a_constant_rate_is_the_closed_form),
+        cmocka_unit_test(unloading_acts_on_the_curve_alone),
+        cmocka_unit_test(work_closes_the_balance_and_dissipates),
+        cmocka_unit_test(curves_that_are_multiples_are_the_same_law),
+        cmocka_unit_test(bounds_cover_the_numerical_tangent),
+        cmocka_unit_test(both_kinds_of_rate_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
