@@ -9,6 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "extreme.h"
 #include "foam_fixture.h"
 #include "post_check.h"
 
@@ -112,7 +113,7 @@ static void work_closes_the_balance_and_dissipates(void **state) {
             old = batch.p[0][0];
             before = strain;
             viscous += batch.work[0];
-            most = fmax(most, viscous);
+            most = larger(most, viscous);
             double inner = batch.stored[0] + batch.lost[0];
             assert_true(fabs(total - inner - viscous) < 2e-3 * (inner + 1));
         }
