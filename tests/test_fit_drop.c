@@ -362,7 +362,7 @@ static void bad_input_gets_one_sentence(void **state) {
         {GOOD "start: { E = \"3e5 MPa\"; };\n", "E is above 1e+10"},
         {GOOD "start: { p0 = \"3 kg\"; };\n", "p0: "},
         {GOOD "start: { q0 = \"3 kPa\"; };\n", "\"q0\" is no parameter of the foam"},
-        {GOOD "start: { m = 0.5; };\n", "m is 0.5, outside 1 to 10"},
+        {GOOD "start: { m = 0.5; };\n", "m is 0.5, outside 1.001 to 10"},
         {GOOD "start = 3;\n", "start must be a group"},
         {GOOD "unknown = ( { name = \"p1\"; } );\n", "\"p1\" is no parameter of the foam"},
         {GOOD "unknown = ( { name = \"stress_scale\"; } );\n", "is no parameter of curve_form = \"gas\""},

@@ -87,7 +87,8 @@ static void check_card(const sf_curve_form *form, const double *value) {
     for (int k = 1; k < 4000; k++) {
         double strain = 0.975 * pole * k / 4000, stress, slope, energy;
         sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
-        double exact = sf_curve_form_stress(form, value, strain), error = (stress - exact) / fmax(exact, knee);
+        double exact = sf_curve_form_stress(form, value, strain),
+               error = (stress - exact) / fmax(exact, knee);
         if (!(fabs(error) < 1e-4 && slope > 0))
             fail_msg("%s: error of %g at a strain of %g", form->name, error, strain);
     }
@@ -220,11 +221,15 @@ static void a_card_has_the_values(void **state) {
         sf_foam_card card;
         sf_error err = SF_ERROR_INIT;
         sf_foam_form_start(&form, value);
+        assert_true(value[SF_PARAMETER_RATE_FACTOR] == 0 && value[SF_PARAMETER_RATE_REFERENCE] == 1);
+        sf_foam_form_start_rate(value);
+        assert_true(value[SF_PARAMETER_RATE_FACTOR] == 0.1);
+        value[SF_PARAMETER_RATE_FACTOR] = 0.2;
         value[SF_PARAMETER_ALPHA] = 0.3;
         value[SF_PARAMETER_STRESS_SCALE] = 2;
         assert_int_equal(sf_foam_form_card(&form, value, &card, &err), SF_OK);
         assert_true(card.hysteresis_alpha == 0.3 && card.hysteresis_hu == 0.1 && card.hysteresis_shape == 2);
-        assert_true(card.modulus == MODULUS);
+        assert_true(card.modulus == MODULUS && card.rate_factor == 0.2 && card.rate_reference == 1);
         if (form.curve == &sf_form_table)
             assert_true(card.curve_points == 3 && card.curve_stress[1] == 100e3);
         sf_foam_card_free(&card);

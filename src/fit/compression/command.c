@@ -2,6 +2,7 @@
 #include "core/program.h"
 #include "fit/compression/command.h"
 
+#include "fit/compression/form_command.h"
 #include "fit/compression/hyperfoam_command.h"
 #include "fit/compression/output.h"
 #include "fit/command_line.h"
@@ -86,6 +87,15 @@ static void print_tests(const sf_compression_config *config) {
     fflush(stdout);
 }
 
+static sf_status run_form(const options *o, const sf_compression_config *config, const sf_sink *sink,
+                          sf_error *err) {
+    if (o->cube.case_path)
+        return SF_FAIL(err, SF_ERR_INPUT, "--simulate does not work with curve_form = \"%s\" in %s",
+                       config->form.form.curve->name, o->path);
+    SF_TRY(sf_form_fit_check(o->directory, o->force, err));
+    return sf_form_fit_write(config, o->directory, o->force, stdout, sink, err);
+}
+
 static sf_status run(const options *o, sf_error *err) {
     sf_compression_config config = {0};
     sf_compression_fit fit = {0};
@@ -103,7 +113,9 @@ static sf_status run(const options *o, sf_error *err) {
         sf_compression_config_read(o->path, &config, err) != SF_OK)
         return err->status;
     print_tests(&config);
-    if (sf_compression_fit_run(&config, &fit, err) == SF_OK)
+    if (config.form.form.curve)
+        run_form(o, &config, &sink, err);
+    else if (sf_compression_fit_run(&config, &fit, err) == SF_OK)
         sf_compression_output(&fit, o->path, o->command, o->directory, o->force, &o->cube, &sink, err);
     sf_compression_fit_free(&fit);
     sf_compression_config_free(&config);

@@ -64,11 +64,11 @@ static sf_status check_rate(const sf_config *file, const config_setting_t *entry
 }
 
 /* Puts the test in its place by rate. */
-static void insert_test(sf_compression_config *c, const sf_compression_test *test) {
-    int at = c->test_count++;
-    for (; at > 0 && c->test[at - 1].rate > test->rate; at--)
-        c->test[at] = c->test[at - 1];
-    c->test[at] = *test;
+static void insert_test(sf_compression_test *tests, int *count, const sf_compression_test *test) {
+    int at = (*count)++;
+    for (; at > 0 && tests[at - 1].rate > test->rate; at--)
+        tests[at] = tests[at - 1];
+    tests[at] = *test;
 }
 
 /* A strain rate, or the crosshead's speed over the thickness. */
@@ -105,34 +105,38 @@ static sf_status read_source(const sf_config *file, const config_setting_t *entr
     source->invert = (sf_inversion)invert;
     source->area = specimen.area;
     source->thickness = specimen.thickness;
-    return check_rate(file, entry, source->rate, c, err);
+    return SF_OK;
 }
 
-static sf_status read_test(const sf_config *file, const config_setting_t *entry, sf_compression_config *c,
-                           sf_error *err) {
+/* Into the tests that are fitted, each rate once, or those that are predicted. */
+static sf_status read_test(const sf_config *file, const config_setting_t *entry, bool predicted,
+                           sf_compression_config *c, sf_error *err) {
     sf_compression_test test;
     sf_error inner = SF_ERROR_INIT;
     char *path = NULL;
     sf_compression_source source;
     if (read_source(file, entry, c, &source, err) == SF_OK &&
+        (predicted || check_rate(file, entry, source.rate, c, err) == SF_OK) &&
         sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
         source.path = path;
         if (sf_compression_test_read(&source, &test, &inner) != SF_OK)
             SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
                     config_setting_source_line(entry));
+        else if (predicted)
+            insert_test(c->predicted, &c->predicted_count, &test);
         else
-            insert_test(c, &test);
+            insert_test(c->test, &c->test_count, &test);
     }
     free(path);
     return err->status;
 }
 
-static sf_status read_tests(const sf_config *file, const config_setting_t *root, sf_compression_config *c,
-                            sf_error *err) {
+static sf_status read_tests(const sf_config *file, const config_setting_t *root, const char *name,
+                            bool predicted, sf_compression_config *c, sf_error *err) {
     const config_setting_t *tests;
-    SF_TRY(sf_config_list(file, root, "tests", true, SF_COMPRESSION_TESTS, &tests, err));
-    for (int i = 0; i < config_setting_length(tests) && err->status == SF_OK; i++)
-        read_test(file, config_setting_get_elem(tests, (unsigned)i), c, err);
+    SF_TRY(sf_config_list(file, root, name, !predicted, SF_COMPRESSION_TESTS, &tests, err));
+    for (int i = 0; tests && i < config_setting_length(tests) && err->status == SF_OK; i++)
+        read_test(file, config_setting_get_elem(tests, (unsigned)i), predicted, c, err);
     return err->status;
 }
 
@@ -154,10 +158,14 @@ static sf_status read_name(const sf_config *file, const config_setting_t *root, 
 static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
     const config_setting_t *root = config_root_setting(&file->config);
     int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
-    SF_TRY(sf_config_names(file, root,
-                           "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
-                           "confidence|specimen|toe_correction",
-                           err));
+    bool form;
+    SF_TRY(sf_form_request_asked(file, root, &form, err));
+    SF_TRY(sf_config_names(
+        file, root,
+        form ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|" SF_FORM_REQUEST_KEYS
+             : "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
+               "confidence|specimen|toe_correction|curve_form",
+        err));
     SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err));
     SF_TRY(read_name(file, root, c, err));
     SF_TRY(sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err));
@@ -165,13 +173,19 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
     SF_TRY(sf_config_number(file, root, "confidence", false, 0.5, 0.9999, &c->confidence, err));
     SF_TRY(
         sf_config_number(file, root, "densification_start", false, 0.05, 0.98, &c->densification_start, err));
-    SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err));
+    if (!form)
+        SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err));
     SF_TRY(sf_config_choice(file, root, "densification", RULE_WORDS, &rule, err));
     SF_TRY(sf_config_flag(file, root, "toe_correction", &c->toe, err));
     SF_TRY(read_specimen(file, root, &c->specimen, err));
     c->rate_model = (sf_rate_model)model;
     c->rule = (sf_rule_choice)rule;
-    return read_tests(file, root, c, err);
+    SF_TRY(read_tests(file, root, "tests", false, c, err));
+    if (!form)
+        return SF_OK;
+    SF_TRY(read_tests(file, root, "predict", true, c, err));
+    return sf_form_request_read(file, root, c->density, c->damp, c->modulus_range, c->test_count, c->test,
+                                &c->form, err);
 }
 
 /* ---- requirements on all tests together ---- */
@@ -179,6 +193,8 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
 static sf_status check_together(const char *path, const sf_compression_config *c, sf_error *err) {
     double shortest = 1;
     int below = 0;
+    if (c->form.form.curve)
+        return SF_OK; /* nothing is asked of the tests together */
     for (int k = 0; k < c->test_count; k++)
         shortest = fmin(shortest, c->test[k].largest_strain);
     if (c->densification_start > 0.97 * shortest)
@@ -217,5 +233,7 @@ sf_status sf_compression_config_read(const char *path, sf_compression_config *co
 void sf_compression_config_free(sf_compression_config *config) {
     for (int k = 0; k < config->test_count; k++)
         sf_compression_test_free(&config->test[k]);
+    for (int k = 0; k < config->predicted_count; k++)
+        sf_compression_test_free(&config->predicted[k]);
     *config = (sf_compression_config){0};
 }

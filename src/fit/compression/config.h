@@ -3,6 +3,7 @@
 #ifndef SF_FIT_COMPRESSION_CONFIG_H
 #define SF_FIT_COMPRESSION_CONFIG_H
 
+#include "fit/compression/form_request.h"
 #include "fit/compression/test.h"
 #include <stdio.h>
 
@@ -41,6 +42,9 @@ typedef struct sf_compression_config {
     sf_rule_choice rule;
     int test_count;
     sf_compression_test test[SF_COMPRESSION_TESTS]; /* ascending rate; owned */
+    sf_form_request form; /* which form of the loading curve; its curve is NULL: a free spline */
+    int predicted_count;  /* tests that a form is to predict, not fitted */
+    sf_compression_test predicted[SF_COMPRESSION_TESTS]; /* owned */
 } sf_compression_config;
 
 /* "none", "log", "maxwell", "curves", "auto" */

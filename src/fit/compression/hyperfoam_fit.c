@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/compression/hyperfoam_fit.h"
 
+#include "fit/compression/search.h"
 #include <gsl/gsl_errno.h>
-#include <gsl/gsl_multifit_nlinear.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 3 * SF_HYPERFOAM_TERMS, STARTS = 6, TURNS = 200 };
+enum { MOST = 3 * SF_HYPERFOAM_TERMS, STARTS = 6 };
 static const double LARGEST_NU = 0.45, LARGEST_ALPHA = 49, LEAST_ALPHA = 0.02;
 static const double AT_BOUND = 1e-3; /* of the range */
 static const double POOR = 0.1;      /* rms over the largest value */
@@ -108,28 +108,6 @@ static int deviate_unloading(const gsl_vector *x, void *data, gsl_vector *out) {
     return GSL_SUCCESS;
 }
 
-/* Sum of squares at the end, or infinity; `x` in and out. The covariance, not scaled, if `covariance`. */
-static double search(int (*f)(const gsl_vector *, void *, gsl_vector *), problem *p, size_t count,
-                     gsl_vector *x, gsl_matrix *covariance) {
-    gsl_multifit_nlinear_fdf fdf = {.f = f, .n = count, .p = x->size, .params = p};
-    gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
-    gsl_multifit_nlinear_workspace *work =
-        gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, count, x->size);
-    double sum = INFINITY;
-    int info;
-    if (work && gsl_multifit_nlinear_init(x, &fdf, work) == GSL_SUCCESS) {
-        gsl_multifit_nlinear_driver(TURNS, 1e-10, 1e-10, 0, NULL, NULL, &info, work);
-        sum = 0;
-        for (size_t i = 0; i < count; i++)
-            sum += pow(gsl_vector_get(gsl_multifit_nlinear_residual(work), i), 2);
-        gsl_vector_memcpy(x, gsl_multifit_nlinear_position(work));
-        if (covariance)
-            gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(work), 1e-14, covariance);
-    }
-    gsl_multifit_nlinear_free(work);
-    return isfinite(sum) ? sum : INFINITY;
-}
-
 /* The next choice of `terms` different starts, descending; false: there is none. */
 static bool next_choice(int terms, int choice[SF_HYPERFOAM_TERMS]) {
     for (int k = terms - 1; k >= 0; k--)
@@ -198,14 +176,14 @@ static sf_status fit_terms(problem *p, sf_hyperfoam_fit *fit, sf_error *err) {
     double least = INFINITY;
     do {
         start(p, choice, x);
-        double sum = search(deviate, p, count, x, NULL);
+        double sum = sf_least_squares(deviate, p, count, x, NULL);
         if (sum < least) {
             least = sum;
             gsl_vector_memcpy(best, x);
         }
     } while (next_choice(p->terms, choice));
     if (isfinite(least))
-        least = search(deviate, p, count, best, covariance);
+        least = sf_least_squares(deviate, p, count, best, covariance);
     if (isfinite(least)) {
         take_terms(p, best, &fit->card);
         find_bounds(p, best, fit);
@@ -238,7 +216,7 @@ static sf_status fit_unloading(problem *p, sf_hyperfoam_fit *fit, sf_error *err)
         gsl_vector_set(x, 0, -2);
         gsl_vector_set(x, 1, -3);
         gsl_vector_set(x, 2, -2);
-        double sum = search(deviate_unloading, p, count, x, NULL);
+        double sum = sf_least_squares(deviate_unloading, p, count, x, NULL);
         if (isfinite(sum)) {
             take_unloading(x, &fit->card);
             for (size_t k = 0; k < 3; k++)

@@ -273,6 +273,8 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
     for (int k = 0; k < in->unknown_count; k++)
         if (in->unknown[k] == p)
             return sf_config_refuse(config, entry, err, "%s is unknown twice", name);
+    if (p == SF_PARAMETER_RATE_FACTOR)
+        sf_foam_form_start_rate(in->start);
     if (!(in->start[p] > 0))
         return sf_config_refuse(config, entry, err,
                                 "%s is 0 in the start material: give a start value, start: { %s = ...; }",

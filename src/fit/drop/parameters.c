@@ -9,6 +9,8 @@
 static const double LEAST_SOLID = 300, MOST_SOLID = 20000; /* kg m-3 */
 static const double MOST_FRACTION = 0.5;
 static const double UNKNOWN_SOLID_SD = 0.5; /* of the logarithm */
+static const double RATE_FACTOR = 0.1;      /* median where the start material has none */
+static const double RATE_REFERENCE = 1;     /* s-1, the same; drops are far above */
 
 sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err) {
     double solid = form->solid_density, foam = form->base.density;
@@ -36,8 +38,15 @@ static void start_common(const sf_foam_card *base, double value[SF_PARAMETER_COU
         [SF_PARAMETER_ED] = base->maxwell_modulus,
         [SF_PARAMETER_BETA1] = base->maxwell_rate,
         [SF_PARAMETER_ETA] = base->kelvin_viscosity,
+        [SF_PARAMETER_RATE_FACTOR] = base->rate_factor,
+        [SF_PARAMETER_RATE_REFERENCE] = base->rate_factor > 0 ? base->rate_reference : RATE_REFERENCE,
     };
     memcpy(value, start, sizeof start);
+}
+
+void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]) {
+    if (!(value[SF_PARAMETER_RATE_FACTOR] > 0))
+        value[SF_PARAMETER_RATE_FACTOR] = RATE_FACTOR;
 }
 
 void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]) {
@@ -63,10 +72,10 @@ int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARA
     return count;
 }
 
-/* A copy of `count` items; NULL for none. */
+/* A copy of `count` items; zeros for NULL. */
 static void *copy_items(const void *from, int64_t count, size_t size, sf_error *err) {
     void *to = sf_alloc(err, (unsigned long)count, size, "foam card");
-    if (to && count > 0)
+    if (to && from && count > 0)
         memcpy(to, from, (size_t)count * size);
     return to;
 }
@@ -102,6 +111,8 @@ sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARA
     card->maxwell_modulus = value[SF_PARAMETER_ED];
     card->maxwell_rate = value[SF_PARAMETER_BETA1];
     card->kelvin_viscosity = value[SF_PARAMETER_ETA];
+    card->rate_factor = value[SF_PARAMETER_RATE_FACTOR];
+    card->rate_reference = value[SF_PARAMETER_RATE_REFERENCE];
     if (form->curve->stress) {
         sf_curve_form_tabulate(form->curve, value, card, err);
     } else {

@@ -20,6 +20,9 @@ sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err);
  * fraction is density over solid_density, 0 if that is not known (gas_solid: then 0.05). */
 void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]);
 
+/* Gives a foam without rate factor the median of its prior: 0.1 for a decade of the rate. */
+void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]);
+
 /* Default width of the prior of a parameter, of the logarithm: the form's own; the solid fraction's is wide
  * where solid_density is not known. */
 double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter parameter);

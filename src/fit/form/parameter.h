@@ -16,17 +16,17 @@
     X(S0, "s0", SF_PRESSURE, "kPa", 1e3, 1, 1e9, 0.7, "yield stress of the cell walls") \
     X(P0, "p0", SF_PRESSURE, "kPa", 1e3, 1, 1e9, 0.3, "gas pressure") \
     X(B, "B", SF_PRESSURE, "kPa", 1e3, 1e-3, 1e9, 1, "densification stress") \
-    X(M, "m", NONE, "", 1, 1, 10, 0.3, "densification exponent") \
+    X(M, "m", NONE, "", 1, 1.001, 10, 0.3, "densification exponent") \
     X(SOLID_FRACTION, "solid_fraction", NONE, "", 1, 1e-4, 0.5, 0.1, "part of the volume that is solid, Phi") \
     X(RUSCH_A, "rusch_A", SF_PRESSURE, "kPa", 1e3, 1, 1e9, 0.7, "stress of the plateau, of A e^m") \
-    X(RUSCH_M, "rusch_m", NONE, "", 1, 0.01, 1, 0.4, "exponent of the plateau, below 1") \
+    X(RUSCH_M, "rusch_m", NONE, "", 1, 0.01, 0.999, 0.4, "exponent of the plateau, below 1") \
     X(RUSCH_B, "rusch_B", SF_PRESSURE, "kPa", 1e3, 1e-3, 1e10, 1, "stress of densification, of B e^n") \
-    X(RUSCH_N, "rusch_n", NONE, "", 1, 1, 40, 0.3, "exponent of densification, above 1") \
+    X(RUSCH_N, "rusch_n", NONE, "", 1, 1.001, 40, 0.3, "exponent of densification, above 1") \
     X(RUSCH_END, "rusch_end", NONE, "", 1, 0.1, 0.97, 0.1, "strain from which the densification law continues the two powers") \
     X(AVALLE_A, "avalle_A", SF_PRESSURE, "kPa", 1e3, 1, 1e9, 0.7, "stress of the plateau") \
     X(AVALLE_M, "avalle_m", NONE, "", 1, 0.01, 60, 0.7, "exponent of softening on the plateau") \
     X(AVALLE_B, "avalle_B", SF_PRESSURE, "kPa", 1e3, 1e-3, 1e9, 1, "stress of densification, of B x^n") \
-    X(AVALLE_N, "avalle_n", NONE, "", 1, 1, 20, 0.3, "exponent of densification, above 1") \
+    X(AVALLE_N, "avalle_n", NONE, "", 1, 1.001, 20, 0.3, "exponent of densification, above 1") \
     X(SPLINE_1, "spline_1", NONE, "", 1, 1e-3, 1e3, 0.4, "factor on the whole gas curve") \
     X(SPLINE_2, "spline_2", NONE, "", 1, 1e-2, 1e2, 0.1, "its growth from one knot to the next") \
     X(SPLINE_3, "spline_3", NONE, "", 1, 1e-2, 1e2, 0.15, "bend of the logarithm at a strain of 0") \

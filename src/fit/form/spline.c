@@ -17,7 +17,7 @@ static const sf_form_entry entries[] = {
     {SF_PARAMETER_SPLINE_3, 0.15, true}, {SF_PARAMETER_SPLINE_4, 0.15, true},
     {SF_PARAMETER_SPLINE_5, 0.15, true}, {SF_PARAMETER_SPLINE_6, 0.15, true},
     {SF_PARAMETER_SPLINE_7, 0.15, true}, {SF_PARAMETER_SPLINE_8, 0.15, true},
-    {SF_PARAMETER_SPLINE_9, 0.15, true}, {SF_PARAMETER_S0, 0.7, false},
+    {SF_PARAMETER_SPLINE_9, 0.15, true}, {SF_PARAMETER_S0, 0.7, true},
     {SF_PARAMETER_P0, 0.15, false},      {SF_PARAMETER_B, 1, false},
     {SF_PARAMETER_M, 0.3, false},        {SF_PARAMETER_SOLID_FRACTION, 0.1, false}};
 

@@ -1,0 +1,173 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Fits every form of the loading curve to every foam of examples/data that was pressed, into out/foams, and prints the
+# tables of docs/identification.md: loading, loops, rates.
+#
+#     tools/foams_table.sh             about a minute
+#     tools/foams_table.sh --docs      the same, and writes the tables into docs/identification.md
+#
+# The programs are those in build/bin, or in $SF_BIN_DIR.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+case ${1:-} in
+'' | --docs) ;;
+*) echo 'usage: tools/foams_table.sh [--docs]' >&2 && exit 2 ;;
+esac
+PYTHONPATH=tools PYTHONDONTWRITEBYTECODE=1 exec python3 - "${SF_BIN_DIR:-build/bin}/softfall-fit" "${1:-}" <<'PYTHON'
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+
+from results_table import replace_table
+
+PROGRAM, OUT, DATA = sys.argv[1], "out/foams", os.path.abspath("examples/data")
+DOCUMENT = "docs/identification.md"
+
+# name in the tables: files with their rates (1/s); density (kg/m3), which no figure here depends on but where solid_density is given
+FOAMS = {
+    "LEAP, cycle 1": [("leap_cycle1", 0.01)],
+    "LEAP, cycle 3": [("leap_cycle3", 0.01)],
+    "LEAP confined, cycle 1": [("leap_confined_cycle1", 0.01)],
+    "LEAP confined, cycle 3": [("leap_confined_cycle3", 0.01)],
+    "VN600, quasi-static": [("vn600_quasistatic", 0.001)],
+    "VN600, 10/s": [("vn600_10_per_s", 10)],
+    "Zorbium, 0.0002/s": [("zorbium_0.0002_per_s", 0.0002)],
+    "Zorbium, 0.02/s": [("zorbium_0.02_per_s", 0.02)],
+    "Zorbium, 0.2/s": [("zorbium_0.2_per_s", 0.2)],
+}
+VN600, ZORBIUM = [f for n in FOAMS if "VN600" in n for f in FOAMS[n]], [f for n in FOAMS if "Zorbium" in n for f in FOAMS[n]]
+NO_B = 'start = { B = "1 Pa"; };'
+FREE_RUSCH = 'unknown = ( "rusch_A", "rusch_m", "rusch_B", "rusch_n" ); start = { E = "1000 MPa"; };'
+# name in the tables: form, further keys
+FORMS = {
+    "gas, p0 = 101 kPa, no B": ("gas", 'unknown = ( "E", "s0" ); ' + NO_B),
+    "gas": ("gas", ""),
+    "gas_solid, Phi free, p0 = 101 kPa, no B": ("gas_solid", 'unknown = ( "E", "s0", "solid_fraction" ); ' + NO_B),
+    "gas_solid, Phi free, p0 = 101 kPa": ("gas_solid", 'unknown = ( "E", "s0", "solid_fraction", "B", "m" );'),
+    "rusch, without E": ("rusch", FREE_RUSCH),
+    "rusch": ("rusch", ""),
+    "avalle": ("avalle", ""),
+    "spline": ("spline", ""),
+}
+
+
+def fit(tests, form, keys="", predict=()):
+    """fit.json and fit.csv of a fit, or the sentence of its refusal."""
+    number = fit.count = getattr(fit, "count", 0) + 1
+    folder = "%s/%03d" % (OUT, number)
+    entries = lambda files: ", ".join('{ file = "%s/%s.csv"; rate = "%g 1/s"; }' % (DATA, f, r) for f, r in files)
+    os.makedirs(OUT, exist_ok=True)
+    with open(folder + ".cfg", "w") as stream:
+        stream.write('name = "foam"; density = "105 kg/m3"; curve_form = "%s"; %s\ntests = ( %s );\n' % (form, keys, entries(tests)))
+        if predict:
+            stream.write("predict = ( %s );\n" % entries(predict))
+    done = subprocess.run([PROGRAM, "compression", folder + ".cfg", "-o", folder, "--force"], capture_output=True, text=True)
+    if done.returncode != 0:
+        return None, done.stderr.strip().split("\n")[-1]
+    with open(folder + "/fit.json") as stream:
+        found = json.load(stream)
+    with open(folder + "/fit.csv") as stream:
+        return found, list(csv.DictReader(stream))
+
+
+def percent(part):
+    return "%.2g" % (100 * part) if part is not None else "-"
+
+
+def table_of(head, rows):
+    align = ["---"] + ["---:"] * (len(head) - 1)
+    return ["| " + " | ".join(row) + " |" for row in [head, align] + rows]
+
+
+def loading():
+    refused, rows = [], []
+    for name, (form, keys) in FORMS.items():
+        cells, count = [], "-"
+        for foam, files in FOAMS.items():
+            found, sentence = fit(files, form, keys)
+            if found:
+                count = "%d" % found["parameter_count"]
+                cells.append(percent(found["loading_rms"]))
+            else:
+                cells.append("none")
+                refused.append("%s, %s: %s" % (name, foam, sentence))
+        rows.append([name, count] + cells)
+    return table_of(["rms of loading (%)", "parameters"] + list(FOAMS), rows), refused
+
+
+def loops():
+    rows = []
+    for foam, files in FOAMS.items():
+        if "Zorbium" in foam:
+            continue
+        found, sentence = fit(files, "avalle")
+        if not found:
+            sys.exit("foams_table: %s: %s" % (foam, sentence))
+        one, free, test = found["unloading_with_ALPHA_1"], found["unloading"], found["tests"][0]
+        rows.append([foam, percent(one["rms"]), percent(free["rms"]), "%.2g" % one["factor_rms"], "%.2g" % free["factor_rms"],
+                     "%.2g" % free["HU"], "%.2g" % free["SHAPE"], "%.2g" % free["ALPHA"],
+                     "%.0f" % (100 * test["returned_energy_measured"]), "%.0f" % (100 * test["returned_energy_fitted"])])
+    head = ["rms of unloading", "% of the largest stress, ALPHA = 1", "ALPHA free", "of f, ALPHA = 1", "of f, ALPHA free", "HU", "SHAPE",
+            "ALPHA", "energy returned (%)", "by the law (%)"]
+    return table_of(head, rows)
+
+
+def predicted():
+    rows = []
+    cases = [("LEAP, cycle 1", "LEAP, cycle 3", "gas_solid", FORMS["gas_solid, Phi free, p0 = 101 kPa, no B"][1]),
+             ("LEAP, cycle 1", "LEAP confined, cycle 1", "gas_solid", FORMS["gas_solid, Phi free, p0 = 101 kPa, no B"][1]),
+             ("LEAP, cycle 3", "LEAP confined, cycle 3", "gas_solid", FORMS["gas_solid, Phi free, p0 = 101 kPa, no B"][1])]
+    for fitted, other, form, keys in cases:
+        found, sentence = fit(FOAMS[fitted], form, keys, FOAMS[other])
+        if not found:
+            sys.exit("foams_table: %s: %s" % (fitted, sentence))
+        test = found["predicted"][0]
+        rows.append([fitted, other, form, percent(test["loading_rms"]), percent(test["unloading_rms"]),
+                     "%.0f" % (100 * test["returned_energy_measured"]), "%.0f" % (100 * test["returned_energy_fitted"])])
+    for left_out in ZORBIUM:
+        found, sentence = fit([f for f in ZORBIUM if f != left_out], "avalle", 'rate_model = "factor";', [left_out])
+        if not found:
+            sys.exit("foams_table: Zorbium: %s" % sentence)
+        rows.append(["Zorbium, the other two rates", "Zorbium, %g/s" % left_out[1], "avalle, factor",
+                     percent(found["predicted"][0]["loading_rms"]), "-", "-", "-"])
+    return table_of(["fitted", "predicted", "form", "rms of loading (%)", "of unloading (%)", "energy returned (%)", "by the law (%)"], rows)
+
+
+def rates():
+    rows, refused = [], []
+    for foam, files in (("Zorbium, three rates", ZORBIUM), ("VN600, 0.001 and 10/s", VN600)):
+        for form in ("gas", "rusch", "avalle", "spline"):
+            for rate in ("none", "factor", "maxwell", "both") if form != "spline" else ("none", "factor"):
+                found, points = fit(files, form, 'rate_model = "%s";' % rate)
+                if not found:
+                    refused.append("%s, %s, %s: %s" % (foam, form, rate, points))
+                    continue
+                value = {p["name"]: p["value"] for p in found["parameters"]}
+                rows.append([foam, form, rate, "%d" % found["parameter_count"], percent(found["loading_rms"]),
+                             ", ".join(percent(t["loading_rms"]) for t in found["tests"]),
+                             "%.3g" % value["rate_factor"] if "rate_factor" in value else "-", fast_plateau(foam, points, value)])
+    head = ["rates", "form", "rate", "parameters", "rms of loading (%)", "of each rate", "rate_factor", "at 3000/s and a strain of 0.2 (kPa)"]
+    return table_of(head, rows), refused
+
+
+def fast_plateau(foam, points, value):
+    """Stress of the law at a rate of Zorbium beyond the tests, where 330 kPa were measured."""
+    if "Zorbium" not in foam or "ED" in value:
+        return "-"
+    slow = [p for p in points if p["test"] == "1" and p["branch"] == "loading"]
+    nearest = min(slow, key=lambda p: abs(float(p["strain"]) - 0.2))
+    return "%.0f" % (float(nearest["law_kPa"]) * (1 + value.get("rate_factor", 0) * math.log10(3000 / 0.0002)))
+
+
+first, refused = loading()
+last, refused_rates = rates()
+for table in (first, loops(), predicted(), last):
+    print("\n".join(table) + "\n")
+    if sys.argv[2] == "--docs":
+        replace_table(DOCUMENT, table)
+print("\n".join(["no curve:"] + refused + refused_rates))
+PYTHON
