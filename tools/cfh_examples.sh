@@ -6,6 +6,7 @@
 #     tools/cfh_examples.sh            some minutes; finished drops of an earlier call are used again
 #     tools/cfh_examples.sh --docs     the same, and writes table and picture into docs/
 #
+# The intervals come from the draws of the foam in $POSTERIOR (default out/eva35/posterior, if that is there).
 # The programs are those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -16,17 +17,21 @@ case ${1:-} in
 *) echo 'usage: tools/cfh_examples.sh [--docs]' >&2 && exit 2 ;;
 esac
 mkdir -p out
+posterior=${POSTERIOR:-out/eva35/posterior}
+draws=()
+[ -z "${POSTERIOR:-}" ] && [ ! -d "$posterior" ] || draws=(--posterior "$posterior")
 for pad in 50 70; do
     "${SF_BIN_DIR:-build/bin}/softfall-cfh" "examples/eva$pad-v4.5/case.cfg" -o "out/cfh$pad" --force \
-        --rig examples/data/penta2018_table2_70mm.csv >&2
+        --rig examples/data/penta2018_table2_70mm.csv ${draws[@]+"${draws[@]}"} >&2
 done
 [ "${1:-}" != --docs ] || cp out/cfh50/cfh.png docs/images/cfh_eva50.png
 python3 - "${1:-}" <<'PYTHON'
 import json
 import sys
 
-HEAD = ("pad (mm)", "decides", "critical height, free fall (m)", "on the rig (m)", "a_max = 200 g at (m)", "HIC = 1000 at (m)",
-        "drops", "largest rms residual (%)", "local strain at the next point above")
+HEAD = ("pad (mm)", "decides", "as simulated: free fall (m)", "on the rig (m)", "a_max = 200 g at (m)", "HIC = 1000 at (m)",
+        "median and 95 % interval: free fall (m)", "of it the foam alone (m)", "on the rig, with g_eff (m)", "drops",
+        "largest rms residual (%)", "local strain at the next point above")
 
 
 def row_of(pad):
@@ -35,13 +40,18 @@ def row_of(pad):
     height, (a_max, hic) = found["critical_fall_height"], found["criteria"]
     above = [p for p in found["points"] if not p["failed"] and height["height_m"] and p["height_m"] >= height["height_m"]]
 
-    def show(entry, key):
-        digits = 3 if key == "height" else 2
-        low, middle, high = (entry[key + suffix] for suffix in ("_low_m", "_m", "_high_m"))
-        return entry.get("state", "-") if middle is None else "%.*f (%.*f to %.*f)" % (digits, middle, digits, low, digits, high)
+    def show(entry, key, digits=3):
+        return entry.get("state", "-") if entry[key] is None else "%.*f" % (digits, entry[key])
 
-    return ("%d" % pad, height["deciding"] or height["verdict"], show(height, "height"), show(height, "rig_height"),
-            show(a_max, "height"), show(hic, "height"), "%d" % len(found["points"]),
+    def interval(entry, key):
+        if entry.get(key + "_median_m") is None:
+            return "-"
+        low, middle, high = (entry[key + suffix] for suffix in ("_low_m", "_median_m", "_high_m"))
+        return "%.2f (%s to %s)" % (middle, "open" if low is None else "%.2f" % low, "open" if high is None else "%.2f" % high)
+
+    return ("%d" % pad, height["deciding"] or height["verdict"], show(height, "height_m"), show(height, "rig_height_m", 2),
+            show(a_max, "height_m"), show(hic, "height_m"), interval(height, "height"), interval(found["posterior"], "foam"),
+            interval(height, "rig_height"), "%d" % len(found["points"]),
             "%.2f" % (100 * max(c["fit"]["rms_residual"] or 0 for c in (a_max, hic))),
             "%.3f" % above[0]["max_local_strain"] if above else "-")
 

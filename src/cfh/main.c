@@ -9,6 +9,7 @@
 #include "case/case.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,6 +21,9 @@ typedef struct setting {
     double mass;  /* kg */
     sf_cfh_foams foams;
     char *text, *parameters; /* of the case; owned */
+    sf_material material;    /* with --posterior: the case's own; owned, as its law and the draws */
+    sf_material_law law;
+    sf_cfh_draws draws;
 } setting;
 
 static void list_foams(const sf_case *c, sf_cfh_foams *out) {
@@ -31,6 +35,20 @@ static void list_foams(const sf_case *c, sf_cfh_foams *out) {
         foam->end = material->law->data_end(material->card);
         foam->words = material->law->data_end_words;
     }
+}
+
+/* The case's own material and the draws. */
+static sf_status read_posterior(const sf_cfh_options *o, sf_case *c, setting *out, sf_error *err) {
+    if (c->layer_count > 0)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "--posterior: its draws are of one material, the pad of %s has layers (materials.%s)",
+                       o->case_path, c->layer[0].name);
+    out->material = c->material;
+    c->material = (sf_material){0}; /* moved */
+    if (sf_material_law_build(&out->material, &out->law, err) == SF_OK)
+        sf_cfh_draws_read(o->posterior, o->case_path, o->override_count, o->overrides, &out->material,
+                          &out->draws, err);
+    return err->status;
 }
 
 static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *err) {
@@ -56,6 +74,8 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
         if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_FAIL(err, SF_ERR_INPUT,
                     "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");
+        else if (o->posterior)
+            read_posterior(o, &c, out, err);
         sf_case_free(&c);
     }
     free(material);
@@ -79,7 +99,8 @@ static sf_cfh_plan make_plan(const sf_cfh_options *o, const sf_cfh_rig *rig, con
 
 static sf_status write_output(sf_staging *output, const sf_cfh_report *report, sf_error *err) {
     char warning[512] = "";
-    if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_json(output, report, err) != SF_OK ||
+    if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_draws(output, report, err) != SF_OK ||
+        sf_cfh_write_json(output, report, err) != SF_OK ||
         sf_cfh_plot(output, report, warning, sizeof warning, err) != SF_OK ||
         sf_cfh_write_page(output, report, err) != SF_OK || sf_staging_commit(output, err) != SF_OK)
         return err->status;
@@ -97,8 +118,41 @@ static sf_status write_output(sf_staging *output, const sf_cfh_report *report, s
     return SF_OK;
 }
 
-static sf_status simulate(const sf_cfh_options *o, sf_staging *output, sf_cfh_report *report,
-                          sf_cfh_points *points, sf_error *err) {
+/* The interval: columns of every draw, checks of some, random errors. */
+static sf_status find_interval(const sf_cfh_options *o, const setting *s, const sf_cfh_series *series,
+                               sf_runner *runner, sf_cfh_report *report, sf_cfh_spread *spread,
+                               sf_error *err) {
+    sf_error problem = SF_ERROR_INIT;
+    if (!o->posterior)
+        return SF_OK;
+    if (series->pad->columns.count == 0) {
+        snprintf(report->no_interval, sizeof report->no_interval, "no simulated drop has figures");
+        return SF_OK;
+    }
+    omp_set_num_threads(o->threads);
+    printf("%d draws of %s as columns, then at most %d of them simulated\n", s->draws.count, o->posterior,
+           o->checks);
+    fflush(stdout);
+    if (sf_cfh_spread_build(series->pad, &s->draws, &s->law, report->points, report->result,
+                            report->plan->limit, spread, &problem) == SF_ERR_NUMERIC) {
+        snprintf(report->no_interval, sizeof report->no_interval, "%s", problem.text);
+        return SF_OK;
+    }
+    if (problem.status != SF_OK) {
+        *err = problem;
+        return err->status;
+    }
+    sf_cfh_spread_choose(spread, o->checks, 1e-3 * report->plan->unit);
+    if (sf_cfh_simulate_checks(series, &s->draws, runner, spread, err) != SF_OK ||
+        sf_cfh_spread_evaluate(spread, report->rig, err) != SF_OK)
+        return err->status;
+    report->spread = spread;
+    return SF_OK;
+}
+
+static sf_status simulate(const sf_cfh_options *o, const setting *s, sf_staging *output,
+                          sf_cfh_report *report, sf_cfh_points *points, sf_cfh_result *result,
+                          sf_cfh_spread *spread, sf_error *err) {
     char folder[4096];
     if ((size_t)snprintf(folder, sizeof folder, "%s/runs", output->directory) >= sizeof folder)
         return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
@@ -106,25 +160,32 @@ static sf_status simulate(const sf_cfh_options *o, sf_staging *output, sf_cfh_re
     sf_runner_drop base = {
         .case_path = o->case_path, .material = o->material, .override_count = o->override_count};
     memcpy(base.overrides, o->overrides, sizeof base.overrides);
-    const sf_cfh_series series = {report->plan, report->rig, &base, report->foams};
+    sf_cfh_pad pad = {.mesh_error = NAN};
+    const sf_cfh_series series = {report->plan, report->rig, &base, report->foams,
+                                  o->posterior ? &pad : NULL};
     printf("%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
            o->list_count ? o->list_count : MAX_DROPS, folder,
            report->rig->pairs ? "on the rig" : "of free fall");
     fflush(stdout);
     if (sf_cfh_simulate(&series, &runner, points, &report->ending, err) != SF_OK)
         return err->status;
+    sf_cfh_evaluate(points, report->plan->limit, result);
+    if (find_interval(o, s, &series, &runner, report, spread, err) != SF_OK)
+        return err->status;
     printf("%lld drops simulated, %lld were there\n", (long long)runner.simulated, (long long)runner.reused);
     return SF_OK;
 }
 
 /* Every file that this program writes; cfh.json last, so that it speaks of files that are there. */
-static const char *const output_names[] = {"cfh.csv", "cfh.gp", "cfh.png", "report.html", "cfh.json", NULL};
+static const char *const output_names[] = {"cfh.csv", "cfh_band.csv", "cfh_draws.csv", "cfh.gp",
+                                           "cfh.png", "report.html",  "cfh.json",      NULL};
 
 static sf_status run(const sf_cfh_options *o, const char *command, setting *s, sf_staging *output,
                      sf_error *err) {
     sf_cfh_rig rig = sf_cfh_free_fall();
     sf_cfh_points points = {0};
     sf_cfh_result result;
+    sf_cfh_spread spread = {0};
     if (sf_staging_check(o->directory, output_names, o->force, err) != SF_OK ||
         (o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
         return err->status;
@@ -135,6 +196,7 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
                             .material = o->material,
                             .command_line = command,
                             .rig_path = o->rig_path,
+                            .posterior = o->posterior,
                             .plan = &plan,
                             .rig = &rig,
                             .points = &points,
@@ -144,11 +206,11 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
                             .mass = s->mass,
                             .foams = &s->foams};
     if (sf_staging_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
-        simulate(o, output, &report, &points, err) != SF_OK)
-        return err->status;
-    sf_cfh_evaluate(&points, plan.limit, &result);
-    if (write_output(output, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)
+        simulate(o, s, output, &report, &points, &result, &spread, err) != SF_OK)
+        ;
+    else if (write_output(output, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)
         *err = result.problem;
+    sf_cfh_spread_free(&spread);
     return err->status;
 }
 
@@ -164,6 +226,9 @@ int main(int argc, char **argv) {
     sf_staging_end(&output);
     free(s.text);
     free(s.parameters);
+    sf_cfh_draws_free(&s.draws);
+    sf_material_law_free(&s.law);
+    sf_material_free(&s.material);
     free(command);
     return sf_error_report(&err, "softfall-cfh");
 }

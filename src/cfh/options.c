@@ -2,6 +2,7 @@
 #include "cfh/options.h"
 
 #include "build_info.h"
+#include "cfh/spread.h"
 #include "core/program.h"
 #include "core/units.h"
 #include "post/verdict.h"
@@ -11,14 +12,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_SET = 256, KEY_MATERIAL, KEY_LIMIT_G, KEY_LIMIT_HIC, KEY_HEIGHT, KEY_HEIGHTS, KEY_MAX, KEY_RIG };
+enum {
+    KEY_SET = 256,
+    KEY_MATERIAL,
+    KEY_LIMIT_G,
+    KEY_LIMIT_HIC,
+    KEY_HEIGHT,
+    KEY_HEIGHTS,
+    KEY_MAX,
+    KEY_RIG,
+    KEY_POSTERIOR,
+    KEY_CHECKS
+};
 
 static const double LOWEST_HEIGHT = 0.01, GREATEST_HEIGHT = 100; /* m */
 static const double DEFAULT_MAX_HEIGHT = 10;                     /* m */
+enum { DEFAULT_CHECKS = 3 };
 
 typedef struct parser_state {
     sf_cfh_options *options;
     const char *height, *max_height, *heights; /* texts, read when the units are loaded */
+    const char *checks;
     sf_error *err;
 } parser_state;
 
@@ -70,6 +84,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         break;
     case KEY_RIG:
         o->rig_path = text;
+        break;
+    case KEY_POSTERIOR:
+        o->posterior = text;
+        break;
+    case KEY_CHECKS:
+        p->checks = text;
         break;
     case ARGP_KEY_ARG:
         if (o->case_path)
@@ -142,6 +162,21 @@ static sf_status parse_heights(const parser_state *p, sf_error *err) {
     return err->status;
 }
 
+static sf_status parse_checks(const parser_state *p, sf_error *err) {
+    char *end = NULL;
+    if (!p->checks)
+        return SF_OK;
+    if (!p->options->posterior)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "--check-drops %s: there are no draws to simulate without --posterior", p->checks);
+    long count = strtol(p->checks, &end, 10);
+    if (end == p->checks || *end || count < 0 || count > SF_CFH_CHECKS)
+        return SF_FAIL(err, SF_ERR_INPUT, "--check-drops %s: not a number from 0 to %d", p->checks,
+                       SF_CFH_CHECKS);
+    p->options->checks = (int)count;
+    return SF_OK;
+}
+
 static void print_version(FILE *stream, struct argp_state *state) {
     (void)state;
     fputs("softfall-cfh " SF_VERSION " (" SF_GIT_REVISION ")\n", stream);
@@ -167,6 +202,11 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
          "heights are those of a rig with friction: v^2 = 2 g_eff h, with g_eff fitted to the columns h_m "
          "(or height_m) and v_test_m_s (or speed_m_s)",
          3},
+        {"posterior", KEY_POSTERIOR, "FOLDER", 0,
+         "draws of the foam, draw-001.cfg ..., as softfall-fit drop writes them: gives the interval of the height",
+         4},
+        {"check-drops", KEY_CHECKS, "N", 0,
+         "simulate N of the draws to check the columns that stand for them (default 3)", 4},
         {0},
     };
     const struct argp parser = {
@@ -175,16 +215,19 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         .args_doc = "CASE -o DIR",
         .doc =
             "Critical fall height of a pad: the lowest drop height at which a_max or HIC reaches its limit "
-            "(--limit-g, --limit-hic).\vSimulates up to 8 drops with softfall-pre and softfall-solve and "
-            "writes cfh.json, cfh.csv, cfh.png (and .gp) and report.html. After an interruption run the same "
+            "(--limit-g, --limit-hic).\vSimulates up to 8 drops with softfall-pre and softfall-solve, with "
+            "--posterior 3 more, and writes cfh.json, cfh.csv, cfh.png (and .gp) and report.html. After an interruption run the same "
             "command again to resume. The height is indicative, not a certification.",
     };
     parser_state state = {.options = options, .err = err};
     argp_program_version_hook = print_version;
     *options = (sf_cfh_options){.threads = omp_get_max_threads(),
                                 .limit = {SF_DEFAULT_LIMIT_G, SF_DEFAULT_LIMIT_HIC},
-                                .max_height = DEFAULT_MAX_HEIGHT};
+                                .max_height = DEFAULT_MAX_HEIGHT,
+                                .checks = DEFAULT_CHECKS};
     if (argp_parse(&parser, argc, argv, 0, NULL, &state) != 0)
         return SF_FAIL(err, SF_ERR_INPUT, "the command line cannot be read");
-    return err->status == SF_OK ? parse_heights(&state, err) : err->status;
+    if (err->status == SF_OK && parse_checks(&state, err) == SF_OK)
+        parse_heights(&state, err);
+    return err->status;
 }

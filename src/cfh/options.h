@@ -10,8 +10,10 @@
 typedef struct sf_cfh_options {
     const char *case_path;
     const char *directory;
-    const char *material; /* NULL: the case's own */
-    const char *rig_path; /* NULL: free fall */
+    const char *material;  /* NULL: the case's own */
+    const char *rig_path;  /* NULL: free fall */
+    const char *posterior; /* folder of draws, NULL: none */
+    int checks;            /* draws to simulate */
     bool force;
     int threads;
     int override_count; /* at most SF_RUNNER_OVERRIDES - 1: one is used for the speed */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cfh/plot.h"
 
+#include "cfh/spread_report.h"
 #include "io/gnuplot.h"
 #include <math.h>
 
@@ -27,7 +28,7 @@ static double value_top(const sf_cfh_report *r, sf_cfh_criterion c) {
 static void put_style(FILE *g, const sf_cfh_report *r) {
     double range[2];
     height_range(r, range);
-    fputs("set key at screen 0.54,0.025 center center horizontal maxcols 4 Left reverse samplen 2 width 2\n",
+    fputs("set key at screen 0.54,0.025 center center horizontal maxcols 5 Left reverse samplen 2 width 2\n",
           g);
     fprintf(g, "set xrange [%.6g:%.6g]\n", range[0], range[1]);
 }
@@ -51,23 +52,38 @@ static void put_panel_axes(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) 
     fprintf(g, "set ylabel '%s'\nset yrange [0:%.6g]\n", upper ? "a_max (g)" : "HIC", value_top(r, c));
 }
 
-/* The interval of the crossing as a band, the crossing as a line with its height beside it. */
+/* The interval of the crossing as a band, where the draws give one. */
+static void put_interval(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c, const char *colour) {
+    double range[2];
+    if (!r->spread)
+        return;
+    height_range(r, range);
+    const sf_cfh_interval *interval = sf_cfh_spread_whole(r->spread, (int)c);
+    double low = fmax(interval->low, range[0]), high = fmin(interval->high, range[1]);
+    if (low < high)
+        fprintf(
+            g,
+            "set object 1 rectangle from first %.9g, graph 0 to first %.9g, first %.9g back fc rgb '%s' fs "
+            "solid 0.25 noborder\n",
+            low, high, r->plan->limit[c], colour);
+}
+
+/* The crossing as a line with its height beside it. */
 static void put_crossing(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
     const sf_cfh_crossing *crossing = &r->result->crossing[c];
     bool decides = r->result->verdict == SF_CFH_FOUND && r->result->deciding == c;
     const char *colour = decides ? "#cb181d" : "#606060";
     fputs("unset object\nunset arrow\nunset label\n", g);
-    fprintf(g, "set label 2 'limit %g%s' at graph 0.01, first %.9g left offset 0,0.7 tc rgb '#cb181d'\n",
+    fprintf(g,
+            "set label 2 'limit %g%s' at graph 0.01, first %.9g left offset 0,0.7 front tc rgb '#cb181d'\n",
             r->plan->limit[c], sf_cfh_unit(c), r->plan->limit[c]);
+    put_interval(g, r, c, colour);
     if (isnan(crossing->height))
         return;
     fprintf(g,
-            "set object 1 rectangle from first %.9g, graph 0 to first %.9g, first %.9g back fc rgb '%s' fs "
-            "solid 0.25 noborder\n",
-            crossing->low, crossing->high, r->plan->limit[c], colour);
-    fprintf(g, "set arrow 1 from first %.9g, graph 0 to first %.9g, first %.9g nohead lw 2 lc rgb '%s'\n",
+            "set arrow 1 from first %.9g, graph 0 to first %.9g, first %.9g nohead front lw 2 lc rgb '%s'\n",
             crossing->height, crossing->height, r->plan->limit[c], colour);
-    fprintf(g, "set label 1 '%.3f m%s' at first %.9g, first %.9g right offset -0.6,0.8 tc rgb '%s'\n",
+    fprintf(g, "set label 1 '%.3f m%s' at first %.9g, first %.9g right offset -0.6,0.8 front tc rgb '%s'\n",
             crossing->height, decides ? ", decides" : "", crossing->height, r->plan->limit[c], colour);
 }
 
@@ -84,8 +100,14 @@ static void put_curves(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
     if (fit->count > 0)
         fprintf(g, "fit(h) = exp(%.12g + %.12g*(log(h) - %.12g) + %.12g*(log(h) - %.12g)**2)\n", fit->c[0],
                 fit->c[1], fit->centre, fit->c[2], fit->centre);
-    fprintf(g, "plot %.9g with lines lw 2.5 dt 2 lc rgb '#cb181d' title 'limit', \\\n     ",
-            r->plan->limit[c]);
+    fputs("plot ", g);
+    if (r->spread)
+        fprintf(
+            g,
+            "'cfh_band.csv' skip 1 using 1:%d:%d with filledcurves fc rgb '#6baed6' fs solid 0.4 noborder title "
+            "'95 %% of the draws', \\\n     ",
+            c == SF_CFH_A_MAX ? 2 : 5, c == SF_CFH_A_MAX ? 4 : 7);
+    fprintf(g, "%.9g with lines lw 2.5 dt 2 lc rgb '#cb181d' title 'limit', \\\n     ", r->plan->limit[c]);
     if (fit->count > 0) {
         double lowest = 0, highest = 0;
         for (int k = 0, n = 0; k < r->points->count; k++) {
@@ -129,6 +151,11 @@ static void put_title(FILE *g, const sf_cfh_report *r) {
         fputs(" not determined", g);
     if (v->verdict == SF_CFH_FOUND && r->rig->pairs > 0)
         fprintf(g, ", %.3f m on the rig", sf_cfh_rig_height(r->rig, v->crossing[v->deciding].height));
+    if (r->spread) {
+        char text[64];
+        fprintf(g, "; 95 %% interval %s",
+                sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, SF_CFH_FIRST), text, sizeof text));
+    }
     fputs(" (indicative)')\n", g);
 }
 

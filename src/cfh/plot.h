@@ -5,7 +5,7 @@
 
 #include "cfh/report.h"
 
-/* `warning` (size bytes): why there is no picture, or "". cfh.csv must have been written. */
+/* `warning` (size bytes): why there is no picture, or "". cfh.csv and cfh_band.csv must have been written. */
 sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *report, char *warning, size_t size,
                       sf_error *err);
 

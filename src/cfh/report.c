@@ -3,6 +3,7 @@
 
 #include "build_info.h"
 #include "cfh/series.h"
+#include "cfh/spread_report.h"
 #include "io/gnuplot.h"
 #include "io/html.h"
 #include "io/json.h"
@@ -10,6 +11,7 @@
 #include "post/origin_page.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char caution[] = "Indicative, not a certification: a computed height from one simulated impact "
                               "site, not the test of ASTM F1292 or EN 1177.";
@@ -18,17 +20,32 @@ static const sf_cfh_crossing *deciding(const sf_cfh_report *r) {
     return &r->result->crossing[r->result->deciding];
 }
 
-/* Plain text that ends in a full stop. */
-void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
+/* What the verdict says of the uncertainty: a sentence after a blank. */
+static void uncertainty_text(const sf_cfh_report *r, char *text, size_t size) {
+    char interval[64];
+    if (!r->spread) {
+        snprintf(text, size, " The uncertainty of the foam is not included%s%s.",
+                 r->no_interval[0] ? ": " : "", r->no_interval);
+        return;
+    }
+    const sf_cfh_interval *whole = sf_cfh_spread_whole(r->spread, SF_CFH_FIRST);
+    sf_cfh_interval_text(whole, interval, sizeof interval);
+    if (whole->median > 0 && isfinite(whole->median))
+        snprintf(text, size, " With the uncertainty of foam and mesh: %.3g m (95 %% interval %s).",
+                 whole->median, interval);
+    else
+        snprintf(text, size, " 95 %% interval with the uncertainty of foam and mesh: %s.", interval);
+}
+
+/* The height as simulated; plain text that ends in a full stop. */
+static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
     const sf_cfh_result *v = r->result;
     const char *name = sf_cfh_name(v->deciding), *unit = sf_cfh_unit(v->deciding);
     double limit = r->plan->limit[v->deciding];
     switch (v->verdict) {
     case SF_CFH_FOUND:
-        snprintf(text, size,
-                 "Critical fall height %.3f m of free fall (95 %% interval of the fit %.3f to %.3f m): %s "
-                 "reaches %g%s first.",
-                 deciding(r)->height, deciding(r)->low, deciding(r)->high, name, limit, unit);
+        snprintf(text, size, "Critical fall height %.3f m of free fall%s: %s reaches %g%s first.",
+                 deciding(r)->height, r->spread ? " as simulated" : "", name, limit, unit);
         break;
     case SF_CFH_ABOVE:
         if (!isnan(v->anvil)) {
@@ -61,6 +78,16 @@ void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
     }
 }
 
+void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
+    char uncertainty[SF_CFH_NOTE_SIZE + 100];
+    simulated_text(r, text, size);
+    size_t used = strlen(text);
+    if (r->result->verdict == SF_CFH_UNKNOWN && !r->spread)
+        return;
+    uncertainty_text(r, uncertainty, sizeof uncertainty);
+    snprintf(text + used, size - used, "%s", uncertainty);
+}
+
 /* Of SF_CFH_BELOW. */
 static double upper_bound(const sf_cfh_result *v) {
     return isnan(v->lowest) ? v->anvil : v->lowest;
@@ -68,12 +95,12 @@ static double upper_bound(const sf_cfh_result *v) {
 
 /* The same on the rig; "" without a rig or a height. */
 static void rig_text(const sf_cfh_report *r, char *text, size_t size) {
-    double height = NAN, margin = 0;
+    double height = NAN;
+    char interval[64], uncertainty[160] = "";
     const char *side = "";
     text[0] = '\0';
     if (r->result->verdict == SF_CFH_FOUND) {
         height = deciding(r)->height;
-        margin = deciding(r)->margin;
     } else if (r->result->verdict == SF_CFH_ABOVE) {
         height = r->result->highest;
         side = "above ";
@@ -83,13 +110,13 @@ static void rig_text(const sf_cfh_report *r, char *text, size_t size) {
     }
     if (r->rig->pairs == 0 || isnan(height))
         return;
-    height = sf_cfh_rig_height(r->rig, height);
-    margin = sf_cfh_rig_margin(r->rig, margin);
-    snprintf(text, size,
-             "On the rig: %s%.3f m (95 %% interval with that of g_eff %.3f to %.3f m); g_eff = %.3f ± %.3f "
-             "m/s2 from %d pairs.",
-             side, height, height * exp(-margin), height * exp(margin), r->rig->gravity,
-             r->rig->standard_error, r->rig->pairs);
+    if (r->spread)
+        snprintf(uncertainty, sizeof uncertainty,
+                 "; with these uncertainties and that of g_eff: 95 %% interval %s",
+                 sf_cfh_interval_text(&r->spread->rig, interval, sizeof interval));
+    snprintf(text, size, "On the rig: %s%.3f m%s%s; g_eff = %.3f ± %.3f m/s2 from %d pairs.", side,
+             sf_cfh_rig_height(r->rig, height), r->spread ? " as simulated" : "", uncertainty,
+             r->rig->gravity, r->rig->standard_error, r->rig->pairs);
 }
 
 static bool is_fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
@@ -114,22 +141,15 @@ static const char *side_word(const sf_cfh_crossing *crossing) {
                                                                        : words[crossing->side];
 }
 
-static void put_interval(sf_json *json, const char *prefix, double height, double margin) {
-    char key[64];
-    snprintf(key, sizeof key, "%s_m", prefix);
-    sf_json_number(json, key, height);
-    snprintf(key, sizeof key, "%s_low_m", prefix);
-    sf_json_number(json, key, height * exp(-margin));
-    snprintf(key, sizeof key, "%s_high_m", prefix);
-    sf_json_number(json, key, height * exp(margin));
-}
-
-/* Height of free fall and, if there is a rig, on the rig, each with its interval. */
-static void put_heights(sf_json *json, const sf_cfh_report *r, double height, double margin) {
-    put_interval(json, "height", height, margin);
-    if (r->rig->pairs > 0)
-        put_interval(json, "rig_height", sf_cfh_rig_height(r->rig, height),
-                     sf_cfh_rig_margin(r->rig, margin));
+/* Height of free fall and, if there is a rig, on the rig; `part` SF_CFH_FIRST or a criterion. */
+static void put_heights(sf_json *json, const sf_cfh_report *r, double height, int part) {
+    sf_json_number(json, "height_m", height);
+    sf_cfh_put_interval_json(json, "height", r->spread ? sf_cfh_spread_whole(r->spread, part) : NULL);
+    if (r->rig->pairs == 0)
+        return;
+    sf_json_number(json, "rig_height_m", sf_cfh_rig_height(r->rig, height));
+    if (part == SF_CFH_FIRST)
+        sf_cfh_put_interval_json(json, "rig_height", r->spread ? &r->spread->rig : NULL);
 }
 
 static void put_verdict(sf_json *json, const sf_cfh_report *r) {
@@ -141,7 +161,7 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     sf_json_text(json, "verdict", words[v->verdict]);
     sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
     sf_json_text(json, "deciding", !decided ? NULL : isnan(v->lowest) ? "anvil" : sf_cfh_name(v->deciding));
-    put_heights(json, r, found ? deciding(r)->height : NAN, found ? deciding(r)->margin : NAN);
+    put_heights(json, r, found ? deciding(r)->height : NAN, SF_CFH_FIRST);
     sf_json_number(json, "speed_m_s", found ? sf_cfh_speed(deciding(r)->height) : NAN);
     sf_json_number(json, "confidence", 0.95);
     sf_json_number(json, "lowest_simulated_m", v->lowest);
@@ -151,7 +171,11 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     sf_json_close(json, '}');
 }
 
-static void put_fit(sf_json *json, const sf_cfh_fit *fit) {
+/* The interval of the fit says how well a quadratic fits, not how well the height is known. */
+static void put_fit(sf_json *json, const sf_cfh_report *r, const sf_cfh_crossing *crossing) {
+    const sf_cfh_fit *fit = &crossing->fit;
+    double margin = sf_cfh_rig_margin(r->rig, crossing->margin),
+           on_rig = sf_cfh_rig_height(r->rig, crossing->height);
     sf_json_open(json, "fit", '{');
     sf_json_text(json, "form", "ln(value) = c0 + c1 d + c2 d^2, d = ln(height_m) - centre");
     sf_json_number(json, "centre", fit->count ? fit->centre : NAN);
@@ -160,6 +184,12 @@ static void put_fit(sf_json *json, const sf_cfh_fit *fit) {
     sf_json_number(json, "c2", fit->count ? fit->c[2] : NAN);
     sf_json_integer(json, "points", fit->count);
     sf_json_number(json, "rms_residual", fit->count ? fit->rms : NAN);
+    sf_json_number(json, "fit_low_m", crossing->low);
+    sf_json_number(json, "fit_high_m", crossing->high);
+    if (r->rig->pairs > 0) {
+        sf_json_number(json, "fit_rig_low_m", on_rig * exp(-margin));
+        sf_json_number(json, "fit_rig_high_m", on_rig * exp(margin));
+    }
     sf_json_close(json, '}');
 }
 
@@ -171,8 +201,8 @@ static void put_criteria(sf_json *json, const sf_cfh_report *r) {
         sf_json_text(json, "criterion", sf_cfh_name(c));
         sf_json_number(json, c == SF_CFH_A_MAX ? "limit_g" : "limit", r->plan->limit[c]);
         sf_json_text(json, "state", side_word(crossing));
-        put_heights(json, r, crossing->height, crossing->margin);
-        put_fit(json, &crossing->fit);
+        put_heights(json, r, crossing->height, (int)c);
+        put_fit(json, r, crossing);
         sf_json_close(json, '}');
     }
     sf_json_close(json, ']');
@@ -203,6 +233,15 @@ static void put_points(sf_json *json, const sf_cfh_report *r) {
     sf_json_close(json, ']');
 }
 
+static void put_posterior(sf_json *json, const sf_cfh_report *r) {
+    sf_json_open(json, "posterior", '{');
+    sf_json_text(json, "folder", r->posterior);
+    sf_json_text(json, "no_interval", r->no_interval[0] ? r->no_interval : NULL);
+    if (r->spread)
+        sf_cfh_put_spread_json(json, r->spread);
+    sf_json_close(json, '}');
+}
+
 static double least_end(const sf_cfh_foams *foams) {
     double least = INFINITY;
     for (int k = 0; k < foams->count; k++)
@@ -230,6 +269,7 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
     sf_json_number(&json, "g_eff_m_s2", r->rig->gravity);
     sf_json_number(&json, "standard_error_m_s2", r->rig->pairs ? r->rig->standard_error : NAN);
     sf_json_close(&json, '}');
+    put_posterior(&json, r);
     put_criteria(&json, r);
     put_points(&json, r);
     sf_json_close(&json, '}');
@@ -270,6 +310,12 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh.csv", err);
+}
+
+sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
+    if (r->spread && sf_cfh_write_band(output, r->spread, err) == SF_OK)
+        sf_cfh_write_crossings(output, r->spread, err);
+    return err->status;
 }
 
 /* ---- report.html ---- */
@@ -316,17 +362,28 @@ static void put_limit_tile(FILE *page, const sf_cfh_report *r, sf_cfh_criterion 
     sf_html_tile(page, "plain", title, value, side_word(crossing));
 }
 
+/* The interval below a height; "" if there is neither. */
+static void tile_remark(const sf_cfh_report *r, const sf_cfh_interval *interval, char *text, size_t size) {
+    char words[64];
+    text[0] = '\0';
+    if (r->spread)
+        snprintf(text, size, "95 %% interval %s", sf_cfh_interval_text(interval, words, sizeof words));
+    else if (r->result->verdict == SF_CFH_FOUND)
+        snprintf(text, size, "uncertainty of the foam not included");
+}
+
 static void put_tiles(FILE *page, const sf_cfh_report *r) {
-    char value[48], remark[96] = "";
+    char value[48], remark[160];
     sf_html_tiles_begin(page);
     height_text(r, 1, value, sizeof value);
-    if (r->result->verdict == SF_CFH_FOUND)
-        snprintf(remark, sizeof remark, "95 %% interval of the fit %.3f to %.3f m", deciding(r)->low,
-                 deciding(r)->high);
+    tile_remark(r, r->spread ? sf_cfh_spread_whole(r->spread, SF_CFH_FIRST) : NULL, remark, sizeof remark);
     sf_html_tile(page, banner_kind(r), "critical fall height, free fall", value, remark);
     if (r->rig->pairs > 0) {
         height_text(r, sf_cfh_rig_height(r->rig, 1), value, sizeof value);
-        snprintf(remark, sizeof remark, "g_eff = %.3f ± %.3f m/s²", r->rig->gravity, r->rig->standard_error);
+        tile_remark(r, r->spread ? &r->spread->rig : NULL, remark, sizeof remark);
+        size_t used = strlen(remark);
+        snprintf(remark + used, sizeof remark - used, "%sg_eff = %.3f ± %.3f m/s²", used ? "; " : "",
+                 r->rig->gravity, r->rig->standard_error);
         sf_html_tile(page, banner_kind(r), "on the rig", value, remark);
     }
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
@@ -336,26 +393,56 @@ static void put_tiles(FILE *page, const sf_cfh_report *r) {
 
 static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
     bool rig = r->rig->pairs > 0;
-    sf_html_table table = sf_html_table_begin(
-        page, "dense",
-        rig ? "limit|state|>height (m)|>95 % interval (m)|>points in the fit|>rms residual (%)|>on the rig (m)"
-            : "limit|state|>height (m)|>95 % interval (m)|>points in the fit|>rms residual (%)");
+    sf_html_table table = sf_html_table_begin(page, "dense",
+                                              rig ? "limit|state|>height (m)|>95 % interval|>on the rig (m)"
+                                                  : "limit|state|>height (m)|>95 % interval");
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_crossing *crossing = &r->result->crossing[c];
+        char text[64] = "not known";
         sf_html_row(&table);
         sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
         sf_html_cell(&table, "%s", side_word(crossing));
         sf_html_number(&table, 3, crossing->height);
-        if (isfinite(crossing->low))
-            sf_html_cell(&table, "%.3f to %.3f", crossing->low, crossing->high);
-        else
-            sf_html_cell(&table, "–");
-        sf_html_cell(&table, "%d", crossing->fit.count);
-        sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
+        if (r->spread)
+            sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, (int)c), text, sizeof text);
+        sf_html_cell(&table, "%s", text);
         if (rig)
             sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, crossing->height));
     }
     sf_html_table_end(&table);
+}
+
+/* How well the quadratics fit: not how well the heights are known. */
+static void put_fit_table(FILE *page, const sf_cfh_report *r) {
+    bool rig = r->rig->pairs > 0;
+    sf_html_heading(page, "Fit of the simulated points");
+    sf_html_table table = sf_html_table_begin(
+        page, "dense",
+        rig ? "limit|>points|>rms residual (%)|>interval of the fit (m)|>on the rig, with g_eff (m)"
+            : "limit|>points|>rms residual (%)|>interval of the fit (m)");
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_crossing *crossing = &r->result->crossing[c];
+        double margin = sf_cfh_rig_margin(r->rig, crossing->margin);
+        double height = sf_cfh_rig_height(r->rig, crossing->height);
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+        sf_html_cell(&table, "%d", crossing->fit.count);
+        sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
+        if (isfinite(crossing->low))
+            sf_html_cell(&table, "%.3f to %.3f", crossing->low, crossing->high);
+        else
+            sf_html_cell(&table, "–");
+        if (rig && isfinite(margin))
+            sf_html_cell(&table, "%.3f to %.3f", height * exp(-margin), height * exp(margin));
+        else if (rig)
+            sf_html_cell(&table, "–");
+    }
+    sf_html_table_end(&table);
+    sf_html_note(
+        page,
+        "The interval of the fit (95 %%, Student's t) says how well a quadratic describes the simulated "
+        "points, and on the rig how well g_eff is known. It is no uncertainty of the height: foam, mesh "
+        "and model are not in it.");
 }
 
 static void put_point_table(FILE *page, const sf_cfh_report *r) {
@@ -407,16 +494,20 @@ static void put_bodies(FILE *page, const sf_cfh_report *r) {
     sf_origin_put_key(&table, r->parameters, "geometry.missile_parameters", "its parameters");
     sf_origin_put_key(&table, r->parameters, "geometry.file", "pad");
     sf_origin_put_key(&table, r->parameters, "geometry.parameters", "its parameters");
+    if (r->posterior)
+        sf_html_fact(&table, "draws of the foam", "%s", r->posterior);
     if (r->rig_path)
         sf_html_fact(&table, "rig", "%s, %d pairs", r->rig_path, r->rig->pairs);
     sf_html_table_end(&table);
 }
 
-static void put_picture(FILE *page, const sf_staging *output) {
+static void put_picture(FILE *page, const sf_staging *output, const sf_cfh_report *r) {
     char warning[320];
     char *svg = sf_gnuplot_svg(output, "cfh", "softfall-cfh", warning, sizeof warning);
     if (svg)
-        sf_html_figure(page, svg, "a_max and HIC over the drop height; bands: intervals of the crossings.");
+        sf_html_figure(
+            page, svg, "a_max and HIC over the drop height%s.",
+            r->spread ? "; bands: 95 % of the draws of the foam, and the intervals of the crossings" : "");
     else
         sf_html_figure(page, NULL, "%s.", warning);
     free(svg);
@@ -438,6 +529,8 @@ static void put_drops(FILE *page, const sf_cfh_report *r) {
     describe_foams(r->foams, foams, sizeof foams);
     sf_html_heading(page, "Crossings of the limits");
     put_criteria_table(page, r);
+    if (r->spread)
+        sf_cfh_put_spread(page, r->spread, r->rig);
     sf_html_heading(page, "Simulated drops");
     put_point_table(page, r);
     sf_html_note(
@@ -448,10 +541,11 @@ static void put_drops(FILE *page, const sf_cfh_report *r) {
         "ended because %s.",
         foams, sf_cfh_step_text(r->ending));
     put_notes(page, r);
+    put_fit_table(page, r);
 }
 
 sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
-    char verdict[1200], rig[400], *title = sf_origin_title(r->case_text);
+    char verdict[SF_CFH_VERDICT_SIZE], rig[400], *title = sf_origin_title(r->case_text);
     FILE *page = sf_html_begin(output, "Critical fall height", title && *title ? title : NULL, err);
     free(title);
     if (!page)
@@ -463,7 +557,7 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
                    verdict, rig[0] ? " " : "", rig, caution);
     put_tiles(page, r);
     sf_html_columns_begin(page, "wide");
-    put_picture(page, output);
+    put_picture(page, output, r);
     sf_html_block_begin(page);
     put_bodies(page, r);
     sf_html_block_end(page);
@@ -477,17 +571,37 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
 
 /* ---- terminal ---- */
 
+static void put_checks(FILE *out, const sf_cfh_report *r) {
+    char text[800];
+    if (!r->spread)
+        return;
+    for (int k = 0; k < r->spread->checks; k++) {
+        const sf_cfh_check *check = &r->spread->check[k];
+        if (!check->failed)
+            fprintf(
+                out,
+                "  draw %d at %.3f m: a_max %.1f g by columns, %.1f g simulated; HIC %.0f, %.0f; the height moves "
+                "by %.2f %%\n",
+                check->draw + 1, check->height, check->columns[SF_CFH_A_MAX], check->simulated[SF_CFH_A_MAX],
+                check->columns[SF_CFH_HIC], check->simulated[SF_CFH_HIC], 100 * check->shift);
+    }
+    sf_cfh_draws_text(r->spread, text, sizeof text);
+    if (text[0])
+        fprintf(out, "%s\n", text);
+}
+
 void sf_cfh_print(FILE *out, const sf_cfh_report *r) {
-    char text[1200];
+    char text[SF_CFH_VERDICT_SIZE];
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_crossing *crossing = &r->result->crossing[c];
         fprintf(out, "  %-5s %6g%-2s  ", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
         if (isfinite(crossing->height))
-            fprintf(out, "at %.3f m (%.3f to %.3f m), %d points, rms residual %.2f %%\n", crossing->height,
-                    crossing->low, crossing->high, crossing->fit.count, 100 * crossing->fit.rms);
+            fprintf(out, "at %.3f m, fit of %d points, rms residual %.2f %%\n", crossing->height,
+                    crossing->fit.count, 100 * crossing->fit.rms);
         else
             fprintf(out, "%s\n", side_word(crossing));
     }
+    put_checks(out, r);
     sf_cfh_verdict_text(r, text, sizeof text);
     fprintf(out, "%s\n", text);
     rig_text(r, text, sizeof text);

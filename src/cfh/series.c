@@ -50,23 +50,42 @@ void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf
         add_note(p, "%s", r->verdict);
 }
 
-static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, double height, sf_cfh_point *p,
-                          sf_error *err) {
-    char label[32], velocity[64];
+/* The pad below the missile, once. */
+static sf_status learn_pad(const sf_runner_result *result, sf_cfh_pad *pad, sf_error *err) {
+    sf_results r;
+    if (!pad || pad->columns.count > 0)
+        return SF_OK;
+    if (sf_results_open(result->path, &r, err) != SF_OK)
+        return err->status;
+    pad->mesh_error = r.expected_mesh_error;
+    sf_columns_build(&r, &pad->columns, err);
+    sf_results_close(&r);
+    return err->status;
+}
+
+static void report_failure(const sf_runner *runner, const char *label, const sf_cfh_point *p) {
+    if (runner->log)
+        fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
+}
+
+/* `material`: a file instead of the base's; NULL: none. */
+static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, const char *label, const char *material,
+                          double height, sf_cfh_point *p, sf_error *err) {
+    char velocity[64];
     sf_runner_drop drop = *s->base;
     sf_runner_result result;
     sf_error failure = SF_ERROR_INIT;
     *p = (sf_cfh_point){.height = height, .speed = sf_cfh_speed(height)};
-    snprintf(label, sizeof label, "h%.4gm", sf_cfh_rig_height(s->rig, height));
     snprintf(velocity, sizeof velocity, "missile.velocity=%.12g m/s", p->speed);
     drop.label = label;
+    drop.material = material ? material : drop.material;
     drop.overrides[drop.override_count++] = velocity;
     if (sf_runner_run(runner, &drop, &result, &failure) == SF_ERR_NUMERIC) {
         p->failed = true;
         p->on_anvil = strstr(failure.text, SF_ENDED_ON_ANVIL) != NULL;
         p->grade = SF_GRADE_DO_NOT_USE;
         add_note(p, "the simulation failed: %s", failure.text);
-        fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
+        report_failure(runner, label, p);
         return SF_OK;
     }
     if (failure.status != SF_OK) {
@@ -75,9 +94,10 @@ static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, double heig
     }
     sf_cfh_take_result(&result, s->foams, p);
     if (p->failed)
-        fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
+        report_failure(runner, label, p);
+    learn_pad(&result, s->pad, err);
     sf_runner_result_free(&result);
-    return SF_OK;
+    return err->status;
 }
 
 sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_points *points,
@@ -85,10 +105,31 @@ sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_poin
     double height = 0;
     *points = (sf_cfh_points){0};
     while ((*ending = sf_cfh_next(s->plan, points, &height)) == SF_CFH_SIMULATE) {
+        char label[32];
         sf_cfh_point point;
-        if (run_drop(s, runner, height, &point, err) != SF_OK)
+        snprintf(label, sizeof label, "h%.4gm", sf_cfh_rig_height(s->rig, height));
+        if (run_drop(s, runner, label, NULL, height, &point, err) != SF_OK)
             return err->status;
         sf_cfh_points_add(points, &point);
+    }
+    return SF_OK;
+}
+
+sf_status sf_cfh_simulate_checks(const sf_cfh_series *s, const sf_cfh_draws *draws, sf_runner *runner,
+                                 sf_cfh_spread *spread, sf_error *err) {
+    for (int k = 0; k < spread->checks; k++) {
+        char label[48];
+        sf_cfh_point point;
+        sf_cfh_check *check = &spread->check[k];
+        snprintf(label, sizeof label, "draw-%03d-h%.4gm", check->draw + 1,
+                 sf_cfh_rig_height(s->rig, check->height));
+        if (run_drop(s, runner, label, draws->draw[check->draw].path, check->height, &point, err) != SF_OK)
+            return err->status;
+        check->failed = point.failed;
+        memcpy(check->note, point.note, sizeof check->note);
+        memcpy(check->simulated, point.value, sizeof check->simulated);
+        if (!check->failed)
+            sf_cfh_check_compare(spread, check);
     }
     return SF_OK;
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simulates one drop after another until the search ends. */
+/* Simulates one drop after another until the search ends, and then draws of the foam. */
 #ifndef SF_CFH_SERIES_H
 #define SF_CFH_SERIES_H
 
 #include "campaign/runner.h"
 #include "cfh/foams.h"
 #include "cfh/search.h"
+#include "cfh/spread.h"
 #include <signal.h>
 
 #define SF_CFH_STRAIN_MARGIN 0.02 /* -, how far beyond the end of its data a strain is worth a warning */
@@ -15,6 +16,7 @@ typedef struct sf_cfh_series {
     const sf_cfh_rig *rig;
     const sf_runner_drop *base; /* case, material, overrides; the speed is added here */
     const sf_cfh_foams *foams;
+    sf_cfh_pad *pad; /* filled from the first drop that has results; NULL: not wanted */
 } sf_cfh_series;
 
 /* The point at height and speed of `point` with the result of its drop: figures and, for one with remarks,
@@ -25,5 +27,10 @@ void sf_cfh_take_result(const sf_runner_result *result, const sf_cfh_foams *foam
  * other failure ends the series. SF_INTERRUPTED: run the same command again to resume. */
 sf_status sf_cfh_simulate(const sf_cfh_series *series, sf_runner *runner, sf_cfh_points *points,
                           sf_cfh_step *ending, sf_error *err);
+
+/* Simulates the draws that were chosen to check the columns. A drop that fails numerically or is not to be
+ * used becomes a check that failed. */
+sf_status sf_cfh_simulate_checks(const sf_cfh_series *series, const sf_cfh_draws *draws, sf_runner *runner,
+                                 sf_cfh_spread *spread, sf_error *err);
 
 #endif

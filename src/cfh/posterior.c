@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cfh/posterior.h"
+
+#include "campaign/runner.h"
+#include "case/case.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const double SAME_DENSITY = 1e-6; /* relative */
+
+/* The path of draw `number`; from malloc. */
+static char *draw_path(const char *folder, int number, sf_error *err) {
+    char *path = NULL;
+    if (asprintf(&path, "%s/draw-%03d.cfg", folder, number) < 0) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path of a draw in %s", folder);
+        return NULL;
+    }
+    return path;
+}
+
+static bool draw_is_there(const char *folder, int number, sf_error *err) {
+    char *path = draw_path(folder, number, err);
+    bool there = path && access(path, F_OK) == 0;
+    free(path);
+    return there;
+}
+
+/* The draws from 1 on, without a gap. */
+static sf_status count_draws(const char *folder, int *count, sf_error *err) {
+    int number = 1;
+    while (number <= SF_CFH_MOST_DRAWS + 1 && draw_is_there(folder, number, err))
+        number++;
+    *count = number - 1;
+    if (err->status != SF_OK)
+        return err->status;
+    if (*count > SF_CFH_MOST_DRAWS)
+        return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: more than %d draws", folder, SF_CFH_MOST_DRAWS);
+    for (number = *count + 2; number <= SF_CFH_MOST_DRAWS; number++)
+        if (draw_is_there(folder, number, err))
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "--posterior %s: draw-%03d.cfg is there, but draw-%03d.cfg is not", folder, number,
+                           *count + 1);
+    if (*count == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: there is no draw-001.cfg", folder);
+    if (*count < SF_CFH_LEAST_DRAWS)
+        return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: %d draws, at least %d are needed for an interval",
+                       folder, *count, SF_CFH_LEAST_DRAWS);
+    return err->status;
+}
+
+static sf_status check_draw(const sf_cfh_draw *draw, const sf_material *own, sf_error *err) {
+    double density = sf_material_density(&draw->material), expected = sf_material_density(own);
+    if (draw->material.law != own->law)
+        return SF_FAIL(err, SF_ERR_INPUT, "--posterior: the law of %s is %s, that of the case's material %s",
+                       draw->path, draw->material.law->name, own->law->name);
+    if (fabs(density / expected - 1) > SAME_DENSITY)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "--posterior: the density of %s is %g kg/m3, that of the case's material %g kg/m3",
+                       draw->path, density, expected);
+    return SF_OK;
+}
+
+/* list[0] is the place of the material. */
+static sf_status read_draw(const char *case_path, int count, const char **list, const sf_material *own,
+                           sf_cfh_draw *draw, sf_error *err) {
+    sf_case c;
+    sf_error reason = SF_ERROR_INIT;
+    char *material = NULL;
+    if (asprintf(&material, "material=@%s", draw->path) < 0)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", draw->path);
+    list[0] = material;
+    if (sf_case_read(case_path, count, list, NULL, &c, &reason) == SF_OK) {
+        draw->material = c.material;
+        c.material = (sf_material){0};
+        sf_case_free(&c);
+        if (check_draw(draw, own, err) == SF_OK)
+            sf_material_law_build(&draw->material, &draw->law, err);
+    } else {
+        SF_FAIL(err, reason.status, "--posterior: %.900s", reason.text);
+    }
+    free(material);
+    return err->status;
+}
+
+sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int override_count,
+                            const char *const *overrides, const sf_material *own, sf_cfh_draws *out,
+                            sf_error *err) {
+    const char *list[SF_RUNNER_OVERRIDES + 1];
+    int count = 0;
+    *out = (sf_cfh_draws){.folder = folder};
+    if (count_draws(folder, &count, err) != SF_OK)
+        return err->status;
+    out->draw = sf_alloc(err, (unsigned long)count, sizeof *out->draw, "draws");
+    for (int k = 0; k < override_count; k++)
+        list[k + 1] = overrides[k];
+    while (err->status == SF_OK && out->count < count) {
+        sf_cfh_draw *draw = &out->draw[out->count++];
+        draw->path = draw_path(folder, out->count, err);
+        if (draw->path)
+            read_draw(case_path, override_count + 1, list, own, draw, err);
+    }
+    return err->status;
+}
+
+void sf_cfh_draws_free(sf_cfh_draws *draws) {
+    for (int k = 0; k < draws->count; k++) {
+        sf_material_law_free(&draws->draw[k].law);
+        sf_material_free(&draws->draw[k].material);
+        free(draws->draw[k].path);
+    }
+    free(draws->draw);
+    *draws = (sf_cfh_draws){0};
+}

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cfh/spread_report.h"
+
+#include <math.h>
+
+const char *sf_cfh_interval_text(const sf_cfh_interval *i, char *text, size_t size) {
+    if (isnan(i->median))
+        snprintf(text, size, "–");
+    else if (i->low <= 0 && isinf(i->high))
+        snprintf(text, size, "open at both ends");
+    else if (i->low <= 0)
+        snprintf(text, size, "up to %.3g m, open below", i->high);
+    else if (isinf(i->high))
+        snprintf(text, size, "from %.3g m, open above", i->low);
+    else
+        snprintf(text, size, "%.3g to %.3g m", i->low, i->high);
+    return text;
+}
+
+void sf_cfh_draws_text(const sf_cfh_spread *s, char *text, size_t size) {
+    const struct {
+        int count;
+        const char *words;
+    } kinds[] = {
+        {s->above, "reach no limit up to the greatest height looked at"},
+        {s->below, "exceed a limit at the lowest height looked at"},
+        {s->collapsed,
+         "have columns that collapse before they reach a limit, and count as reaching it there"},
+        {s->beyond,
+         "reach a limit outside of the simulated heights, where the correction of the columns is that "
+         "of the nearest one"}};
+    size_t used = 0;
+    text[0] = '\0';
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && used < size; k++)
+        if (kinds[k].count > 0)
+            used += (size_t)snprintf(text + used, size - used, "%s%d of the %d draws %s.", used ? " " : "",
+                                     kinds[k].count, s->draws, kinds[k].words);
+}
+
+/* ---- report.html ---- */
+
+static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
+    static const char *const words[SF_CFH_PARTS] = {"foam alone (the draws)", "and the error of the mesh",
+                                                    "and the points about their fit",
+                                                    "and the columns' own error"};
+    char text[64];
+    sf_html_table table =
+        sf_html_table_begin(page, "dense", "95 % interval with|>median (m)|>critical height|>a_max|>HIC");
+    for (int part = 0; part < SF_CFH_PARTS; part++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", words[part]);
+        sf_html_number(&table, 3, s->part[part][SF_CFH_FIRST].median);
+        sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][SF_CFH_FIRST], text, sizeof text));
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][c], text, sizeof text));
+    }
+    if (rig->pairs > 0) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "and g_eff: on the rig");
+        sf_html_number(&table, 3, s->rig.median);
+        sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->rig, text, sizeof text));
+        sf_html_cell(&table, "–");
+        sf_html_cell(&table, "–");
+    }
+    sf_html_table_end(&table);
+}
+
+static void put_checks(FILE *page, const sf_cfh_spread *s) {
+    if (s->checks == 0) {
+        sf_html_paragraph(
+            page, "No draw was simulated: how well the columns stand for the draws is not known, and the "
+                  "interval does not hold their error.");
+        return;
+    }
+    sf_html_table table = sf_html_table_begin(
+        page, "dense",
+        "simulated draw|>draws below (%)|>height (m)|limit|>a_max, columns (g)|>simulated (g)|>HIC, "
+        "columns|>simulated|>height moves by (%)");
+    for (int k = 0; k < s->checks; k++) {
+        const sf_cfh_check *check = &s->check[k];
+        sf_html_row(&table);
+        sf_html_cell(&table, "%d", check->draw + 1);
+        sf_html_number(&table, 0, 100 * check->share);
+        sf_html_number(&table, 3, check->height);
+        sf_html_cell(&table, "%s", sf_cfh_name(check->first));
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            sf_html_number(&table, c == SF_CFH_A_MAX, check->columns[c]);
+            sf_html_number(&table, c == SF_CFH_A_MAX, check->failed ? NAN : check->simulated[c]);
+        }
+        sf_html_number(&table, 2, check->failed ? NAN : 100 * check->shift);
+    }
+    sf_html_table_end(&table);
+    for (int k = 0; k < s->checks; k++)
+        if (s->check[k].note[0])
+            sf_html_paragraph(page, "Draw %d: %s.", s->check[k].draw + 1, s->check[k].note);
+}
+
+void sf_cfh_put_spread(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
+    char text[800];
+    sf_html_heading(page, "Interval of the critical height");
+    put_parts(page, s, rig);
+    sf_cfh_draws_text(s, text, sizeof text);
+    if (text[0])
+        sf_html_paragraph(page, "%s", text);
+    put_checks(page, s);
+    sf_html_note(
+        page,
+        "%d draws of the foam, each as columns below the missile, corrected by the drops simulated with the "
+        "case's own material between %.3f and %.3f m. Error of the mesh: %.2g %% of a_max are expected, of which "
+        "%.2f times (95 %%: %.2f to %.2f) are missing, and %.1f times as much of HIC; so the heights with it are "
+        "lower. Points about their fit: %.2g %% of a_max and %.2g %% of HIC; the columns' own error: %.2g %% of the "
+        "height, the root mean square over the simulated draws.",
+        s->draws, s->simulated[0], s->simulated[1], 100 * s->mesh_error, SF_CFH_MESH_MEDIAN,
+        SF_CFH_MESH_MEDIAN * exp(-1.96 * SF_CFH_MESH_SCATTER),
+        SF_CFH_MESH_MEDIAN * exp(1.96 * SF_CFH_MESH_SCATTER), SF_CFH_MESH_HIC,
+        100 * s->fit_scatter[SF_CFH_A_MAX], 100 * s->fit_scatter[SF_CFH_HIC], 100 * s->columns_scatter);
+}
+
+/* ---- cfh.json ---- */
+
+void sf_cfh_put_interval_json(sf_json *json, const char *name, const sf_cfh_interval *i) {
+    char key[64];
+    snprintf(key, sizeof key, "%s_low_m", name);
+    sf_json_number(json, key, i && i->low > 0 ? i->low : NAN);
+    snprintf(key, sizeof key, "%s_median_m", name);
+    sf_json_number(json, key, i && i->median > 0 ? i->median : NAN);
+    snprintf(key, sizeof key, "%s_high_m", name);
+    sf_json_number(json, key, i ? i->high : NAN);
+}
+
+static void put_checks_json(sf_json *json, const sf_cfh_spread *s) {
+    sf_json_open(json, "checks", '[');
+    for (int k = 0; k < s->checks; k++) {
+        const sf_cfh_check *check = &s->check[k];
+        sf_json_open(json, NULL, '{');
+        sf_json_integer(json, "draw", check->draw + 1);
+        sf_json_number(json, "share_below", check->share);
+        sf_json_number(json, "height_m", check->height);
+        sf_json_text(json, "criterion", sf_cfh_name(check->first));
+        sf_json_number(json, "a_max_columns_g", check->columns[SF_CFH_A_MAX]);
+        sf_json_number(json, "a_max_g", check->failed ? NAN : check->simulated[SF_CFH_A_MAX]);
+        sf_json_number(json, "hic_columns", check->columns[SF_CFH_HIC]);
+        sf_json_number(json, "hic", check->failed ? NAN : check->simulated[SF_CFH_HIC]);
+        sf_json_number(json, "height_shift", check->failed ? NAN : check->shift);
+        sf_json_bool(json, "failed", check->failed);
+        sf_json_text(json, "note", check->note[0] ? check->note : NULL);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+void sf_cfh_put_spread_json(sf_json *json, const sf_cfh_spread *s) {
+    static const char *const names[SF_CFH_PARTS] = {"foam", "foam_mesh", "foam_mesh_fit",
+                                                    "foam_mesh_fit_columns"};
+    sf_json_integer(json, "draws", s->draws);
+    sf_json_integer(json, "draws_above", s->above);
+    sf_json_integer(json, "draws_below", s->below);
+    sf_json_integer(json, "draws_collapsed", s->collapsed);
+    sf_json_integer(json, "draws_beyond_simulated", s->beyond);
+    sf_json_integer(json, "repeats", SF_CFH_REPEATS);
+    sf_json_number(json, "expected_mesh_error", s->mesh_error);
+    sf_json_number(json, "fit_scatter_a_max", s->fit_scatter[SF_CFH_A_MAX]);
+    sf_json_number(json, "fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]);
+    sf_json_number(json, "columns_scatter_height", s->checks ? s->columns_scatter : NAN);
+    for (int part = 0; part < SF_CFH_PARTS; part++)
+        sf_cfh_put_interval_json(json, names[part], &s->part[part][SF_CFH_FIRST]);
+    put_checks_json(json, s);
+}
+
+/* ---- tables ---- */
+
+static void put_cell(FILE *file, double value, char after) {
+    if (isfinite(value))
+        fprintf(file, "%.9g", value);
+    fputc(after, file);
+}
+
+sf_status sf_cfh_write_band(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
+    FILE *file = sf_staging_open(output, "cfh_band.csv", err);
+    if (!file)
+        return err->status;
+    fputs(
+        "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,a_max_correction_1,"
+        "hic_correction_1\n",
+        file);
+    for (int k = 0; k < s->grid; k++) {
+        put_cell(file, s->height[k], ',');
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            const sf_cfh_band *band = &s->band[c][k];
+            put_cell(file, band->low, ',');
+            put_cell(file, band->median, ',');
+            put_cell(file, band->high, ',');
+        }
+        put_cell(file, exp(s->correction[SF_CFH_A_MAX][k]), ',');
+        put_cell(file, exp(s->correction[SF_CFH_HIC][k]), '\n');
+    }
+    return sf_staging_close(file, "cfh_band.csv", err);
+}
+
+sf_status sf_cfh_write_crossings(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
+    FILE *file = sf_staging_open(output, "cfh_draws.csv", err);
+    if (!file)
+        return err->status;
+    fputs("draw_1,height_m,a_max_height_m,hic_height_m\n", file);
+    for (int d = 0; d < s->draws; d++) {
+        const double *crossing = &s->crossing[(size_t)d * (SF_CFH_FIRST + 1)];
+        fprintf(file, "%d,", d + 1);
+        for (int k = 0; k <= SF_CFH_FIRST; k++) { /* the first of them in front */
+            double height = crossing[k == 0 ? SF_CFH_FIRST : k - 1];
+            put_cell(file, height > 0 ? height : NAN, k == SF_CFH_FIRST ? '\n' : ',');
+        }
+    }
+    return sf_staging_close(file, "cfh_draws.csv", err);
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is written of the interval of a critical fall height: its parts, the draws, their checks. */
+#ifndef SF_CFH_SPREAD_REPORT_H
+#define SF_CFH_SPREAD_REPORT_H
+
+#include "cfh/spread.h"
+#include "io/html.h"
+#include "io/json.h"
+
+/* "1.52 to 1.85 m", or a bound. Returns `text`. */
+const char *sf_cfh_interval_text(const sf_cfh_interval *interval, char *text, size_t size);
+/* The draws that have no crossing of their own or one beyond the simulated heights: sentences, or "". */
+void sf_cfh_draws_text(const sf_cfh_spread *spread, char *text, size_t size);
+
+/* The section of report.html. */
+void sf_cfh_put_spread(FILE *page, const sf_cfh_spread *spread, const sf_cfh_rig *rig);
+/* The members `name`_low_m, `name`_median_m, `name`_high_m; all null with `interval` NULL. */
+void sf_cfh_put_interval_json(sf_json *json, const char *name, const sf_cfh_interval *interval);
+/* The members of the object `posterior` of cfh.json. */
+void sf_cfh_put_spread_json(sf_json *json, const sf_cfh_spread *spread);
+
+/* cfh_band.csv and cfh_draws.csv. */
+sf_status sf_cfh_write_band(const sf_staging *output, const sf_cfh_spread *spread, sf_error *err);
+sf_status sf_cfh_write_crossings(const sf_staging *output, const sf_cfh_spread *spread, sf_error *err);
+
+#endif
