@@ -223,6 +223,12 @@ static void the_checks_widen_the_interval(void **state) {
     s.check[0].failed = s.check[1].failed = s.check[2].failed = true; /* no figures: no scatter known */
     evaluate(&s);
     assert_close(s.columns_scatter, 0, 0);
+    char text[SF_CFH_NOTE_SIZE];
+    sf_cfh_draws_text(&s, text, sizeof text);
+    assert_string_equal(text, "3 of the 3 simulated draws failed: there the columns are not confirmed.");
+    s.own_height *= 1.3;
+    sf_cfh_draws_text(&s, text, sizeof text);
+    assert_non_null(strstr(text, "lies outside of 95 % of the draws"));
     sf_cfh_spread_free(&s);
     sf_cfh_draws_free(&draws);
 }

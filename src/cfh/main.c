@@ -3,6 +3,7 @@
 #include "cfh/options.h"
 #include "cfh/plot.h"
 #include "cfh/series.h"
+#include "cfh/spread_report.h"
 #include "core/program.h"
 #include "io/process.h"
 #include "io/provenance.h"
@@ -98,7 +99,7 @@ static sf_cfh_plan make_plan(const sf_cfh_options *o, const sf_cfh_rig *rig, con
 }
 
 static sf_status write_output(sf_staging *output, const sf_cfh_report *report, sf_error *err) {
-    char warning[512] = "";
+    char warning[512] = "", draws[SF_CFH_NOTE_SIZE] = "";
     if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_draws(output, report, err) != SF_OK ||
         sf_cfh_write_json(output, report, err) != SF_OK ||
         sf_cfh_plot(output, report, warning, sizeof warning, err) != SF_OK ||
@@ -113,6 +114,12 @@ static sf_status write_output(sf_staging *output, const sf_cfh_report *report, s
         if (report->points->point[k].note[0])
             sf_sink_tell(&sink, SF_WARNING, "at %.3f m: %s", report->points->point[k].height,
                          report->points->point[k].note);
+    if (report->spread)
+        sf_cfh_draws_text(report->spread, draws, sizeof draws);
+    if (draws[0])
+        sf_sink_tell(&sink, SF_WARNING, "%s", draws);
+    if (report->no_interval[0])
+        sf_sink_tell(&sink, SF_WARNING, "no interval: %s", report->no_interval);
     if (warning[0])
         sf_sink_tell(&sink, SF_WARNING, "%s", warning);
     return SF_OK;

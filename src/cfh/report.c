@@ -31,7 +31,7 @@ static void uncertainty_text(const sf_cfh_report *r, char *text, size_t size) {
     const sf_cfh_interval *whole = sf_cfh_spread_whole(r->spread, SF_CFH_FIRST);
     sf_cfh_interval_text(whole, interval, sizeof interval);
     if (whole->median > 0 && isfinite(whole->median))
-        snprintf(text, size, " With the uncertainty of foam and mesh: %.3g m (95 %% interval %s).",
+        snprintf(text, size, " With the uncertainty of foam and mesh: %#.3g m (95 %% interval %s).",
                  whole->median, interval);
     else
         snprintf(text, size, " 95 %% interval with the uncertainty of foam and mesh: %s.", interval);
@@ -321,8 +321,13 @@ sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *r, s
 /* ---- report.html ---- */
 
 static const char *banner_kind(const sf_cfh_report *r) {
+    char text[SF_CFH_NOTE_SIZE] = "";
     if (r->result->verdict == SF_CFH_UNKNOWN)
         return "bad";
+    if (r->spread)
+        sf_cfh_draws_text(r->spread, text, sizeof text);
+    if (text[0] || r->no_interval[0])
+        return "fair";
     for (int k = 0; k < r->points->count; k++)
         if (r->points->point[k].note[0])
             return "fair";
@@ -572,7 +577,6 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
 /* ---- terminal ---- */
 
 static void put_checks(FILE *out, const sf_cfh_report *r) {
-    char text[800];
     if (!r->spread)
         return;
     for (int k = 0; k < r->spread->checks; k++) {
@@ -585,9 +589,6 @@ static void put_checks(FILE *out, const sf_cfh_report *r) {
                 check->draw + 1, check->height, check->columns[SF_CFH_A_MAX], check->simulated[SF_CFH_A_MAX],
                 check->columns[SF_CFH_HIC], check->simulated[SF_CFH_HIC], 100 * check->shift);
     }
-    sf_cfh_draws_text(r->spread, text, sizeof text);
-    if (text[0])
-        fprintf(out, "%s\n", text);
 }
 
 void sf_cfh_print(FILE *out, const sf_cfh_report *r) {

@@ -236,6 +236,7 @@ sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, 
                               sf_cfh_spread *s, sf_error *err) {
     unsigned long n = (unsigned long)draws->count;
     *s = (sf_cfh_spread){.draws = draws->count, .mesh_error = fmax(0, pad->mesh_error)};
+    s->own_height = result->verdict == SF_CFH_FOUND ? result->crossing[result->deciding].height : NAN;
     memcpy(s->limit, limit, sizeof s->limit);
     for (int c = 0; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_fit *fit = &result->crossing[c].fit;

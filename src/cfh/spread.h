@@ -74,6 +74,7 @@ typedef struct sf_cfh_spread {
     int *reach;                                      /* [draws] heights before the columns collapse; owned */
     double *crossing; /* [draws][SF_CFH_FIRST + 1] m, foam alone; 0 or INFINITY: beyond the grid; owned */
     double limit[SF_CFH_CRITERIA];
+    double own_height;                   /* m, of the case's own material; NaN: none was found */
     double mesh_error;                   /* -, expected of a_max; 0: none */
     double fit_scatter[SF_CFH_CRITERIA]; /* of ln(value) */
     double columns_scatter;              /* of ln(height), from the checks */

@@ -9,12 +9,18 @@ const char *sf_cfh_interval_text(const sf_cfh_interval *i, char *text, size_t si
     else if (i->low <= 0 && isinf(i->high))
         snprintf(text, size, "open at both ends");
     else if (i->low <= 0)
-        snprintf(text, size, "up to %.3g m, open below", i->high);
+        snprintf(text, size, "up to %#.3g m, open below", i->high);
     else if (isinf(i->high))
-        snprintf(text, size, "from %.3g m, open above", i->low);
+        snprintf(text, size, "from %#.3g m, open above", i->low);
     else
-        snprintf(text, size, "%.3g to %.3g m", i->low, i->high);
+        snprintf(text, size, "%#.3g to %#.3g m", i->low, i->high);
     return text;
+}
+
+/* Is the case's own material none that the draws describe? */
+static bool is_aside(const sf_cfh_spread *s) {
+    const sf_cfh_interval *foam = &s->part[SF_CFH_PART_FOAM][SF_CFH_FIRST];
+    return s->own_height < 0.99 * foam->low || s->own_height > 1.01 * foam->high;
 }
 
 void sf_cfh_draws_text(const sf_cfh_spread *s, char *text, size_t size) {
@@ -30,11 +36,25 @@ void sf_cfh_draws_text(const sf_cfh_spread *s, char *text, size_t size) {
          "reach a limit outside of the simulated heights, where the correction of the columns is that "
          "of the nearest one"}};
     size_t used = 0;
+    int failed = 0;
     text[0] = '\0';
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && used < size; k++)
         if (kinds[k].count > 0)
             used += (size_t)snprintf(text + used, size - used, "%s%d of the %d draws %s.", used ? " " : "",
                                      kinds[k].count, s->draws, kinds[k].words);
+    for (int k = 0; k < s->checks; k++)
+        failed += s->check[k].failed;
+    if (failed > 0 && used < size)
+        used +=
+            (size_t)snprintf(text + used, size - used,
+                             "%s%d of the %d simulated draws failed: there the columns are not confirmed.",
+                             used ? " " : "", failed, s->checks);
+    if (is_aside(s) && used < size)
+        snprintf(
+            text + used, size - used,
+            "%sThe height of the case's own material, %.3g m, lies outside of 95 %% of the draws: it is not the foam "
+            "that they describe.",
+            used ? " " : "", s->own_height);
 }
 
 /* ---- report.html ---- */
@@ -96,7 +116,7 @@ static void put_checks(FILE *page, const sf_cfh_spread *s) {
 }
 
 void sf_cfh_put_spread(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
-    char text[800];
+    char text[SF_CFH_NOTE_SIZE];
     sf_html_heading(page, "Interval of the critical height");
     put_parts(page, s, rig);
     sf_cfh_draws_text(s, text, sizeof text);

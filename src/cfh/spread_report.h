@@ -9,7 +9,8 @@
 
 /* "1.52 to 1.85 m", or a bound. Returns `text`. */
 const char *sf_cfh_interval_text(const sf_cfh_interval *interval, char *text, size_t size);
-/* The draws that have no crossing of their own or one beyond the simulated heights: sentences, or "". */
+/* What is worth a warning: draws that have no crossing of their own or one beyond the simulated heights,
+ * checks that failed, a material of the case that is none of the draws'. Sentences, or "". */
 void sf_cfh_draws_text(const sf_cfh_spread *spread, char *text, size_t size);
 
 /* The section of report.html. */
