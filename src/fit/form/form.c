@@ -58,13 +58,27 @@ double sf_curve_form_stress(const sf_curve_form *form, const double *value, doub
  * stress rises steeply. So dense that the solver's interpolant has the stress to 1e-4. */
 enum { KNEE = 160, MIDDLE = 100, END = 200, POINTS = KNEE + MIDDLE + END + 1 };
 static const double MIDDLE_START = 0.1, END_START = 0.55, LAST = 0.975; /* parts of the pole */
+static const double MOST_STRESS = 1e9;                                  /* Pa */
 
-static double part_of(int k) {
+/* Part of the pole at which the table ends: before the stress is beyond all that a foam bears, where the
+ * slope would be one that no card may have. */
+static double last_part(const sf_curve_form *form, const double *value, double pole) {
+    double low = END_START, high = LAST;
+    if (sf_curve_form_stress(form, value, pole * LAST) <= MOST_STRESS)
+        return LAST;
+    for (int k = 0; k < 40; k++) {
+        double middle = 0.5 * (low + high);
+        *(sf_curve_form_stress(form, value, pole * middle) <= MOST_STRESS ? &low : &high) = middle;
+    }
+    return fmax(low, END_START + 0.05);
+}
+
+static double part_of(int k, double last) {
     if (k <= KNEE)
         return MIDDLE_START * k * k / (KNEE * KNEE);
     if (k <= KNEE + MIDDLE)
         return MIDDLE_START + (END_START - MIDDLE_START) * (k - KNEE) / MIDDLE;
-    return 1 - (1 - END_START) * pow((1 - LAST) / (1 - END_START), (double)(k - KNEE - MIDDLE) / END);
+    return 1 - (1 - END_START) * pow((1 - last) / (1 - END_START), (double)(k - KNEE - MIDDLE) / END);
 }
 
 /* The stress must rise, which the solver's law needs. */
@@ -112,8 +126,9 @@ sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value,
            *rate = sf_alloc(err, 1, sizeof *rate, "curve");
     int64_t *ptr = sf_alloc(err, 2, sizeof *ptr, "curve");
     if (err->status == SF_OK) {
+        double last = last_part(form, value, pole);
         for (int k = 0; k < POINTS; k++)
-            strain[k] = pole * part_of(k);
+            strain[k] = pole * part_of(k, last);
         form->stress(value, POINTS, strain, stress);
         check_table(form, strain, stress, err);
     }
