@@ -7,6 +7,7 @@
 #include "fit/form/gas.h"
 #include "fit/space_mapping.h"
 #include "foam_fixture.h"
+#include "post/hic.h"
 #include "program_fixture.h"
 
 #include <math.h>
@@ -131,6 +132,37 @@ static void column_drop_keeps_energy(void **state) {
             0.5 * (curve.value[k] + curve.value[k - 1] - 2) * 9.80665 * (curve.time[k] - curve.time[k - 1]);
     assert_true(fabs(impulse / (2 * c.speed) - 1) < 2e-3);
     sf_series_free(&curve);
+    sf_foam_free(&foam);
+}
+
+/* The figures of the columns are those of the filtered reading F/m, from free flight to the rebound. */
+static void column_figures_are_those_of_the_reading(void **state) {
+    (void)state;
+    point_card card;
+    sf_foam foam;
+    sf_series raw, read;
+    sf_columns_figures figures;
+    sf_hic hic;
+    sf_error err = SF_ERROR_INIT;
+    sf_columns c = {.mass = 2, .speed = 3, .thickness = 0.05, .count = 1, .area = {0.01}, .gap = {0}};
+    point_card_init(&card);
+    point_card_add_eva(&card, 0, 120, 0.9, 1);
+    foam_build(&card, &foam);
+    const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
+    assert_int_equal(sf_columns_drop(&c, &law, &raw, &err), SF_OK);
+    assert_int_equal(sf_columns_respond(&c, &law, &figures, &read, &err), SF_OK);
+    assert_int_equal(sf_hic_evaluate(&read, INFINITY, &hic, &err), SF_OK);
+    double peak = 0;
+    for (int64_t k = 0; k < raw.count; k++)
+        peak = fmax(peak, raw.value[k]);
+    assert_true(raw.value[0] == 0 && fabs(read.value[0]) < 1e-6); /* free flight: 0, not -1 g */
+    assert_true(fabs(figures.a_max_g / peak - 1) < 2e-3);
+    assert_true(fabs(figures.hic / hic.value - 1) < 2e-3);
+    assert_true(fabs(figures.hic_window / (hic.t2 - hic.t1) - 1) < 5e-3);
+    assert_true(fabs(figures.v_rebound / c.speed - 1) < 5e-3); /* no loss */
+    assert_true(fabs(figures.contact_time - raw.time[raw.count - 1]) < 1e-4);
+    sf_series_free(&raw);
+    sf_series_free(&read);
     sf_foam_free(&foam);
 }
 
@@ -333,10 +365,15 @@ static void bad_input_gets_one_sentence(void **state) {
         {MATERIAL "drops = ( 3 );\n", "each entry must be a group"},
         {DROPS("a_max_g = 60.0;"), "material is missing"},
         {"material = \"none.cfg\";\n" DROPS("a_max_g = 60.0;"), "none.cfg cannot be read"},
-        {MATERIAL DROPS(""), "the drop \"a\" has no a_max_g, no HIC and no curve"},
+        {MATERIAL DROPS(""), "the drop \"a\" has no a_max_g, no HIC, nothing else measured and no curve"},
         {MATERIAL DROPS("a_max_g = -3.0;"), "a_max_g is -3, outside"},
         {MATERIAL DROPS("a_max_g = \"60 g\";"), "a_max_g must be a number"},
         {MATERIAL DROPS("HIC = 100.0; HIC_sd = 0.0;"), "HIC_sd is 0, outside"},
+        {MATERIAL DROPS("a_max_g = 60.0; HIC_window_resolution_ms = 0.5;"), "but no HIC_window_ms"},
+        {MATERIAL DROPS("HIC_window_ms = 9.5; HIC_window_resolution_ms = 10.0;"), "is 10, outside"},
+        {MATERIAL DROPS("a_max_g = 60.0; v_rebound_sd = 0.1;"),
+         "v_rebound_sd is given, but no v_rebound_m_s"},
+        {MATERIAL DROPS("contact_time_ms = \"20 ms\";"), "contact_time_ms must be a number"},
         {MATERIAL DROPS("amax = 60.0;"), "unknown key \"amax\"; the keys here are name, case, a_max_g"},
         {MATERIAL DROPS("curve = \"none.csv\";"), "none.csv cannot be read"},
         {MATERIAL DROPS("curve = \"start.csv\";"), "start.csv"},
@@ -436,15 +473,27 @@ static void measured_curves_are_filtered_like_the_simulated(void **state) {
     program_tear_down(&place);
 }
 
+/* The first number of that key. */
+static double number_in(const char *json, const char *key) {
+    char quoted[80];
+    double value = NAN;
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    const char *at = strstr(json, quoted);
+    assert_non_null(at);
+    assert_int_equal(sscanf(at + strlen(quoted), "%lf", &value), 1);
+    return value;
+}
+
 /* Coarse drops with a hidden foam are identified: the responses are met, the second run simulates nothing. */
 static void hidden_foam_is_found(void **state) {
     (void)state;
     static const char *const speed[2] = {"4.5 m/s", "6.2 m/s"};
     program_place place;
-    double a_max[2], hic[2];
-    char text[1024];
+    double a_max[2], hic[2], window[2], begin[2], end[2], contact[2], left[2], rebound[2];
+    char text[1536];
     program_set_up(&place);
     put_case(&place);
+    program_shell(&place, "sed -i 's/40 ms/80 ms/' case.cfg"); /* the start material rebounds late */
     program_write_text(
         &place, "hidden.cfg",
         "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"hidden.csv\"; HU = 0.01; ED = \"3 MPa\"; "
@@ -464,16 +513,24 @@ static void hidden_foam_is_found(void **state) {
         program_bytes json = program_read_file(program_path(&place, "post/summary.json"));
         assert_int_equal(sscanf(strstr(json.data, "\"a_max_g\":"), "\"a_max_g\": %lf", &a_max[k]), 1);
         assert_int_equal(sscanf(strstr(json.data, "\"hic\":"), "\"hic\": %lf", &hic[k]), 1);
+        begin[k] = number_in(json.data, "hic_t1_ms");
+        end[k] = number_in(json.data, "hic_t2_ms");
+        contact[k] = number_in(json.data, "contact_time_ms");
+        left[k] = number_in(json.data, "rebound_time_ms");
+        rebound[k] = number_in(json.data, "v_rebound_m_s");
+        window[k] = end[k] - begin[k];
         free(json.data);
     }
     program_shell(&place, "sed 's/4.5 m/6.2 m/' case.cfg > fast.cfg");
-    snprintf(text, sizeof text,
-             "material = \"start.cfg\";\nunknown = ( { name = \"p0\"; }, { name = \"B\"; }, { name = \"ED\"; "
-             "} );\n"
-             "start: { m = 2.8; s0 = \"7.4 kPa\"; };\n"
-             "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = %.9g; HIC = %.9g; },\n"
-             "{ name = \"fast\"; case = \"fast.cfg\"; a_max_g = %.9g; HIC = %.9g; } );\n",
-             a_max[0], hic[0], a_max[1], hic[1]);
+    snprintf(
+        text, sizeof text,
+        "material = \"start.cfg\";\nunknown = ( { name = \"p0\"; }, { name = \"B\"; }, { name = \"ED\"; "
+        "} );\n"
+        "start: { m = 2.8; s0 = \"7.4 kPa\"; };\n"
+        "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = %.9g; HIC = %.9g; HIC_window_ms = %.9g; "
+        "HIC_window_resolution_ms = 0.5; v_rebound_m_s = %.9g; contact_time_ms = %.9g; },\n"
+        "{ name = \"fast\"; case = \"fast.cfg\"; a_max_g = %.9g; HIC = %.9g; } );\n",
+        a_max[0], hic[0], window[0], rebound[0], left[0] - contact[0], a_max[1], hic[1]);
     program_write_text(&place, "fit.cfg", text);
     program_succeed(&place, "fit", "drop fit.cfg -o out -t 1");
     program_assert_page(&place, "out/report.html", "softfall-fit drop fit.cfg -o out -t 1");
@@ -489,6 +546,11 @@ static void hidden_foam_is_found(void **state) {
         assert_true(fabs(a / a_max[k] - 1) < 0.004 && fabs(h / hic[k] - 1) < 0.008);
     }
     assert_non_null(strstr(json.data, "\"converged\": true"));
+    assert_true(fabs(number_in(json.data, "hic_window_measured_sd") - 0.5 / sqrt(6) / window[0]) < 1e-6);
+    assert_true(fabs(number_in(json.data, "hic_window_ms") / window[0] - 1) < 0.01);
+    assert_true(fabs(number_in(json.data, "v_rebound_m_s") / rebound[0] - 1) < 0.015);
+    assert_true(fabs(number_in(json.data, "contact_time_ms") / (left[0] - contact[0]) - 1) < 0.01);
+    assert_true(number_in(json.data, "hic_window_from_others_ms") > 0);
     const double hidden[3] = {134e3, 23e3, 3e6}; /* p0, B, ED */
     at = strstr(json.data, "\"parameters\":");
     for (int k = 0; k < 3; k++) {
@@ -510,6 +572,13 @@ static void hidden_foam_is_found(void **state) {
                      0);
     assert_int_equal(program_shell(&place, "test \"$(grep -c '\"grade\": \"valid' out/fit.json)\" = 2").code,
                      0);
+    /* What was measured must be in the simulation. */
+    program_shell(&place, "sed 's/end_time = \"[^\"]*\"/end_time = \"20 ms\"/' case.cfg > early.cfg && sed "
+                          "'s/\"case.cfg\"/\"early.cfg\"/' fit.cfg > bad.cfg");
+    program_result early = program_run(&place, "fit", "drop bad.cfg -o bad -t 1");
+    assert_int_equal(early.code, SF_ERR_NUMERIC);
+    assert_non_null(strstr(early.err, "v_rebound_m_s of the drop slow was measured, but its simulation ends "
+                                      "without rebound within its time: raise solver.end_time"));
     /* A drop that ends before its peak is no measure. */
     program_shell(&place, "sed 's/end_time = \"[^\"]*\"/end_time = \"4 ms\"/' case.cfg > short.cfg && sed "
                           "'s/\"case.cfg\"/\"short.cfg\"/' fit.cfg > bad.cfg");
@@ -619,6 +688,7 @@ int main(void) {
         cmocka_unit_test(column_point_is_the_foam_law),
         cmocka_unit_test(columns_are_the_closed_form),
         cmocka_unit_test(column_drop_keeps_energy),
+        cmocka_unit_test(column_figures_are_those_of_the_reading),
         cmocka_unit_test(mapping_of_a_linear_problem_is_bayes),
         cmocka_unit_test(mapping_finds_the_minimum_of_the_simulation),
         cmocka_unit_test(mapping_survives_rejected_and_failed_steps),

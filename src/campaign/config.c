@@ -73,7 +73,7 @@ sf_status sf_config_names(const sf_config *config, const config_setting_t *group
                           sf_error *err) {
     enum { NAMED = 10 };
     const config_setting_t *first = NULL;
-    char list[256], others[400] = "", more[32] = "";
+    char list[512], others[400] = "", more[32] = "";
     int unknown = 0;
     for (int k = 0; k < config_setting_length(group); k++) {
         const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);

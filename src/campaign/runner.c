@@ -69,6 +69,8 @@ static sf_status read_result(const char *path, sf_runner_result *out, sf_error *
     if (err->status == SF_OK) {
         *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
                                   .hic = f.injury.hic.value,
+                                  .hic_window = f.injury.hic.t2 - f.injury.hic.t1,
+                                  .contact_time = f.rebound_time - r.contact_time,
                                   .v0 = f.v0,
                                   .v_rebound = f.v_rebound,
                                   .max_indentation = f.max_indentation,

@@ -36,6 +36,8 @@ typedef struct sf_runner_drop {
 /* The results of a drop for a campaign; figures of the CFC 1000 curve. */
 typedef struct sf_runner_result {
     double a_max_g, hic;                /* g, - */
+    double hic_window;                  /* s, length of its window */
+    double contact_time;                /* s, of contact, from the first; NaN if it had not ended */
     double v0, v_rebound;               /* m s-1; v_rebound NaN if contact had not ended */
     double max_indentation;             /* m */
     double max_local_strain;            /* - */

@@ -2,7 +2,7 @@
 #include "surrogate/column.h"
 
 #include "core/units.h"
-#include "post/injury.h"
+#include "post/hic.h"
 #include <math.h>
 #include <string.h>
 
@@ -89,14 +89,16 @@ static double force(const sf_columns *columns, const sf_material_law *law, doubl
     return sum;
 }
 
-sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
-                          sf_error *err) {
+/* The curve until the missile has left the foam, when `*rebound` is its speed upwards; else NaN. */
+static sf_status fall(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
+                      double *rebound, sf_error *err) {
     sf_uniaxial point[SF_COLUMNS] = {{0}};
     int64_t most = (int64_t)(LONGEST / STEP), count = 0;
     double depth = 0, speed = columns->speed;
+    *rebound = NAN;
     if (sf_series_create(most, curve, err) != SF_OK)
         return err->status;
-    while (count < most) {
+    while (count < most && isnan(*rebound)) {
         double f = force(columns, law, depth, point);
         if (!isfinite(f)) {
             sf_series_free(curve);
@@ -106,10 +108,50 @@ sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law,
         curve->time[count] = (double)count * STEP;
         curve->value[count++] = f / columns->mass / SF_STANDARD_GRAVITY;
         if (speed < 0 && f == 0)
-            break;
+            *rebound = -speed;
         speed += STEP * (SF_STANDARD_GRAVITY - f / columns->mass);
         depth += STEP * speed;
     }
     curve->count = count;
     return SF_OK;
+}
+
+sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
+                          sf_error *err) {
+    double rebound;
+    return fall(columns, law, curve, &rebound, err);
+}
+
+/* ---- its reading ---- */
+
+static const double FREE_FLIGHT = 5e-3; /* s, before contact, as softfall-post puts it there */
+
+static sf_status filter(const sf_series *curve, sf_series *filtered, sf_error *err) {
+    sf_series before = {0}, uniform = {0};
+    if (sf_signal_lead_in(curve, FREE_FLIGHT, 0, &before, err) == SF_OK &&
+        sf_signal_resample(&before, 1 / STEP, &uniform, err) == SF_OK)
+        sf_signal_filter_cfc(&uniform, 1000, filtered, err);
+    sf_series_free(&before);
+    sf_series_free(&uniform);
+    return err->status;
+}
+
+sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law, sf_columns_figures *out,
+                             sf_series *filtered, sf_error *err) {
+    sf_series curve = {0}, read = {0};
+    sf_hic hic;
+    double rebound;
+    if (fall(columns, law, &curve, &rebound, err) == SF_OK && filter(&curve, &read, err) == SF_OK &&
+        sf_hic_evaluate(&read, INFINITY, &hic, err) == SF_OK) {
+        *out = (sf_columns_figures){.hic = hic.value, .hic_window = hic.t2 - hic.t1, .v_rebound = rebound};
+        out->contact_time = isnan(rebound) ? NAN : curve.time[curve.count - 1];
+        for (int64_t k = 0; k < read.count; k++)
+            out->a_max_g = fmax(out->a_max_g, read.value[k]);
+    }
+    sf_series_free(&curve);
+    if (err->status == SF_OK && filtered)
+        *filtered = read;
+    else
+        sf_series_free(&read);
+    return err->status;
 }

@@ -33,4 +33,17 @@ sf_status sf_columns_build(const sf_results *results, sf_columns *columns, sf_er
 sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
                           sf_error *err);
 
+/* What an accelerometer in the missile gives: figures of the curve, filtered with CFC 1000. */
+typedef struct sf_columns_figures {
+    double a_max_g, hic;
+    double hic_window;   /* s, its length */
+    double v_rebound;    /* m s-1; NaN: contact had not ended */
+    double contact_time; /* s, from first contact to the end of contact; NaN: it had not */
+} sf_columns_figures;
+
+/* Drops, filters and evaluates. `filtered` (s, g; owned by the caller) begins 5 ms before contact, which is
+ * at 0; NULL: not wanted. Errors as of sf_columns_drop. */
+sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law,
+                             sf_columns_figures *figures, sf_series *filtered, sf_error *err);
+
 #endif

@@ -4,7 +4,6 @@
 #include "campaign/material_file.h"
 #include "core/hash.h"
 #include "post/compare.h"
-#include "post/injury.h"
 #include "solver/material/foam.h"
 #include <limits.h>
 #include <math.h>
@@ -29,12 +28,22 @@ sf_status sf_drop_fit_card(const sf_fit_input *in, const double *u, sf_foam_card
     return sf_foam_form_card(&in->form, value, card, err);
 }
 
-/* Scaled responses of one drop from its curve. */
-static sf_status respond(const sf_fit_drop *drop, const sf_series *curve, double a_max, double hic, double *y,
-                         sf_error *err) {
+/* What was measured must be defined. `by`: what does not give it, `remedy`: what to do. */
+static sf_status check_values(const sf_fit_drop *drop, const double *y, const char *by, const char *remedy,
+                              sf_error *err) {
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+        if (!isnan(drop->value[kind]) && !isfinite(y[kind]))
+            return SF_FAIL(
+                err, SF_ERR_NUMERIC, "%s of the drop %s was measured, but %s without %s within its time: %s",
+                sf_drop_kind_get(kind)->key, drop->name, by, sf_drop_kind_get(kind)->needs, remedy);
+    return SF_OK;
+}
+
+/* Scaled responses of one drop from its figures and its filtered curve. */
+static sf_status respond(const sf_fit_drop *drop, const sf_columns_figures *figures, const sf_series *curve,
+                         double *y, sf_error *err) {
     double contact = 0;
-    y[SF_FIT_A_MAX] = log(a_max);
-    y[SF_FIT_HIC] = log(hic);
+    sf_drop_values_scale(figures, y);
     if (drop->samples == 0)
         return SF_OK;
     if (sf_contact_instant(curve, drop->name, &contact, err) != SF_OK)
@@ -69,10 +78,11 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
     for (int d = 0; d < in->drop_count; d++) {
         const sf_fit_drop *drop = &in->drop[d];
         double *measured = &fit->measured[fit->row[d]], *sd = &fit->sd[fit->row[d]];
-        measured[SF_FIT_A_MAX] = isnan(drop->a_max_g) ? 0 : log(drop->a_max_g);
-        sd[SF_FIT_A_MAX] = isnan(drop->a_max_g) ? INFINITY : drop->a_max_sd;
-        measured[SF_FIT_HIC] = isnan(drop->hic) ? 0 : log(drop->hic);
-        sd[SF_FIT_HIC] = isnan(drop->hic) ? INFINITY : drop->hic_sd;
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
+            bool known = !isnan(drop->value[kind]);
+            measured[kind] = known ? log(drop->value[kind]) : 0;
+            sd[kind] = known ? drop->sd[kind] : INFINITY;
+        }
         for (int k = 0; k < drop->samples; k++) {
             measured[SF_FIT_SAMPLES + k] = drop->sample_value[k] / drop->sample_scale;
             sd[SF_FIT_SAMPLES + k] = drop->sample_sd;
@@ -91,18 +101,15 @@ static sf_status columns_respond(const sf_drop_fit *fit, int first, int last, co
     if (sf_material_law_build(&material, &law, err) != SF_OK)
         return err->status;
     for (int d = first; d < last && err->status == SF_OK; d++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
         sf_series curve = {0};
-        sf_hic hic;
+        sf_columns_figures figures;
         sf_columns columns = fit->columns[d];
         if (u && fit->speed[d] >= 0)
             columns.speed *= exp(u[fit->speed[d]]);
-        if (sf_columns_drop(&columns, &law, &curve, err) == SF_OK &&
-            sf_hic_evaluate(&curve, INFINITY, &hic, err) == SF_OK) {
-            double peak = 0;
-            for (int64_t k = 0; k < curve.count; k++)
-                peak = fmax(peak, curve.value[k]);
-            respond(&fit->input->drop[d], &curve, peak, hic.value, &y[fit->row[d]], err);
-        }
+        if (sf_columns_respond(&columns, &law, &figures, &curve, err) == SF_OK &&
+            respond(drop, &figures, &curve, &y[fit->row[d]], err) == SF_OK)
+            check_values(drop, &y[fit->row[d]], "its columns end", "this foam does not let go", err);
         sf_series_free(&curve);
     }
     sf_material_law_free(&law);
@@ -122,6 +129,10 @@ static uint64_t hash_inputs(const sf_drop_fit *fit) {
     hash = sf_hash(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
     for (int d = 0; d < in->drop_count; d++) {
         const sf_fit_drop *drop = &in->drop[d];
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) { /* which must be defined */
+            bool known = !isnan(drop->value[kind]);
+            hash = sf_hash(hash, &known, sizeof known);
+        }
         hash = sf_hash(hash, &drop->samples, sizeof drop->samples);
         hash = sf_hash(hash, &drop->sample_scale, sizeof drop->sample_scale);
         hash = sf_hash(hash, drop->sample_time, (size_t)drop->samples * sizeof *drop->sample_time);
@@ -198,10 +209,14 @@ static sf_status simulate_drop(sf_drop_fit *fit, int d, const char *material, do
     sf_fit_simulated *last = &fit->simulated[d];
     if (fit->columns[d].count == 0)
         find_columns(result.path, &fit->columns[d], err);
-    respond(drop, &result.curve, result.a_max_g, result.hic, &y[fit->row[d]], err);
+    const sf_columns_figures figures = {.a_max_g = result.a_max_g,
+                                        .hic = result.hic,
+                                        .hic_window = result.hic_window,
+                                        .contact_time = result.contact_time};
+    if (respond(drop, &figures, &result.curve, &y[fit->row[d]], err) == SF_OK)
+        check_values(drop, &y[fit->row[d]], "its simulation ends", "raise solver.end_time of its case", err);
     sf_series_free(&last->curve);
     *last = (sf_fit_simulated){.max_local_strain = result.max_local_strain,
-                               .v_rebound = result.v_rebound,
                                .energy_error = result.energy_error,
                                .grade = result.grade,
                                .curve = result.curve};

@@ -2,8 +2,9 @@
 /* Identification of a foam from drops: responses, surrogate and simulation of a sf_fit_input for space
  * mapping, and the conclusions from the result.
  *
- * Scaled variables: u = ln(value / SI unit) of the unknown parameters; responses per drop: ln a_max, ln HIC,
- * then the samples of a measured curve over its peak. Measured or not, every drop has the first two. */
+ * Scaled variables: u = ln(value / SI unit) of the unknown parameters; responses per drop: logarithms
+ * of the numbers of kinds.h, then the samples of a measured curve over its peak. Measured or not, every drop
+ * has the numbers; one that is not defined (no rebound within the end time) and was not measured is NaN. */
 #ifndef SF_FIT_DROP_FIT_H
 #define SF_FIT_DROP_FIT_H
 
@@ -13,12 +14,11 @@
 #include "fit/drop/memory.h"
 #include "fit/space_mapping.h"
 
-enum { SF_FIT_A_MAX, SF_FIT_HIC, SF_FIT_SAMPLES }; /* rows of a drop; the samples from SF_FIT_SAMPLES on */
-enum { SF_FIT_STRAIN_BINS = 19 };                  /* 0.05 wide, from 0 to 0.95 */
+enum { SF_FIT_STRAIN_BINS = 19 }; /* 0.05 wide, from 0 to 0.95 */
 
 /* The last simulation of each drop. */
 typedef struct sf_fit_simulated {
-    double max_local_strain, v_rebound, energy_error;
+    double max_local_strain, energy_error;
     sf_grade grade;
     char verdict[SF_VERDICT_LINE_SIZE]; /* its sentence */
     sf_series curve;                    /* s, g; owned */

@@ -94,33 +94,71 @@ static sf_status name_drop(const sf_config *config, const config_setting_t *grou
     return SF_OK;
 }
 
+static const double VALUE_LOW = 1e-3, VALUE_HIGH = 1e7, SD_LOW = 1e-4;
+
+/* A value and its standard deviation. */
+static sf_status read_kind(const sf_config *config, const config_setting_t *group, int kind,
+                           sf_fit_drop *drop, sf_error *err) {
+    const sf_drop_kind_info *about = sf_drop_kind_get(kind);
+    double *value = &drop->value[kind], *sd = &drop->sd[kind];
+    *value = NAN;
+    *sd = about->sd;
+    SF_TRY(sf_config_number(config, group, about->key, false, VALUE_LOW, VALUE_HIGH, value, err));
+    SF_TRY(sf_config_number(config, group, about->sd_key, false, SD_LOW, 1, sd, err));
+    const config_setting_t *stated = config_setting_get_member(group, about->sd_key);
+    if (stated && isnan(*value))
+        return sf_config_refuse(config, stated, err, "%s is given, but no %s", about->sd_key, about->key);
+    return SF_OK;
+}
+
+/* A window printed in steps of r: both its ends are uniform over a step, so that its length has the variance
+ * 2 r^2 / 12; beside a stated scatter, or alone. */
+static sf_status read_resolution(const sf_config *config, const config_setting_t *group, sf_fit_drop *drop,
+                                 sf_error *err) {
+    static const char key[] = "HIC_window_resolution_ms";
+    const config_setting_t *setting = config_setting_get_member(group, key);
+    double *sd = &drop->sd[SF_FIT_WINDOW], step = 0;
+    if (!setting)
+        return SF_OK;
+    if (isnan(drop->value[SF_FIT_WINDOW]))
+        return sf_config_refuse(config, setting, err, "%s is given, but no HIC_window_ms", key);
+    SF_TRY(sf_config_number(config, group, key, false, 1e-3, drop->value[SF_FIT_WINDOW], &step, err));
+    double stated = config_setting_get_member(group, "HIC_window_sd") ? *sd : 0;
+    *sd = hypot(stated, step / sqrt(6) / drop->value[SF_FIT_WINDOW]);
+    return SF_OK;
+}
+
 static sf_status read_measurement(const sf_config *config, const config_setting_t *group, sf_fit_drop *drop,
                                   sf_error *err) {
-    drop->a_max_sd = 0.02;
-    drop->hic_sd = 0.04;
+    bool any = false;
     drop->sample_sd = 0.03;
-    if (sf_config_number(config, group, "a_max_g", false, 1e-3, 1e5, &drop->a_max_g, err) != SF_OK ||
-        sf_config_number(config, group, "HIC", false, 1e-3, 1e7, &drop->hic, err) != SF_OK ||
-        sf_config_number(config, group, "speed_sd", false, 0, 0.2, &drop->speed_sd, err) != SF_OK ||
-        sf_config_number(config, group, "a_max_sd", false, 1e-4, 1, &drop->a_max_sd, err) != SF_OK ||
-        sf_config_number(config, group, "HIC_sd", false, 1e-4, 1, &drop->hic_sd, err) != SF_OK ||
-        sf_config_number(config, group, "curve_sd", false, 1e-4, 1, &drop->sample_sd, err) != SF_OK ||
-        read_curve(config, group, drop, err) != SF_OK)
-        return err->status;
-    if (err->status == SF_OK && isnan(drop->a_max_g) && isnan(drop->hic) && drop->samples == 0)
-        sf_config_refuse(config, group, err, "the drop \"%s\" has no a_max_g, no HIC and no curve",
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
+        SF_TRY(read_kind(config, group, kind, drop, err));
+        any = any || !isnan(drop->value[kind]);
+    }
+    SF_TRY(read_resolution(config, group, drop, err));
+    SF_TRY(sf_config_number(config, group, "speed_sd", false, 0, 0.2, &drop->speed_sd, err));
+    SF_TRY(sf_config_number(config, group, "curve_sd", false, SD_LOW, 1, &drop->sample_sd, err));
+    SF_TRY(read_curve(config, group, drop, err));
+    if (!any && drop->samples == 0)
+        sf_config_refuse(config, group, err,
+                         "the drop \"%s\" has no a_max_g, no HIC, nothing else measured and no curve",
                          drop->name);
     return err->status;
 }
 
+#define KIND_KEYS(name, key, sd_key, ...) key "|" sd_key "|"
+
 static sf_status read_drop(const sf_config *config, const config_setting_t *group, bool predicted,
                            sf_fit_input *in, sf_error *err) {
     static const char *const names[2] = {
-        "name|case|a_max_g|HIC|speed_sd|a_max_sd|HIC_sd|curve|curve_sd|curve_filter|"
-        "curve_column|curve_invert",
+        "name|case|" SF_DROP_KINDS(
+            KIND_KEYS) "HIC_window_resolution_ms|speed_sd|curve|curve_sd|curve_filter|curve_column|curve_invert",
         "name|case"};
     sf_fit_drop *drop = &in->drop[in->drop_count];
-    *drop = (sf_fit_drop){.predicted = predicted, .a_max_g = NAN, .hic = NAN};
+    *drop = (sf_fit_drop){.predicted = predicted};
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+        drop->value[kind] = NAN;
     if (sf_config_names(config, group, names[predicted], err) != SF_OK ||
         name_drop(config, group, in, drop, err) != SF_OK)
         return err->status;

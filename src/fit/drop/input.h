@@ -4,6 +4,7 @@
 #ifndef SF_FIT_DROP_INPUT_H
 #define SF_FIT_DROP_INPUT_H
 
+#include "fit/drop/kinds.h"
 #include "fit/drop/parameters.h"
 #include "fit/space_mapping.h"
 #include "post/reference.h"
@@ -15,10 +16,10 @@ typedef struct sf_fit_drop {
     char name[SF_FIT_NAME_SIZE];
     char *case_path; /* owned */
     bool predicted;
-    double a_max_g, hic;     /* measured; NaN: not */
-    double speed_sd;         /* relative standard deviation of the case's speed; 0: it is known */
-    double a_max_sd, hic_sd; /* relative standard deviations */
-    char *curve_path;        /* of the measured curve; NULL: none; owned */
+    double value[SF_FIT_SAMPLES]; /* measured, in the unit of its key (kinds.h); NaN: not */
+    double sd[SF_FIT_SAMPLES];    /* relative standard deviations */
+    double speed_sd;              /* relative standard deviation of the case's speed; 0: it is known */
+    char *curve_path;             /* of the measured curve; NULL: none; owned */
     char understood[SF_REFERENCE_UNDERSTOOD]; /* how it was read */
     int samples;                              /* of it; 0: none */
     double *sample_time;                      /* [samples] s after contact; owned */

@@ -47,6 +47,19 @@ static double response_sd(const sf_drop_fit *fit, int d, int which) {
     return fit->response_sd[fit->row[d] + which];
 }
 
+/* Is the number of a drop in the reports? One that is not measured may be asked for by other drops. */
+static bool is_shown(const sf_drop_fit *fit, int d, int kind) {
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    return sf_drop_kind_get(kind)->always || !isnan(drop->value[kind]);
+}
+
+/* "a_max (g)" */
+static const char *heading(int kind, char *text, size_t size) {
+    const sf_drop_kind_info *about = sf_drop_kind_get(kind);
+    snprintf(text, size, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
+    return text;
+}
+
 /* Root mean square of a measured curve's residuals, g; NaN without. */
 static double curve_rmse(const sf_drop_fit *fit, int d) {
     const sf_fit_drop *drop = &fit->input->drop[d];
@@ -88,30 +101,40 @@ static void put_difference(sf_html_table *table, double scaled, double measured)
         sf_html_cell(table, "%+.1f %%", 100 * (exp(scaled) / measured - 1));
 }
 
-static void put_response(sf_html_table *table, const sf_drop_fit *fit, int d, int which, double measured,
-                         int digits) {
-    sf_html_number(table, digits, measured);
-    sf_html_number(table, digits, response(fit, d, which));
-    put_difference(table, fit->y[fit->row[d] + which], measured);
-    put_difference(table, fit->without[fit->row[d] + which], measured);
+static void put_response(sf_html_table *table, const sf_drop_fit *fit, int d, int kind) {
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    const sf_drop_kind_info *about = sf_drop_kind_get(kind);
+    double measured = drop->value[kind];
+    char text[64];
+    sf_html_row(table);
+    sf_html_cell(table, "%s", drop->name);
+    sf_html_cell(table, "%s", heading(kind, text, sizeof text));
+    sf_html_number(table, about->digits, measured);
+    sf_html_number(table, 1, isnan(measured) ? NAN : 100 * drop->sd[kind]);
+    sf_html_number(table, about->digits, response(fit, d, kind));
+    put_difference(table, fit->y[fit->row[d] + kind], measured);
+    put_difference(table, fit->without[fit->row[d] + kind], measured);
 }
 
 static void put_drops(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     sf_html_heading(f, "Drops");
     sf_html_note(
-        f, "The simulation with the identified material against the measurement. \"from the others\": the "
-           "same drop left out of the fit and predicted by the rest (corrected surrogate).");
+        f,
+        "The simulation with the identified material against the measurement, as the accelerometer reads "
+        "(F/m), CFC 1000. \"From the others\": the same drop left out of the fit and predicted by the rest "
+        "(corrected surrogate).");
     sf_html_table table = sf_html_table_begin(
-        f, "dense",
-        "drop|>a_max measured (g)|>simulated|>|>from the others|>HIC measured|>simulated|>|>from the others|>curve "
-        "RMSE (g)|>largest local strain|verdict");
-    for (int d = 0; d < in->drop_count && !in->drop[d].predicted; d++) {
-        const sf_fit_drop *drop = &in->drop[d];
+        f, "dense", "drop|quantity|>measured|>± %|>simulated|>difference|>from the others");
+    for (int d = 0; d < fit->measured_drops; d++)
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            if (is_shown(fit, d, kind))
+                put_response(&table, fit, d, kind);
+    sf_html_table_end(&table);
+    table = sf_html_table_begin(f, "dense", "drop|>curve RMSE (g)|>largest local strain|verdict");
+    for (int d = 0; d < fit->measured_drops; d++) {
         sf_html_row(&table);
-        sf_html_cell(&table, "%s", drop->name);
-        put_response(&table, fit, d, SF_FIT_A_MAX, drop->a_max_g, 1);
-        put_response(&table, fit, d, SF_FIT_HIC, drop->hic, 0);
+        sf_html_cell(&table, "%s", in->drop[d].name);
         sf_html_number(&table, 2, curve_rmse(fit, d));
         sf_html_number(&table, 3, fit->simulated[d].max_local_strain);
         sf_html_cell(&table, "%s", sf_verdict_phrase(fit->simulated[d].grade));
@@ -157,6 +180,19 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
     sf_html_table_end(&table);
 }
 
+static void put_prediction(sf_html_table *table, const sf_drop_fit *fit, int d, int kind) {
+    int digits = sf_drop_kind_get(kind)->digits;
+    double value = response(fit, d, kind), width = half_width(fit) * response_sd(fit, d, kind);
+    char text[64];
+    sf_html_row(table);
+    sf_html_cell(table, "%s", fit->input->drop[d].name);
+    sf_html_cell(table, "%s", heading(kind, text, sizeof text));
+    sf_html_number(table, digits, value);
+    sf_html_cell(table, "%.*f to %.*f", digits, value * exp(-width), digits, value * exp(width));
+    sf_html_number(table, 3, fit->simulated[d].max_local_strain);
+    sf_html_cell(table, "%s", sf_verdict_phrase(fit->simulated[d].grade));
+}
+
 static void put_predictions(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     if (!has_predictions(in))
@@ -167,22 +203,11 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
         "Drops that were not used. The 95 %% intervals hold the uncertainty of the parameters; that of the "
         "discretisation and of the model's form come on top.");
     sf_html_table table =
-        sf_html_table_begin(f, "dense", "drop|>a_max (g)|>95 %|>HIC|>95 %|>largest local strain|verdict");
-    for (int d = 0; d < in->drop_count; d++) {
-        if (!in->drop[d].predicted)
-            continue;
-        double a = response(fit, d, SF_FIT_A_MAX), h = response(fit, d, SF_FIT_HIC),
-               sa = half_width(fit) * response_sd(fit, d, SF_FIT_A_MAX),
-               sh = half_width(fit) * response_sd(fit, d, SF_FIT_HIC);
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s", in->drop[d].name);
-        sf_html_number(&table, 1, a);
-        sf_html_cell(&table, "%.1f to %.1f", a * exp(-sa), a * exp(sa));
-        sf_html_number(&table, 0, h);
-        sf_html_cell(&table, "%.0f to %.0f", h * exp(-sh), h * exp(sh));
-        sf_html_number(&table, 3, fit->simulated[d].max_local_strain);
-        sf_html_cell(&table, "%s", sf_verdict_phrase(fit->simulated[d].grade));
-    }
+        sf_html_table_begin(f, "dense", "drop|quantity|>predicted|>95 %|>largest local strain|verdict");
+    for (int d = fit->measured_drops; d < in->drop_count; d++)
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            if (is_shown(fit, d, kind))
+                put_prediction(&table, fit, d, kind);
     sf_html_table_end(&table);
 }
 
@@ -241,8 +266,10 @@ static void put_sensitivities(FILE *f, const sf_drop_fit *fit) {
     sf_html_table table = begin_matrix(f, in, "response");
     for (int d = 0; d < in->drop_count; d++)
         for (int which = 0; which < SF_FIT_SAMPLES; which++) {
+            if (!is_shown(fit, d, which))
+                continue;
             sf_html_row(&table);
-            sf_html_cell(&table, "%s, %s", in->drop[d].name, which == SF_FIT_A_MAX ? "a_max" : "HIC");
+            sf_html_cell(&table, "%s, %s", in->drop[d].name, sf_drop_kind_get(which)->name);
             for (int k = 0; k < in->unknown_count; k++)
                 sf_html_cell(&table, "%+.3f", fit->gradient[(fit->row[d] + which) * fit->parameters + k]);
         }
@@ -323,23 +350,31 @@ static sf_status write_report(const sf_drop_fit *fit, const char *input_path, co
 
 /* ---- fit.json ---- */
 
+static void json_kind(sf_json *j, const sf_drop_fit *fit, int d, int kind) {
+    const sf_drop_kind_info *about = sf_drop_kind_get(kind);
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    char key[64];
+    snprintf(key, sizeof key, "%s_measured%s", about->stem, about->suffix);
+    sf_json_number(j, key, drop->value[kind]);
+    snprintf(key, sizeof key, "%s_measured_sd", about->stem);
+    sf_json_number(j, key, isnan(drop->value[kind]) ? NAN : drop->sd[kind]);
+    snprintf(key, sizeof key, "%s%s", about->stem, about->suffix);
+    sf_json_number(j, key, response(fit, d, kind));
+    snprintf(key, sizeof key, "%s_sd_by_parameters", about->stem);
+    sf_json_number(j, key, response_sd(fit, d, kind));
+    snprintf(key, sizeof key, "%s_from_others%s", about->stem, about->suffix);
+    sf_json_number(j, key, exp(fit->without[fit->row[d] + kind]));
+}
+
 static void json_drop(sf_json *j, const sf_drop_fit *fit, int d) {
     const sf_fit_drop *drop = &fit->input->drop[d];
-    const double *without = &fit->without[fit->row[d]];
     sf_json_open(j, NULL, '{');
     sf_json_text(j, "name", drop->name);
     sf_json_bool(j, "used", !drop->predicted);
-    sf_json_number(j, "a_max_measured_g", drop->a_max_g);
-    sf_json_number(j, "a_max_g", response(fit, d, SF_FIT_A_MAX));
-    sf_json_number(j, "a_max_sd_by_parameters", response_sd(fit, d, SF_FIT_A_MAX));
-    sf_json_number(j, "a_max_from_others_g", exp(without[SF_FIT_A_MAX]));
-    sf_json_number(j, "hic_measured", drop->hic);
-    sf_json_number(j, "hic", response(fit, d, SF_FIT_HIC));
-    sf_json_number(j, "hic_sd_by_parameters", response_sd(fit, d, SF_FIT_HIC));
-    sf_json_number(j, "hic_from_others", exp(without[SF_FIT_HIC]));
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+        json_kind(j, fit, d, kind);
     sf_json_number(j, "curve_rmse_g", curve_rmse(fit, d));
     sf_json_number(j, "max_local_strain", fit->simulated[d].max_local_strain);
-    sf_json_number(j, "v_rebound_m_s", fit->simulated[d].v_rebound);
     sf_json_number(j, "energy_error", fit->simulated[d].energy_error);
     sf_json_text(j, "grade", sf_verdict_phrase(fit->simulated[d].grade));
     sf_json_text(j, "verdict", fit->simulated[d].verdict);
@@ -397,6 +432,13 @@ static sf_status write_json(const sf_drop_fit *fit, const char *input_path, cons
 
 /* ---- the material ---- */
 
+/* " a_max 59.2 g measured, 58.9 simulated;" */
+static void put_comment(FILE *f, const sf_drop_fit *fit, int d, int kind) {
+    const sf_drop_kind_info *about = sf_drop_kind_get(kind);
+    fprintf(f, " %s %.4g%s%s measured, %.*f simulated;", about->name, fit->input->drop[d].value[kind],
+            *about->unit ? " " : "", about->unit, about->digits, response(fit, d, kind));
+}
+
 static sf_status write_material(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
                                 sf_error *err) {
     char *provenance = NULL;
@@ -410,11 +452,9 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
     for (int d = 0; d < fit->input->drop_count && !fit->input->drop[d].predicted; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
         fprintf(f, "%s:", drop->name);
-        if (!isnan(drop->a_max_g))
-            fprintf(f, " a_max %.4g g measured, %.1f g simulated;", drop->a_max_g,
-                    response(fit, d, SF_FIT_A_MAX));
-        if (!isnan(drop->hic))
-            fprintf(f, " HIC %.4g measured, %.0f simulated;", drop->hic, response(fit, d, SF_FIT_HIC));
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            if (!isnan(drop->value[kind]))
+                put_comment(f, fit, d, kind);
         if (drop->samples > 0)
             fprintf(f, " measured curve, RMSE %.2f g;", curve_rmse(fit, d));
         fputc('\n', f);
@@ -472,6 +512,15 @@ static sf_status write_strain_data(const sf_drop_fit *fit, const sf_staging *out
     return sf_staging_close(f, "fit-curve.csv", err);
 }
 
+/* A comment: "# a_max_g: measured 59.2, simulated 58.93" */
+static void put_comparison(FILE *f, const sf_drop_fit *fit, int d, int kind) {
+    double measured = fit->input->drop[d].value[kind];
+    fprintf(f, "# %s:", sf_drop_kind_get(kind)->key);
+    if (!isnan(measured))
+        fprintf(f, " measured %.6g,", measured);
+    fprintf(f, " simulated %.6g\n", response(fit, d, kind));
+}
+
 static sf_status write_drop_data(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
     FILE *f = sf_staging_open(output, "fit-drops.csv", err);
     if (!f)
@@ -480,6 +529,9 @@ static sf_status write_drop_data(const sf_drop_fit *fit, const sf_staging *outpu
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_series *s = &fit->simulated[d].curve;
         fprintf(f, "\n\n# %s\n", fit->input->drop[d].name);
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            if (is_shown(fit, d, kind))
+                put_comparison(f, fit, d, kind);
         for (int64_t k = 0; k < s->count; k += 10)
             fprintf(f, "%.6g,%.6g\n", 1e3 * s->time[k], s->value[k]);
     }
@@ -515,9 +567,9 @@ static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
         f);
     sf_gnuplot_key(f, fit->input->drop_count + 1, 3);
     for (int d = 0; d < fit->measured_drops; d++)
-        if (!isnan(fit->input->drop[d].a_max_g))
+        if (!isnan(fit->input->drop[d].value[SF_FIT_A_MAX]))
             fprintf(f, "set label '' at %.6g,%.6g point pt 6 ps 2*dot lw 2 lc %d\n",
-                    peak_time_ms(&fit->simulated[d].curve), fit->input->drop[d].a_max_g, d + 1);
+                    peak_time_ms(&fit->simulated[d].curve), fit->input->drop[d].value[SF_FIT_A_MAX], d + 1);
     fputs("plot ", f);
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
@@ -548,6 +600,17 @@ sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, c
     return write_report(fit, input_path, command, output, err);
 }
 
+static void print_response(FILE *f, const sf_drop_fit *fit, int d, int kind) {
+    const sf_drop_kind_info *about = sf_drop_kind_get(kind);
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    fprintf(f, "  %s %.*f%s%s", about->name, about->digits + 1, response(fit, d, kind),
+            *about->unit ? " " : "", about->unit);
+    if (drop->predicted)
+        fprintf(f, " ± %.1f %% (95 %%)", 100 * half_width(fit) * response_sd(fit, d, kind));
+    if (!isnan(drop->value[kind]))
+        fprintf(f, " (measured %.4g)", drop->value[kind]);
+}
+
 void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
     double low, high;
     informed_strains(fit, &low, &high);
@@ -562,17 +625,11 @@ void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
     }
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
-        fprintf(f, "  %-20s a_max %7.2f g", drop->name, response(fit, d, SF_FIT_A_MAX));
-        if (!isnan(drop->a_max_g))
-            fprintf(f, " (measured %.2f)", drop->a_max_g);
-        fprintf(f, "  HIC %7.1f", response(fit, d, SF_FIT_HIC));
-        if (!isnan(drop->hic))
-            fprintf(f, " (measured %.1f)", drop->hic);
-        if (drop->predicted)
-            fprintf(f, "  predicted: ± %.1f %% and %.1f %% (95 %%)",
-                    100 * half_width(fit) * response_sd(fit, d, SF_FIT_A_MAX),
-                    100 * half_width(fit) * response_sd(fit, d, SF_FIT_HIC));
-        fputc('\n', f);
+        fprintf(f, "  %-20s", drop->name);
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            if (is_shown(fit, d, kind))
+                print_response(f, fit, d, kind);
+        fputs(drop->predicted ? "  predicted\n" : "\n", f);
     }
     fprintf(f, "  the drops see the curve between strains of %.2f and %.2f\n", low, high);
 }
