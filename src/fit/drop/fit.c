@@ -212,6 +212,7 @@ static sf_status simulate_drop(sf_drop_fit *fit, int d, const char *material, do
     const sf_columns_figures figures = {.a_max_g = result.a_max_g,
                                         .hic = result.hic,
                                         .hic_window = result.hic_window,
+                                        .v_rebound = result.v_rebound,
                                         .contact_time = result.contact_time};
     if (respond(drop, &figures, &result.curve, &y[fit->row[d]], err) == SF_OK)
         check_values(drop, &y[fit->row[d]], "its simulation ends", "raise solver.end_time of its case", err);
