@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surrogate/column.h"
 
+#include "surrogate/pulse.h"
+
 #include "core/units.h"
 #include "post/hic.h"
 #include <math.h>
@@ -142,7 +144,7 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
     sf_hic hic;
     double rebound;
     if (fall(columns, law, &curve, &rebound, err) == SF_OK && filter(&curve, &read, err) == SF_OK &&
-        sf_hic_evaluate(&read, INFINITY, &hic, err) == SF_OK) {
+        sf_pulse_hic(&read, &hic, err) == SF_OK) {
         *out = (sf_columns_figures){.hic = hic.value, .hic_window = hic.t2 - hic.t1, .v_rebound = rebound};
         out->contact_time = isnan(rebound) ? NAN : curve.time[curve.count - 1];
         for (int64_t k = 0; k < read.count; k++)
