@@ -78,60 +78,138 @@ sf_status sf_columns_build(const sf_results *r, sf_columns *out, sf_error *err) 
 
 /* ---- the drop ---- */
 
-static const double STEP = 20e-6, LONGEST = 0.2; /* s */
+/* Time steps (s) and how far a step may turn the oscillation of the missile on the foam (rad). */
+static const double STEP = 100e-6, FIRST_STEP = 10e-6, LEAST_STEP = 1e-7, LONGEST = 0.2, ANGLE = 0.05;
+static const double GROWTH = 1.5; /* of a step over the last one */
 
-static double force(const sf_columns *columns, const sf_material_law *law, double indentation,
-                    sf_uniaxial *point) {
+/* A missile on its way. */
+typedef struct flight {
+    const sf_columns *columns;
+    const sf_material_law *law;
+    double time, depth, speed, force; /* s, m, m s-1 downwards, N */
+    double before;                    /* N, force one step ago */
+    double step;                      /* s, the last one */
+    double stiffness;                 /* N m-1, along it */
+    sf_uniaxial point[SF_COLUMNS];
+} flight;
+
+static int columns_above(const sf_columns *c, double depth) {
+    int n = 0;
+    while (n < c->count && c->gap[n] < depth)
+        n++;
+    return n;
+}
+
+/* Force (N) at a depth `dt` after the points' last. */
+static double force(flight *f, double dt, double depth) {
+    const sf_columns *c = f->columns;
     double sum = 0;
-    for (int k = 0; k < columns->count && columns->gap[k] < indentation; k++) {
-        double strain = (indentation - columns->gap[k]) / columns->thickness;
-        double stress = law->law->uniaxial(law->numbers, STEP, strain, &point[k]);
-        sum += columns->area[k] * fmax(0, stress); /* the missile does not pull */
+    for (int k = columns_above(c, depth) - 1; k >= 0; k--) {
+        double stress =
+            f->law->law->uniaxial(f->law->numbers, dt, (depth - c->gap[k]) / c->thickness, &f->point[k]);
+        sum += c->area[k] * fmax(0, stress); /* the missile does not pull */
     }
     return sum;
 }
 
-/* The curve until the missile has left the foam, when `*rebound` is its speed upwards; else NaN. */
-static sf_status fall(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
-                      double *rebound, sf_error *err) {
-    sf_uniaxial point[SF_COLUMNS] = {{0}};
-    int64_t most = (int64_t)(LONGEST / STEP), count = 0;
-    double depth = 0, speed = columns->speed;
-    *rebound = NAN;
-    if (sf_series_create(most, curve, err) != SF_OK)
-        return err->status;
-    while (count < most && isnan(*rebound)) {
-        double f = force(columns, law, depth, point);
-        if (!isfinite(f)) {
-            sf_series_free(curve);
-            return SF_FAIL(err, SF_ERR_NUMERIC, "the foam of the columns collapsed at an indentation of %g m",
-                           depth);
-        }
-        curve->time[count] = (double)count * STEP;
-        curve->value[count++] = f / columns->mass / SF_STANDARD_GRAVITY;
-        if (speed < 0 && f == 0)
-            *rebound = -speed;
-        speed += STEP * (SF_STANDARD_GRAVITY - f / columns->mass);
-        depth += STEP * speed;
+/* One step of the velocity Verlet scheme; false if the foam collapses in it: then nothing has changed. */
+static bool step(flight *f, double dt) {
+    double mass = f->columns->mass, a = SF_STANDARD_GRAVITY - f->force / mass;
+    double depth = f->depth + dt * (f->speed + 0.5 * dt * a), moved = depth - f->depth;
+    sf_uniaxial saved[SF_COLUMNS];
+    size_t size = (size_t)columns_above(f->columns, depth) * sizeof *saved;
+    memcpy(saved, f->point, size);
+    double after = force(f, dt, depth);
+    if (!isfinite(after)) {
+        memcpy(f->point, saved, size);
+        return false;
     }
-    curve->count = count;
+    if (fabs(moved) > 1e-3 * dt) /* slower, a difference of forces is no slope */
+        f->stiffness = fabs((after - f->force) / moved);
+    f->time += dt;
+    f->depth = depth;
+    f->speed += 0.5 * dt * (a + SF_STANDARD_GRAVITY - after / mass);
+    f->before = f->force;
+    f->force = after;
+    f->step = dt;
+    return true;
+}
+
+/* The next step, shortened until the foam bears it. */
+static sf_status advance(flight *f, sf_error *err) {
+    double dt = fmin(STEP, GROWTH * f->step);
+    if (f->stiffness > 0)
+        dt = fmin(dt, ANGLE * sqrt(f->columns->mass / f->stiffness));
+    while (!step(f, dt))
+        if ((dt /= 4) < LEAST_STEP)
+            return SF_FAIL(err, SF_ERR_NUMERIC, "the foam of the columns collapsed at an indentation of %g m",
+                           f->depth);
     return SF_OK;
+}
+
+/* How long ago contact ended, s: where the force, or the depth, came to nothing within the last step. */
+static double since_contact(const flight *f) {
+    double above = f->columns->gap[0] - f->depth;
+    if (above >= 0)
+        return fmin(f->step, above / -f->speed);
+    return 0.5 * f->step;
+}
+
+/* Room for one more point. */
+static sf_status put_point(const flight *f, int64_t *room, sf_series *curve, sf_error *err) {
+    if (curve->count == *room) {
+        sf_series more;
+        int64_t n = curve->count;
+        if (sf_series_create(2 * n, &more, err) != SF_OK)
+            return err->status;
+        memcpy(more.time, curve->time, (size_t)n * sizeof *more.time);
+        memcpy(more.value, curve->value, (size_t)n * sizeof *more.value);
+        sf_series_free(curve);
+        *curve = more;
+        *room = 2 * n;
+        curve->count = n;
+    }
+    curve->time[curve->count] = f->time;
+    curve->value[curve->count++] = f->force / f->columns->mass / SF_STANDARD_GRAVITY;
+    return SF_OK;
+}
+
+/* The curve until the missile has left the foam, when `*rebound` is its speed upwards and `*contact` the time
+ * of contact; else NaN. */
+static sf_status fall(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
+                      double *rebound, double *contact, sf_error *err) {
+    flight f = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP};
+    int64_t room = 512;
+    *rebound = *contact = NAN;
+    if (sf_series_create(room, curve, err) != SF_OK)
+        return err->status;
+    curve->count = 0;
+    while (put_point(&f, &room, curve, err) == SF_OK && isnan(*rebound) && f.time < LONGEST &&
+           advance(&f, err) == SF_OK)
+        if (f.speed < 0 && f.force == 0) {
+            *rebound = -f.speed;
+            *contact = f.time - since_contact(&f);
+        }
+    if (err->status != SF_OK)
+        sf_series_free(curve);
+    return err->status;
 }
 
 sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
                           sf_error *err) {
-    double rebound;
-    return fall(columns, law, curve, &rebound, err);
+    double rebound, contact;
+    return fall(columns, law, curve, &rebound, &contact, err);
 }
 
 /* ---- its reading ---- */
 
 static const double FREE_FLIGHT = 5e-3; /* s, before contact, as softfall-post puts it there */
+static const double SAMPLING = 20e3;    /* Hz: the columns have no details that need more */
 
 static sf_status filter(const sf_series *curve, sf_series *filtered, sf_error *err) {
     sf_series before = {0}, uniform = {0};
     if (sf_signal_lead_in(curve, FREE_FLIGHT, 0, &before, err) == SF_OK &&
-        sf_signal_resample(&before, 1 / STEP, &uniform, err) == SF_OK)
+        sf_signal_resample(&before, SAMPLING, &uniform, err) == SF_OK)
         sf_signal_filter_cfc(&uniform, 1000, filtered, err);
     sf_series_free(&before);
     sf_series_free(&uniform);
@@ -142,11 +220,11 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
                              sf_series *filtered, sf_error *err) {
     sf_series curve = {0}, read = {0};
     sf_hic hic;
-    double rebound;
-    if (fall(columns, law, &curve, &rebound, err) == SF_OK && filter(&curve, &read, err) == SF_OK &&
+    double rebound, contact;
+    if (fall(columns, law, &curve, &rebound, &contact, err) == SF_OK && filter(&curve, &read, err) == SF_OK &&
         sf_pulse_hic(&read, &hic, err) == SF_OK) {
-        *out = (sf_columns_figures){.hic = hic.value, .hic_window = hic.t2 - hic.t1, .v_rebound = rebound};
-        out->contact_time = isnan(rebound) ? NAN : curve.time[curve.count - 1];
+        *out = (sf_columns_figures){
+            .hic = hic.value, .hic_window = hic.t2 - hic.t1, .v_rebound = rebound, .contact_time = contact};
         for (int64_t k = 0; k < read.count; k++)
             out->a_max_g = fmax(out->a_max_g, read.value[k]);
     }
