@@ -89,32 +89,123 @@ static sf_status read_result(const char *path, sf_runner_result *out, sf_error *
     return err->status;
 }
 
-sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
-                        sf_error *err) {
+/* ---- batches ---- */
+
+/* A drop of a batch, with its overrides and its folder. */
+typedef struct request {
+    const sf_runner_drop *drop;
     char material[MATERIAL_SIZE];
-    const char *list[SF_RUNNER_OVERRIDES + 1 + LEAN];
+    int count;
+    const char *overrides[SF_RUNNER_OVERRIDES + 1 + LEAN];
     sf_run_folder at;
-    *result = (sf_runner_result){0};
-    int count = list_overrides(drop, material, list);
-    if (sf_run_folder_name(runner->folder, drop->label, drop->case_path, count, list, &at, err) != SF_OK)
-        return err->status;
-    bool reused = sf_run_folder_is_finished(&at);
-    if (sf_process_stopped())
+    bool reused;
+} request;
+
+typedef struct batch {
+    const sf_runner *runner;
+    request *request;
+    int *pending; /* those that must be simulated */
+    int threads;  /* of each */
+} batch;
+
+static sf_status prepare(const sf_runner *runner, const sf_runner_drop *drop, request *r, sf_error *err) {
+    r->drop = drop;
+    r->count = list_overrides(drop, r->material, r->overrides);
+    if (sf_run_folder_name(runner->folder, drop->label, drop->case_path, r->count, r->overrides, &r->at,
+                           err) == SF_OK)
+        r->reused = sf_run_folder_is_finished(&r->at);
+    return err->status;
+}
+
+static sf_status simulate(void *context, int index, sf_error *err) {
+    const batch *b = context;
+    const request *r = &b->request[b->pending[index]];
+    return sf_run_folder_simulate(&r->at, r->drop->case_path, r->count, r->overrides, b->threads, err);
+}
+
+/* The drops that are not there, each once. */
+static int list_pending(batch *b, int count) {
+    int pending = 0;
+    for (int k = 0; k < count; k++) {
+        bool twice = b->request[k].reused;
+        for (int j = 0; j < k && !twice; j++)
+            twice = strcmp(b->request[j].at.path, b->request[k].at.path) == 0;
+        if (!twice)
+            b->pending[pending++] = k;
+    }
+    return pending;
+}
+
+/* The failure that decides: an interruption, another that is not numerical, the first. */
+static sf_status decide(int count, const sf_error *failure, sf_error *err) {
+    const sf_error *worst = NULL;
+    for (int k = 0; k < count; k++) {
+        if (failure[k].status == SF_OK)
+            continue;
+        bool worse = !worst || (worst->status == SF_ERR_NUMERIC && failure[k].status != SF_ERR_NUMERIC) ||
+                     (worst->status != SF_INTERRUPTED && failure[k].status == SF_INTERRUPTED);
+        worst = worse ? &failure[k] : worst;
+    }
+    if (worst && worst->status == SF_INTERRUPTED)
         return sf_run_folder_interrupted(err);
-    if (!reused && (sf_folder_own(runner->folder, err) != SF_OK ||
-                    sf_run_folder_simulate(&at, drop->case_path, count, list, runner->threads, err) != SF_OK))
+    return worst ? SF_FAIL(err, worst->status, "%s", worst->text) : SF_OK;
+}
+
+/* One drop alone has all threads and needs no process of its own. */
+static sf_status simulate_pending(batch *b, int pending, sf_error *err) {
+    int threads = b->runner->threads, jobs = b->runner->jobs > 0 ? b->runner->jobs : threads;
+    int abreast = pending < jobs ? pending : jobs;
+    if (pending == 0)
+        return SF_OK;
+    b->threads = threads > abreast ? threads / abreast : 1;
+    if (sf_folder_own(b->runner->folder, err) != SF_OK)
         return err->status;
-    if (read_result(at.results, result, err) != SF_OK)
+    if (pending == 1)
+        return simulate(b, 0, err);
+    sf_error *failure = sf_alloc(err, (unsigned long)pending, sizeof *failure, "failures");
+    if (failure && sf_process_pool(pending, jobs, simulate, b, failure, err) == SF_OK)
+        decide(pending, failure, err);
+    free(failure);
+    return err->status;
+}
+
+static sf_status take_result(sf_runner *runner, const request *r, sf_runner_result *result, sf_error *err) {
+    if (read_result(r->at.results, result, err) != SF_OK)
         return err->status;
-    result->reused = reused;
-    *(reused ? &runner->reused : &runner->simulated) += 1;
+    result->reused = r->reused;
+    *(r->reused ? &runner->reused : &runner->simulated) += 1;
     if (runner->log) {
         fprintf(runner->log, "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s\n",
-                drop->label, result->v0, result->a_max_g, result->hic, result->max_local_strain,
-                reused ? "  (was there)" : "");
+                r->drop->label, result->v0, result->a_max_g, result->hic, result->max_local_strain,
+                result->reused ? "  (was there)" : "");
         fflush(runner->log);
     }
     return SF_OK;
+}
+
+sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
+                              sf_runner_result *result, sf_error *err) {
+    unsigned long n = (unsigned long)count;
+    batch b = {.runner = runner,
+               .request = sf_alloc(err, n, sizeof *b.request, "drops"),
+               .pending = sf_alloc(err, n, sizeof *b.pending, "drops")};
+    memset(result, 0, (size_t)count * sizeof *result);
+    for (int k = 0; k < count && err->status == SF_OK; k++)
+        prepare(runner, &drop[k], &b.request[k], err);
+    if (err->status == SF_OK && sf_process_stopped())
+        sf_run_folder_interrupted(err);
+    if (err->status == SF_OK)
+        simulate_pending(&b, list_pending(&b, count), err);
+    for (int k = 0; k < count && err->status == SF_OK; k++)
+        take_result(runner, &b.request[k], &result[k], err);
+    free(b.request);
+    free(b.pending);
+    return err->status;
+}
+
+sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
+                        sf_error *err) {
+    return sf_runner_run_batch(runner, 1, drop, result, err);
 }
 
 void sf_runner_result_free(sf_runner_result *result) {

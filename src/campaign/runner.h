@@ -16,7 +16,8 @@
 
 typedef struct sf_runner {
     const char *folder; /* holds the drops' folders; made if need be; borrowed */
-    int threads;        /* of softfall-solve */
+    int threads;        /* of softfall-solve, together */
+    int jobs;           /* drops of a batch that run side by side; 0: as many as threads */
     FILE *log;          /* a line for each drop; borrowed; NULL: silent */
     int64_t simulated;  /* drops so far, out */
     int64_t reused;     /* drops whose results were there, out */
@@ -58,6 +59,12 @@ typedef struct sf_runner_result {
  * that never touched the pad; SF_INTERRUPTED when a program was interrupted. */
 sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
                         sf_error *err);
+/* Several drops, side by side: the threads are shared among those that must be simulated, the bits are the
+ * same. A finished drop is kept whatever happens to the others; a drop that is in the batch twice is
+ * simulated once. result [count]: release each with sf_runner_result_free, also on failure. Errors: of the
+ * first drop that failed, other than numerically if there is one. */
+sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
+                              sf_runner_result *result, sf_error *err);
 void sf_runner_result_free(sf_runner_result *result);
 
 #endif

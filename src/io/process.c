@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -30,12 +31,22 @@ sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *e
     return SF_OK;
 }
 
-static volatile sig_atomic_t stopped, running; /* running: process id of the stoppable program, 0 = none */
+enum { MOST_JOBS = 64 };
+static volatile sig_atomic_t stopped;
+static volatile sig_atomic_t running[MOST_JOBS]; /* process ids of stoppable programs or copies; 0: none */
 
 static void pass_on(int signal_number) {
     stopped = 1;
-    if (running > 0)
-        kill((pid_t)running, signal_number);
+    for (int k = 0; k < MOST_JOBS; k++)
+        if (running[k] > 0)
+            kill((pid_t)running[k], signal_number);
+}
+
+/* Signals go to the child from now on; also one that came before it was known. */
+static void watch(int slot, pid_t child) {
+    running[slot] = child;
+    if (stopped)
+        kill(child, SIGTERM);
 }
 
 void sf_process_handle_signals(void) {
@@ -83,12 +94,106 @@ int sf_process_run(const sf_process *p, int *exit_code) {
     posix_spawn_file_actions_destroy(&actions);
     if (result != 0)
         return result;
-    if (p->stoppable) {
-        running = child;
-        if (stopped) /* the signal came before the child was known */
-            kill(child, SIGTERM);
-    }
+    if (p->stoppable)
+        watch(0, child);
     result = await(child, exit_code);
-    running = 0;
+    running[0] = 0;
     return result;
+}
+
+/* ---- copies of this process ---- */
+
+/* One at work. */
+typedef struct job {
+    pid_t child; /* 0: none */
+    int index, pipe;
+} job;
+
+/* In the copy: the work, its sentence through the pipe, and the end without what this process would do at its
+ * own. */
+static _Noreturn void work_in_copy(pid_t parent, int pipe, sf_process_work work, void *context, int index) {
+    sf_error err = SF_ERROR_INIT;
+    memset((void *)running, 0, sizeof running); /* the children of the parent */
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() == parent)
+        work(context, index, &err);
+    else
+        SF_FAIL(&err, SF_ERR_IO, "its program has ended");
+    size_t length = strlen(err.text);
+    bool told = length == 0 || write(pipe, err.text, length) == (ssize_t)length;
+    _exit(told ? (int)err.status : SF_ERR_IO);
+}
+
+static sf_status begin_job(job *j, int slot, int index, sf_process_work work, void *context, sf_error *err) {
+    int ends[2];
+    pid_t self = getpid();
+    if (pipe2(ends, O_CLOEXEC) != 0)
+        return SF_FAIL(err, SF_ERR_IO, "no pipe to a further process: %s", strerror(errno));
+    fflush(NULL); /* or the copy would have our unwritten output too */
+    pid_t child = fork();
+    if (child == 0) {
+        close(ends[0]);
+        work_in_copy(self, ends[1], work, context, index);
+    }
+    close(ends[1]);
+    if (child < 0) {
+        close(ends[0]);
+        return SF_FAIL(err, SF_ERR_IO, "no further process: %s", strerror(errno));
+    }
+    *j = (job){child, index, ends[0]};
+    watch(slot, child);
+    return SF_OK;
+}
+
+/* The failure of a copy that has ended: its status and its sentence. */
+static void end_job(job *j, int status, sf_error *result) {
+    char text[sizeof result->text] = "";
+    size_t length = 0;
+    ssize_t got;
+    while ((got = read(j->pipe, text + length, sizeof text - 1 - length)) > 0)
+        length += (size_t)got;
+    close(j->pipe);
+    if (WIFSIGNALED(status))
+        SF_FAIL(result, sf_process_stopped() ? SF_INTERRUPTED : SF_ERR_LIBRARY,
+                "a process of the batch was ended by signal %d", WTERMSIG(status));
+    else if (WEXITSTATUS(status) != 0)
+        SF_FAIL(result, (sf_status)WEXITSTATUS(status), "%s", *text ? text : "it said nothing");
+    *j = (job){0};
+}
+
+/* Waits for one of the jobs to end. */
+static sf_status await_job(job *jobs, int count, sf_error *result, sf_error *err) {
+    int status = 0;
+    pid_t child;
+    while ((child = waitpid(-1, &status, 0)) < 0 && errno == EINTR)
+        ;
+    for (int k = 0; k < count; k++)
+        if (child > 0 && jobs[k].child == child) {
+            running[k] = 0;
+            end_job(&jobs[k], status, &result[jobs[k].index]);
+        }
+    return child > 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "a process of a batch is lost: %s", strerror(errno));
+}
+
+sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
+                          sf_error *err) {
+    job at[MOST_JOBS] = {{0}};
+    int next = 0, busy = 0;
+    jobs = jobs < 1 ? 1 : jobs > MOST_JOBS ? MOST_JOBS : jobs;
+    for (int k = 0; k < count; k++)
+        result[k] = (sf_error)SF_ERROR_INIT;
+    do {
+        busy = 0;
+        for (int k = 0; k < jobs; k++) {
+            bool more = next < count && !stopped && err->status == SF_OK;
+            if (at[k].child == 0 && more && begin_job(&at[k], k, next, work, context, err) == SF_OK)
+                next++;
+            busy += at[k].child != 0;
+        }
+        if (busy > 0 && await_job(at, jobs, result, err) != SF_OK)
+            return err->status;
+    } while (busy > 0);
+    for (int k = next; k < count; k++)
+        SF_FAIL(&result[k], SF_INTERRUPTED, "interrupted before it began");
+    return err->status;
 }

@@ -29,4 +29,15 @@ void sf_process_handle_signals(void);
 /* True once such a signal has come. */
 bool sf_process_stopped(void);
 
+/* Work that sf_process_pool has done in a process of its own. */
+typedef sf_status (*sf_process_work)(void *context, int index, sf_error *err);
+
+/* Does `work` for every index below `count`, `jobs` at a time, each in a copy of this process that ends with
+ * it: what it changes in memory is lost, its failure comes back in result[index] (the source line apart).
+ * Signals are passed on to the copies and by these to their stoppable programs; after a signal no more is
+ * begun (SF_INTERRUPTED). A copy ends when this process does. All are waited for. `err`: a copy cannot be
+ * made. */
+sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
+                          sf_error *err);
+
 #endif

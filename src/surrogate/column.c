@@ -79,7 +79,7 @@ sf_status sf_columns_build(const sf_results *r, sf_columns *out, sf_error *err) 
 /* ---- the drop ---- */
 
 /* Time steps (s) and how far a step may turn the oscillation of the missile on the foam (rad). */
-static const double STEP = 100e-6, FIRST_STEP = 10e-6, LEAST_STEP = 1e-7, LONGEST = 0.2, ANGLE = 0.05;
+static const double STEP = 100e-6, FIRST_STEP = 10e-6, LEAST_STEP = 1e-7, LONGEST = 0.2, ANGLE = 0.04;
 static const double GROWTH = 1.5; /* of a step over the last one */
 
 /* A missile on its way. */
@@ -87,7 +87,6 @@ typedef struct flight {
     const sf_columns *columns;
     const sf_material_law *law;
     double time, depth, speed, force; /* s, m, m s-1 downwards, N */
-    double before;                    /* N, force one step ago */
     double step;                      /* s, the last one */
     double stiffness;                 /* N m-1, along it */
     sf_uniaxial point[SF_COLUMNS];
@@ -129,7 +128,6 @@ static bool step(flight *f, double dt) {
     f->time += dt;
     f->depth = depth;
     f->speed += 0.5 * dt * (a + SF_STANDARD_GRAVITY - after / mass);
-    f->before = f->force;
     f->force = after;
     f->step = dt;
     return true;
@@ -147,12 +145,25 @@ static sf_status advance(flight *f, sf_error *err) {
     return SF_OK;
 }
 
-/* How long ago contact ended, s: where the force, or the depth, came to nothing within the last step. */
-static double since_contact(const flight *f) {
+static bool has_left(const flight *f) {
+    return f->speed < 0 && f->force == 0;
+}
+
+/* The end of contact (s) within the step that `before` has not made yet, by ever smaller steps; it has made
+ * them afterwards. */
+static double end_of_contact(flight *f, double dt) {
+    enum { LEVELS = 2, PARTS_OF_STEP = 10 };
+    for (int level = 0; level < LEVELS; level++) {
+        flight last = *f;
+        dt /= PARTS_OF_STEP;
+        do {
+            last = *f;
+        } while (step(f, dt) && !has_left(f));
+        if (level < LEVELS - 1)
+            *f = last;
+    }
     double above = f->columns->gap[0] - f->depth;
-    if (above >= 0)
-        return fmin(f->step, above / -f->speed);
-    return 0.5 * f->step;
+    return f->time - (above > 0 ? fmin(dt, above / -f->speed) : 0.5 * dt);
 }
 
 /* Room for one more point. */
@@ -178,18 +189,22 @@ static sf_status put_point(const flight *f, int64_t *room, sf_series *curve, sf_
  * of contact; else NaN. */
 static sf_status fall(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
                       double *rebound, double *contact, sf_error *err) {
-    flight f = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP};
+    flight f = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP}, before;
     int64_t room = 512;
     *rebound = *contact = NAN;
     if (sf_series_create(room, curve, err) != SF_OK)
         return err->status;
     curve->count = 0;
-    while (put_point(&f, &room, curve, err) == SF_OK && isnan(*rebound) && f.time < LONGEST &&
-           advance(&f, err) == SF_OK)
-        if (f.speed < 0 && f.force == 0) {
-            *rebound = -f.speed;
-            *contact = f.time - since_contact(&f);
+    while (put_point(&f, &room, curve, err) == SF_OK && !has_left(&f) && f.time < LONGEST) {
+        if (f.speed < 0)
+            before = f;
+        if (advance(&f, err) != SF_OK)
+            break;
+        if (has_left(&f)) {
+            *contact = end_of_contact(&before, f.step);
+            *rebound = -before.speed;
         }
+    }
     if (err->status != SF_OK)
         sf_series_free(curve);
     return err->status;
@@ -206,14 +221,58 @@ sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law,
 static const double FREE_FLIGHT = 5e-3; /* s, before contact, as softfall-post puts it there */
 static const double SAMPLING = 20e3;    /* Hz: the columns have no details that need more */
 
+/* Slope at a point by the parabola through its neighbours. */
+static double slope_at(const sf_series *c, int64_t i) {
+    const double *t = c->time, *v = c->value;
+    int64_t last = c->count - 1;
+    if (i == 0 || i == last)
+        return (v[i + (i == 0)] - v[i - (i != 0)]) / (t[i + (i == 0)] - t[i - (i != 0)]);
+    double before = t[i] - t[i - 1], after = t[i + 1] - t[i], left = (v[i] - v[i - 1]) / before,
+           right = (v[i + 1] - v[i]) / after;
+    return (left * after + right * before) / (before + after);
+}
+
+/* Between point i and the next one by the cubic of their slopes: figures then change smoothly with the foam's
+ * parameters, wherever the steps fall. */
+static double cubic_at(const sf_series *c, int64_t i, double time) {
+    double h = c->time[i + 1] - c->time[i], x = (time - c->time[i]) / h, y = 1 - x;
+    return c->value[i] * y * y * (1 + 2 * x) + c->value[i + 1] * x * x * (1 + 2 * y) +
+           h * x * y * (slope_at(c, i) * y - slope_at(c, i + 1) * x);
+}
+
+/* Uniform samples from free flight to the curve's end. */
+static sf_status sample(const sf_series *curve, sf_series *uniform, sf_error *err) {
+    int64_t before = (int64_t)(FREE_FLIGHT * SAMPLING), i = 0,
+            count = before + 1 + (int64_t)(curve->time[curve->count - 1] * SAMPLING);
+    if (sf_series_create(count, uniform, err) != SF_OK)
+        return err->status;
+    for (int64_t k = 0; k < count; k++) {
+        double time = uniform->time[k] = (double)(k - before) / SAMPLING;
+        while (i < curve->count - 2 && curve->time[i + 1] < time)
+            i++;
+        uniform->value[k] = time > 0 ? cubic_at(curve, i, time) : 0;
+    }
+    return SF_OK;
+}
+
 static sf_status filter(const sf_series *curve, sf_series *filtered, sf_error *err) {
-    sf_series before = {0}, uniform = {0};
-    if (sf_signal_lead_in(curve, FREE_FLIGHT, 0, &before, err) == SF_OK &&
-        sf_signal_resample(&before, SAMPLING, &uniform, err) == SF_OK)
+    sf_series uniform = {0};
+    if (sample(curve, &uniform, err) == SF_OK)
         sf_signal_filter_cfc(&uniform, 1000, filtered, err);
-    sf_series_free(&before);
     sf_series_free(&uniform);
     return err->status;
+}
+
+/* Top of the parabola through the largest sample and its neighbours. */
+static double peak_of(const sf_series *c) {
+    int64_t k = 0;
+    for (int64_t i = 1; i < c->count; i++)
+        k = c->value[i] > c->value[k] ? i : k;
+    if (k == 0 || k == c->count - 1)
+        return c->value[k];
+    double bend = c->value[k - 1] - 2 * c->value[k] + c->value[k + 1],
+           rise = 0.5 * (c->value[k + 1] - c->value[k - 1]);
+    return bend < 0 ? c->value[k] - 0.5 * rise * rise / bend : c->value[k];
 }
 
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law, sf_columns_figures *out,
@@ -223,10 +282,11 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
     double rebound, contact;
     if (fall(columns, law, &curve, &rebound, &contact, err) == SF_OK && filter(&curve, &read, err) == SF_OK &&
         sf_pulse_hic(&read, &hic, err) == SF_OK) {
-        *out = (sf_columns_figures){
-            .hic = hic.value, .hic_window = hic.t2 - hic.t1, .v_rebound = rebound, .contact_time = contact};
-        for (int64_t k = 0; k < read.count; k++)
-            out->a_max_g = fmax(out->a_max_g, read.value[k]);
+        *out = (sf_columns_figures){.a_max_g = peak_of(&read),
+                                    .hic = hic.value,
+                                    .hic_window = hic.t2 - hic.t1,
+                                    .v_rebound = rebound,
+                                    .contact_time = contact};
     }
     sf_series_free(&curve);
     if (err->status == SF_OK && filtered)

@@ -16,7 +16,7 @@
 typedef struct options {
     const char *input, *directory, *command;
     bool force;
-    int threads;
+    int threads, jobs;
 } options;
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
@@ -32,6 +32,10 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     case 't':
         if (sf_program_read_threads(arg, &o->threads, &err) != SF_OK)
             argp_error(state, "%s", err.text);
+        return 0;
+    case 'j':
+        if (sf_program_read_threads(arg, &o->jobs, &err) != SF_OK)
+            argp_error(state, "--jobs takes a number from 1 on, as --threads does, not \"%s\"", arg);
         return 0;
     case ARGP_KEY_ARG:
         if (o->input)
@@ -89,7 +93,7 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_fi
     if (sf_staging_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
         make_runs(o->directory, runs, err) != SF_OK)
         return err->status;
-    sf_runner runner = {.folder = runs, .threads = o->threads, .log = stdout};
+    sf_runner runner = {.folder = runs, .threads = o->threads, .jobs = o->jobs, .log = stdout};
     snprintf(columns, sizeof columns, "%s/columns.bin", runs);
     sf_fit_memory_open(columns, memory);
     *fit = (sf_drop_fit){.input = in, .runner = &runner, .folder = runs, .log = stdout, .memory = memory};
@@ -119,7 +123,8 @@ int sf_fit_drop_main(int argc, char **argv) {
         {"output", 'o', "DIR", 0,
          "write everything there (required); drops that are there already are used again", 0},
         {"force", 'f', 0, 0, "replace the results of an earlier fit in DIR", 0},
-        {"threads", 't', "N", 0, "threads of a simulation (default: every core)", 0},
+        {"threads", 't', "N", 0, "threads of the simulations together (default: every core)", 0},
+        {"jobs", 'j', "N", 0, "drops that run side by side (default: as many as threads)", 0},
         {0},
     };
     static const struct argp parser = {.options = known,

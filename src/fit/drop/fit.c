@@ -194,36 +194,47 @@ static sf_status find_columns(const char *path, sf_columns *columns, sf_error *e
     return err->status;
 }
 
-static sf_status simulate_drop(sf_drop_fit *fit, int d, const char *material, double *y, sf_error *err) {
+/* Responses of a simulated drop; takes its curve. */
+static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, double *y, sf_error *err) {
     const sf_fit_drop *drop = &fit->input->drop[d];
-    const sf_runner_drop request = {.label = drop->name, .case_path = drop->case_path, .material = material};
-    sf_runner_result result;
-    if (sf_runner_run(fit->runner, &request, &result, err) != SF_OK)
-        return err->status;
-    if (result.grade == SF_GRADE_DO_NOT_USE && !drop->predicted) {
-        SF_FAIL(err, SF_ERR_NUMERIC, "the fit does not go through the drop %s: %.800s", drop->name,
-                result.verdict);
-        sf_runner_result_free(&result);
-        return err->status;
-    }
+    if (result->grade == SF_GRADE_DO_NOT_USE && !drop->predicted)
+        return SF_FAIL(err, SF_ERR_NUMERIC, "the fit does not go through the drop %s: %.800s", drop->name,
+                       result->verdict);
     sf_fit_simulated *last = &fit->simulated[d];
     if (fit->columns[d].count == 0)
-        find_columns(result.path, &fit->columns[d], err);
-    const sf_columns_figures figures = {.a_max_g = result.a_max_g,
-                                        .hic = result.hic,
-                                        .hic_window = result.hic_window,
-                                        .v_rebound = result.v_rebound,
-                                        .contact_time = result.contact_time};
-    if (respond(drop, &figures, &result.curve, &y[fit->row[d]], err) == SF_OK)
+        find_columns(result->path, &fit->columns[d], err);
+    const sf_columns_figures figures = {.a_max_g = result->a_max_g,
+                                        .hic = result->hic,
+                                        .hic_window = result->hic_window,
+                                        .v_rebound = result->v_rebound,
+                                        .contact_time = result->contact_time};
+    if (respond(drop, &figures, &result->curve, &y[fit->row[d]], err) == SF_OK)
         check_values(drop, &y[fit->row[d]], "its simulation ends", "raise solver.end_time of its case", err);
     sf_series_free(&last->curve);
-    *last = (sf_fit_simulated){.max_local_strain = result.max_local_strain,
-                               .energy_error = result.energy_error,
-                               .grade = result.grade,
-                               .curve = result.curve};
-    snprintf(last->verdict, sizeof last->verdict, "%s", result.verdict);
-    result.curve = (sf_series){0};
-    sf_runner_result_free(&result);
+    *last = (sf_fit_simulated){.max_local_strain = result->max_local_strain,
+                               .energy_error = result->energy_error,
+                               .grade = result->grade,
+                               .curve = result->curve};
+    snprintf(last->verdict, sizeof last->verdict, "%s", result->verdict);
+    result->curve = (sf_series){0};
+    return err->status;
+}
+
+/* Drops `first` to `last` - 1 side by side with a material file. */
+static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char *material, double *y,
+                               sf_error *err) {
+    sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
+    sf_runner_result result[SF_FIT_MAX_DROPS];
+    for (int d = first; d < last; d++)
+        request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
+                                              .case_path = fit->input->drop[d].case_path,
+                                              .material = material};
+    sf_runner_run_batch(fit->runner, last - first, request, result, err);
+    for (int d = first; d < last; d++) {
+        if (err->status == SF_OK)
+            take_drop(fit, d, &result[d - first], y, err);
+        sf_runner_result_free(&result[d - first]);
+    }
     return err->status;
 }
 
@@ -240,8 +251,8 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     const sf_material material = sf_foam_material(&card);
     sf_material_write(fit->folder, name, &material, &text, err);
     sf_foam_card_free(&card);
-    for (int d = first; d < last && err->status == SF_OK; d++)
-        simulate_drop(fit, d, path, y, err);
+    if (err->status == SF_OK && last > first)
+        simulate_with(fit, first, last, path, y, err);
     return err->status;
 }
 
