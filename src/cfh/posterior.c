@@ -30,12 +30,12 @@ static bool draw_is_there(const char *folder, int number, sf_error *err) {
 /* The draws from 1 on, without a gap. */
 static sf_status count_draws(const char *folder, int *count, sf_error *err) {
     int number = 1;
-    while (number <= SF_CFH_MOST_DRAWS + 1 && draw_is_there(folder, number, err))
+    while (number <= SF_CFH_MOST_DRAWS && draw_is_there(folder, number, err))
         number++;
     *count = number - 1;
     if (err->status != SF_OK)
         return err->status;
-    if (*count > SF_CFH_MOST_DRAWS)
+    if (*count == SF_CFH_MOST_DRAWS && draw_is_there(folder, SF_CFH_MOST_DRAWS + 1, err))
         return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: more than %d draws", folder, SF_CFH_MOST_DRAWS);
     for (number = *count + 2; number <= SF_CFH_MOST_DRAWS; number++)
         if (draw_is_there(folder, number, err))

@@ -300,10 +300,9 @@ void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {
 
 void sf_cfh_check_compare(const sf_cfh_spread *s, sf_cfh_check *check) {
     double low = check->height * exp(-STEP), high = check->height * exp(STEP);
-    double slope =
-        (value_at(s, check->draw, check->first, high) - value_at(s, check->draw, check->first, low)) /
-        (2 * STEP);
-    check->shift = -log(check->simulated[check->first] / check->columns[check->first]) / slope;
+    int c = (int)check->first;
+    double slope = (value_at(s, check->draw, c, high) - value_at(s, check->draw, c, low)) / (2 * STEP);
+    check->shift = -log(check->simulated[c] / check->columns[c]) / slope;
 }
 
 static void find_columns_scatter(sf_cfh_spread *s) {
