@@ -6,7 +6,6 @@
 
 #include "case/case.h"
 #include "cfh/spread_report.h"
-#include "post/hic.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <omp.h>
@@ -19,7 +18,6 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "extreme.h"
 #include "post_check.h"
 
 enum { DRAWS = 41, POINTS = 6 };
@@ -64,18 +62,13 @@ static sf_cfh_draws make_draws(int count, double scatter) {
 static void drop(const sf_cfh_pad *pad, const sf_material_law *law, double height,
                  double value[SF_CFH_CRITERIA]) {
     sf_columns columns = pad->columns;
-    sf_series curve;
-    sf_hic hic;
+    sf_columns_figures figures;
     sf_error err = SF_ERROR_INIT;
     columns.speed = sf_cfh_speed(height);
-    if (sf_columns_drop(&columns, law, &curve, &err) != SF_OK ||
-        sf_hic_evaluate(&curve, INFINITY, &hic, &err) != SF_OK)
+    if (sf_columns_respond(&columns, law, &figures, NULL, &err) != SF_OK)
         fail_msg("%s", err.text);
-    value[SF_CFH_A_MAX] = 0;
-    for (int64_t k = 0; k < curve.count; k++)
-        value[SF_CFH_A_MAX] = larger(value[SF_CFH_A_MAX], curve.value[k]);
-    value[SF_CFH_HIC] = hic.value;
-    sf_series_free(&curve);
+    value[SF_CFH_A_MAX] = figures.a_max_g;
+    value[SF_CFH_HIC] = figures.hic;
 }
 
 /* What the solver would give, of any foam: the columns times a power of the height. */

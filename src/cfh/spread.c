@@ -3,7 +3,6 @@
 
 #include "campaign/run_folder.h"
 #include "io/process.h"
-#include "post/hic.h"
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
@@ -23,21 +22,15 @@ enum { SEED = 1 };
 static sf_status drop_columns(const sf_columns *pad, const sf_material_law *law, double height, double *value,
                               sf_error *err) {
     sf_columns columns = *pad;
-    sf_series curve = {0};
-    sf_hic hic;
+    sf_columns_figures figures;
     columns.speed = sf_cfh_speed(height);
-    if (sf_columns_drop(&columns, law, &curve, err) == SF_OK &&
-        sf_hic_evaluate(&curve, INFINITY, &hic, err) == SF_OK) {
-        double peak = 0;
-        for (int64_t k = 0; k < curve.count; k++)
-            peak = fmax(peak, curve.value[k]);
-        value[SF_CFH_A_MAX] = log(peak);
-        value[SF_CFH_HIC] = log(hic.value);
-        if (!isfinite(value[SF_CFH_A_MAX]) || !isfinite(value[SF_CFH_HIC]))
-            SF_FAIL(err, SF_ERR_NUMERIC, "the columns do not stop the missile");
-    }
-    sf_series_free(&curve);
-    return err->status;
+    if (sf_columns_respond(&columns, law, &figures, NULL, err) != SF_OK)
+        return err->status;
+    value[SF_CFH_A_MAX] = log(figures.a_max_g);
+    value[SF_CFH_HIC] = log(figures.hic);
+    if (!isfinite(value[SF_CFH_A_MAX]) || !isfinite(value[SF_CFH_HIC]))
+        return SF_FAIL(err, SF_ERR_NUMERIC, "the columns do not stop the missile");
+    return SF_OK;
 }
 
 /* value [SF_CFH_CRITERIA][SF_CFH_GRID]; `reach`: heights before the collapse. */
