@@ -3,7 +3,7 @@
 # Fits every form of the loading curve to every foam of examples/data that was pressed, into out/foams, and prints the
 # tables of docs/identification.md: loading, loops, rates.
 #
-#     tools/foams_table.sh             about a minute
+#     tools/foams_table.sh             about a minute of one core
 #     tools/foams_table.sh --docs      the same, and writes the tables into docs/identification.md
 #
 # The programs are those in build/bin, or in $SF_BIN_DIR.
