@@ -85,9 +85,8 @@ double sf_foam_overstress(const sf_foam *foam, double strain, double rate, doubl
 /* Adds the rate overstress of lane l to the principal second Piola-Kirchhoff stress; returns a bound on its
  * tangent: slopes, the shear moduli between directions, and what a change of the filtered rate does to all
  * three. */
-static double add_overstress(const sf_foam *foam, double dt, sf_law_batch *b, int l, sf_foam_rate *rate) {
+static double add_overstress(const sf_foam *foam, const sf_law_batch *b, int l, sf_foam_rate *rate) {
     double bound = 0, rates = 0, extra[3];
-    sf_foam_point_filter(&foam->options, dt, b, rate, l);
     for (int i = 0; i < 3; i++) {
         double slope, rate_slope;
         extra[i] =
@@ -107,8 +106,10 @@ static double add_overstress(const sf_foam *foam, double dt, sf_law_batch *b, in
 static void overstress(const void *numbers, double dt, sf_law_batch *b, const sf_foam_loading *law,
                        sf_foam_rate *rate) {
     (void)law;
+    const sf_foam *foam = numbers;
+    sf_foam_point_filter(&foam->options, dt, b, rate);
     for (int l = 0; l < SF_LANES; l++)
-        rate->extra[l] = add_overstress(numbers, dt, b, l, rate);
+        rate->extra[l] = add_overstress(foam, b, l, rate);
 }
 
 void sf_foam_update(const sf_foam *foam, double dt, sf_law_batch *b) {

@@ -2,6 +2,7 @@
 #include "solver/material/foam_point.h"
 
 #include "solver/material/foam_tangent.h"
+#include "solver/material/lane_math.h"
 #include <string.h>
 
 enum { XX, YY, ZZ, XY, YZ, XZ };
@@ -71,44 +72,56 @@ static void damp_viscosity(const sf_foam_options *foam, const sf_law_batch *b, d
         eta[l] = damp * b->length[l] * sqrt(density * b->stiffness[l]);
 }
 
-double sf_foam_point_green_rate(const sf_foam_rate *rate, int i, int l) {
-    double quadratic = 0;
-    for (int p = 0; p < 3; p++)
-        for (int q = 0; q < 3; q++)
-            quadratic += rate->v[3 * p + i][l] * rate->rate_of_e[SYM[p][q]][l] * rate->v[3 * q + i][l];
-    return quadratic;
+static void green_rates(double v[9][SF_LANES], double rate_of_e[6][SF_LANES], double out[3][SF_LANES]) {
+    memset(out, 0, 3 * sizeof out[0]);
+    for (int i = 0; i < 3; i++)
+        for (int p = 0; p < 3; p++)
+            for (int q = 0; q < 3; q++) {
+                const double *left = v[3 * p + i], *rate = rate_of_e[SYM[p][q]], *right = v[3 * q + i];
+#pragma omp simd
+                for (int l = 0; l < SF_LANES; l++)
+                    out[i][l] += left[l] * rate[l] * right[l];
+            }
 }
 
-void sf_foam_point_filter(const sf_foam_options *foam, double dt, sf_law_batch *b, const sf_foam_rate *rate,
-                          int l) {
-    double fastest = 0, shortest = INFINITY;
-    for (int i = 0; i < 3; i++) {
-        double quadratic = sf_foam_point_green_rate(rate, i, l);
-        if (b->stretch[i][l] < shortest) {
-            shortest = b->stretch[i][l];
-            fastest = fmax(0, -quadratic / shortest);
+SF_KERNEL void sf_foam_point_filter(const sf_foam_options *foam, double dt, sf_law_batch *b,
+                                    const sf_foam_rate *rate) {
+    double *restrict filtered = b->history[SF_FOAM_RATE], weight = -expm1(-dt / foam->filter_time);
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double shortest = b->stretch[0][l], green = rate->green[0][l];
+        for (int i = 1; i < 3; i++) {
+            bool shorter = b->stretch[i][l] < shortest;
+            green = shorter ? rate->green[i][l] : green;
+            shortest = shorter ? b->stretch[i][l] : shortest;
         }
+        filtered[l] += weight * (sf_larger(-green / shortest, 0) - filtered[l]);
     }
-    b->history[SF_FOAM_RATE][l] += -expm1(-dt / foam->filter_time) * (fastest - b->history[SF_FOAM_RATE][l]);
 }
 
 /* The rate factor: loading stresses times 1 + c log10(rate / reference). Its tangent is that of loading times
  * the same, and what a change of the filtered rate does to all three. */
-static void rate_factor(const sf_foam_options *foam, bool compression, double dt, sf_law_batch *b,
-                        const sf_foam_loading *law, sf_foam_rate *rate) {
-    for (int l = 0; l < SF_LANES; l++) {
-        sf_foam_point_filter(foam, dt, b, rate, l);
-        double now = b->history[SF_FOAM_RATE][l], sum = 0;
-        if (!(now > foam->rate_reference))
-            continue;
-        double gain = foam->rate_factor * log10(now / foam->rate_reference);
-        for (int i = 0; i < 3; i++) {
-            double t = compression && law->t[i][l] > 0 ? 0 : law->t[i][l];
-            rate->part[i][l] += gain * t / b->stretch[i][l];
-            sum += t * t;
+static SF_KERNEL void rate_factor(const sf_foam_options *foam, bool compression, double dt, sf_law_batch *b,
+                                  const sf_foam_loading *law, sf_foam_rate *rate) {
+    double decade = foam->rate_factor / M_LN10, reference = foam->rate_reference, time = foam->filter_time;
+    double gain[SF_LANES], sum[SF_LANES] = {0};
+    sf_foam_point_filter(foam, dt, b, rate);
+    const double *restrict now = b->history[SF_FOAM_RATE];
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        gain[l] = decade * sf_lane_log(sf_larger(now[l] / reference, 1));
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double t = law->t[i][l], acting = compression & (t > 0) ? 0 : t;
+            rate->part[i][l] += gain[l] * acting / b->stretch[i][l];
+            sum[l] += acting * acting;
         }
-        rate->factor[l] += gain;
-        rate->extra[l] += foam->rate_factor / (M_LN10 * now) * sqrt(sum) / foam->filter_time;
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double rise = decade / (sf_larger(now[l], reference) * time) * sqrt(sum[l]);
+        rate->factor[l] += gain[l];
+        rate->extra[l] += gain[l] > 0 ? rise : 0;
     }
 }
 
@@ -121,9 +134,10 @@ static void rate_stress(const sf_foam_options *foam, const sf_foam_kind *kind, d
         kind->overstress(kind->numbers, dt, b, law, rate);
     else
         rate_factor(foam, kind->compression, dt, b, law, rate);
-    for (int l = 0; l < SF_LANES; l++)
-        for (int i = 0; i < 3; i++)
-            b->work[l] += (rate->part[i][l] - before[i][l]) * sf_foam_point_green_rate(rate, i, l) * dt;
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            b->work[l] += (rate->part[i][l] - before[i][l]) * rate->green[i][l] * dt;
 }
 
 /* A of the power iteration, of the bounds so far. */
@@ -166,7 +180,7 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
         rate.factor[l] = b->factor[l];
     }
     if ((kind->overstress || foam->rate_factor > 0) && dt > 0) {
-        memcpy(rate.rate_of_e, rate_of_e, sizeof rate.rate_of_e);
+        green_rates(rate.v, rate_of_e, rate.green);
         rate_stress(foam, kind, dt, b, &law, &rate);
     }
     compose(rate.part, rate.v, s);

@@ -47,11 +47,11 @@ typedef struct sf_foam_loading {
 
 /* The rate overstress of a batch; in and out. */
 typedef struct sf_foam_rate {
-    double part[3][SF_LANES];      /* Pa, principal second Piola-Kirchhoff stress, to which it adds */
-    double factor[SF_LANES];       /* -, on the loading law's tangent; it may raise it */
-    double extra[SF_LANES];        /* Pa, what else it adds to the bounds */
-    double v[9][SF_LANES];         /* in: principal directions, columns */
-    double rate_of_e[6][SF_LANES]; /* in: s-1, of the Green strain */
+    double part[3][SF_LANES];  /* Pa, principal second Piola-Kirchhoff stress, to which it adds */
+    double factor[SF_LANES];   /* -, on the loading law's tangent; it may raise it */
+    double extra[SF_LANES];    /* Pa, what else it adds to the bounds */
+    double v[9][SF_LANES];     /* in: principal directions N, columns */
+    double green[3][SF_LANES]; /* in: s-1, rate of the Green strain N . Ė N */
 } sf_foam_rate;
 
 /* What a law is. */
@@ -69,12 +69,9 @@ typedef struct sf_foam_kind {
 void sf_foam_point_update(const sf_foam_options *options, const sf_foam_kind *kind, double dt,
                           sf_law_batch *batch);
 
-/* For an overstress: advances the filtered rate of lane l, of the most compressed direction (theory eq.
- * 22). */
+/* For an overstress: advances the filtered rate, of the most compressed direction (theory eq. 22). */
 void sf_foam_point_filter(const sf_foam_options *options, double dt, sf_law_batch *batch,
-                          const sf_foam_rate *rate, int l);
-/* N . Ė N of direction i in lane l, s-1. */
-double sf_foam_point_green_rate(const sf_foam_rate *rate, int i, int l);
+                          const sf_foam_rate *rate);
 
 /* The parts of sf_law.uniaxial, `green_rate` (s-1) from sf_foam_green_rate. The factor of hysteresis at this
  * W (J m-3). */
