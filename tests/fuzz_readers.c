@@ -94,7 +94,7 @@ static sf_status read_rig(const char *path, sf_error *err) {
 
 static sf_status read_fit(const char *path, sf_error *err) {
     sf_fit_input input;
-    sf_fit_input_read(path, &input, err);
+    sf_fit_input_read(path, 0, &input, err);
     sf_fit_input_free(&input);
     return err->status;
 }

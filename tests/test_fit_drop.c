@@ -361,6 +361,16 @@ static void bad_input_gets_one_sentence(void **state) {
         const char *text, *sentence;
     } bad[] = {
         {MATERIAL, "drops is missing"},
+        {MATERIAL "forms = ( { rate = \"none\"; } );\n" DROPS("a_max_g = 60.0;"),
+         "forms.[0].curve is missing"},
+        {MATERIAL "curve_form = \"gas\"; forms = ( { curve = \"gas\"; } );\n" DROPS("a_max_g = 60.0;"),
+         "give either forms or curve_form"},
+        {MATERIAL "forms = ( { curve = \"gas\"; } ); posterior = false;\n" DROPS("a_max_g = 60.0;"),
+         "posterior must be true"},
+        {MATERIAL "forms = ( { curve = \"gas\"; rate = \"fast\"; } );\n" DROPS("a_max_g = 60.0;"),
+         "none|factor|maxwell|both"},
+        {MATERIAL "forms = ( { curve = \"gas\"; }, { curve = \"gass\"; } );\n" DROPS("a_max_g = 60.0;"),
+         "curve is \"gass\""},
         {MATERIAL "drops = 3;\n", "drops must be a list"},
         {MATERIAL "drops = ( 3 );\n", "each entry must be a group"},
         {DROPS("a_max_g = 60.0;"), "material is missing"},
@@ -460,7 +470,7 @@ static void measured_curves_are_filtered_like_the_simulated(void **state) {
         sf_fit_input input;
         sf_error err = SF_ERROR_INIT;
         snprintf(text, sizeof text, MATERIAL DROPS("%s"), cases[k].text);
-        sf_fit_input_read(program_write_text(&place, "fit.cfg", text), &input, &err);
+        sf_fit_input_read(program_write_text(&place, "fit.cfg", text), 0, &input, &err);
         const char *sentence = cases[k].sentence;
         if (sentence ? !strstr(err.text, sentence) : err.status != SF_OK)
             fail_msg("%s: %s", cases[k].text, err.text);
@@ -560,11 +570,22 @@ static void hidden_foam_is_found(void **state) {
         assert_true(low < hidden[k] && hidden[k] < high && high < 10 * low);
         at++;
     }
+    assert_non_null(strstr(json.data, "\"criteria_reached\": true"));
     free(json.data);
+    assert_int_equal(program_shell(&place,
+                                   "test \"$(ls out/posterior/*.cfg | wc -l)\" = 200 && test \"$(wc -l < "
+                                   "out/posterior.csv)\" = 201 && cp -r out first")
+                         .code,
+                     0);
+    program_succeed(&place, "pre", "case.cfg --set material=@out/posterior/draw-100.cfg -o m.h5 --force");
     program_result again = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
     assert_true(again.code == 2 && strstr(again.err, "--force"));
-    again = program_succeed(&place, "fit", "drop fit.cfg -o out -t 1 --force");
+    again = program_succeed(&place, "fit", "drop fit.cfg -o out -t 2 --force");
     assert_non_null(strstr(again.out, "\n0 drops simulated"));
+    assert_int_equal(program_shell(&place, "cmp first/posterior.csv out/posterior.csv && cmp "
+                                           "first/posterior/draw-007.csv out/posterior/draw-007.csv")
+                         .code,
+                     0);
     program_succeed(&place, "pre", "case.cfg --set material=@out/material.cfg -o m.h5 --force");
     /* The strains that the drops inform are data of the material, and each drop has its grade. */
     assert_int_equal(program_shell(&place, "grep -q '^informed_strain = 0\\.[2-9]' out/material.cfg").code,

@@ -145,6 +145,7 @@ static void test_banana(void **state) {
     const double start[] = {1, 1}, covariance[] = {0.1, 0, 0, 0.1};
     const sf_target target = {.parameters = 2, .log_density = banana};
     sf_chains_options options = sf_chains_defaults(4);
+    options.most_steps = 12000;
     sf_chains c;
     sf_mixture m;
     sf_evidence e;
@@ -157,8 +158,9 @@ static void test_banana(void **state) {
         mean += c.sample[2 * k + 1] / count;
         square += pow(c.sample[2 * k + 1] - 0.5, 2) / count;
     }
-    assert_close(mean, 0.5, 4 * sqrt(0.51 / c.effective[1]));
-    assert_close(square, 0.51, 0.2); /* heavy tail: fourth moment 60/16 */
+    assert_close(mean, 0.5, 5 * sqrt(0.51 / c.effective[1]));
+    assert_close(square, 0.51,
+                 0.3); /* heavy tail: its standard error is 1.9 over the root of the effective size */
     assert_int_equal(sf_mixture_fit(2, count, c.sample, 5, &m, &err), SF_OK);
     assert_int_equal(sf_evidence_estimate(&target, &m, 4000, 9, &e, &err), SF_OK);
     assert_true(e.trusted);

@@ -3,12 +3,14 @@
 #include "fit/drop/command.h"
 
 #include "fit/command_line.h"
+#include "fit/drop/inference_report.h"
 #include "fit/drop/report.h"
 #include "io/folder.h"
 #include "io/process.h"
 #include <argp.h>
 #include <gsl/gsl_errno.h>
 #include <limits.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -54,15 +56,23 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
 /* "<material>.cfg" and so on, for sf_staging. */
 typedef struct names {
     char card[SF_FIT_NAME_SIZE + 8], curve[SF_FIT_NAME_SIZE + 8];
-    const char *list[9];
+    const char *list[10];
 } names;
+
+/* The models of the file, each with its fit and posterior. */
+typedef struct models {
+    int count;
+    sf_fit_input input[SF_FIT_MAX_MODELS];
+    sf_drop_fit fit[SF_FIT_MAX_MODELS];
+    sf_drop_inference inference[SF_FIT_MAX_MODELS];
+    sf_drop_average average; /* without posterior: of no models */
+} models;
 
 static void name_files(const sf_fit_input *in, names *n) {
     snprintf(n->card, sizeof n->card, "%s.cfg", in->material_name);
     snprintf(n->curve, sizeof n->curve, "%s.csv", in->material_name);
-    const char *const list[] = {n->curve,        n->card,       "fit-curve.csv",
-                                "fit-drops.csv", "fit.gp",      "fit.png",
-                                "fit.json",      "report.html", NULL};
+    const char *const list[] = {n->curve,  n->card,    "fit-curve.csv", "fit-drops.csv", "fit.gp",
+                                "fit.png", "fit.json", "report.html",   "posterior.csv", NULL};
     memcpy(n->list, list, sizeof list);
 }
 
@@ -80,14 +90,103 @@ static void print_curves(const sf_fit_input *in) {
     fflush(stdout);
 }
 
-static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_fit_memory *memory,
-                     sf_staging *output, sf_error *err) {
+static sf_status read_models(const char *path, models *all, sf_error *err) {
+    all->count = 1;
+    for (int m = 0; m < all->count && sf_fit_input_read(path, m, &all->input[m], err) == SF_OK; m++)
+        all->count = all->input[m].model_count;
+    return err->status;
+}
+
+static sf_status fit_model(models *all, int m, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
+    const sf_fit_input *in = &all->input[m];
+    sf_drop_fit *fit = &all->fit[m];
+    const sf_inference_options sampling = sf_inference_defaults(in->seed);
+    char text[96];
+    *fit = (sf_drop_fit){
+        .input = in, .runner = runner, .folder = runner->folder, .log = runner->log, .memory = memory};
+    if (all->count > 1)
+        printf("model %d of %d: %s, %d unknown parameters\n", m + 1, all->count,
+               sf_model_label(in, text, sizeof text), in->unknown_count);
+    if (sf_drop_fit_run(fit, err) != SF_OK || !in->posterior)
+        return err->status;
+    if (sf_drop_infer(fit, &sampling, &all->inference[m], err) == SF_OK)
+        sf_inference_print_chains(stdout, &all->inference[m]);
+    return err->status;
+}
+
+static sf_status fit_models(models *all, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
+    const sf_drop_inference *list[SF_FIT_MAX_MODELS];
+    for (int m = 0; m < all->count && err->status == SF_OK; m++) {
+        list[m] = &all->inference[m];
+        fit_model(all, m, runner, memory, err);
+    }
+    if (err->status == SF_OK && all->input[0].posterior)
+        sf_drop_average_build(all->count, list, all->input[0].seed, &all->average, err);
+    return err->status;
+}
+
+/* ---- DIR/posterior ---- */
+
+static void clear_posterior(const char *folder) {
+    static const char *const ends[] = {"cfg", "csv", "-1.csv", "-2.csv", "-3.csv"};
+    char path[PATH_MAX + 32];
+    for (int k = 1; k <= SF_POSTERIOR_DRAWS; k++)
+        for (size_t e = 0; e < sizeof ends / sizeof *ends; e++) {
+            snprintf(path, sizeof path, "%s/draw-%03d%s%s", folder, k, *ends[e] == '-' ? "" : ".", ends[e]);
+            sf_folder_remove_file(path);
+        }
+}
+
+/* Moves the files to their places. The draws of an earlier run go before, those of this one come after: they
+ * never stand beside another posterior. */
+static sf_status commit(const char *directory, const sf_drop_average *average, sf_staging *output,
+                        sf_error *err) {
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%s/posterior", directory);
+    if (sf_folder_own(folder, err) != SF_OK)
+        return err->status;
+    clear_posterior(folder);
+    if (sf_staging_commit(output, err) == SF_OK && average->models > 0)
+        sf_drop_average_write(average, folder, err);
+    if (average->models == 0)
+        sf_folder_leave(folder);
+    return err->status;
+}
+
+/* ---- the whole ---- */
+
+static sf_status report(const options *o, const models *all, sf_staging *output, char *warning, size_t size,
+                        sf_error *err) {
+    const sf_drop_average *average = all->average.models > 0 ? &all->average : NULL;
+    const sf_drop_fit *best = &all->fit[average ? sf_drop_average_best(average) : 0];
+    if (sf_drop_report_write(best, average, o->input, o->command, output, warning, size, err) != SF_OK ||
+        commit(o->directory, &all->average, output, err) != SF_OK)
+        return err->status;
+    sf_drop_report_print(best, stdout);
+    return average ? sf_inference_print(stdout, average, err) : SF_OK;
+}
+
+static void warn(const models *all, const char *warning) {
+    const sf_sink sink = sf_program_sink("softfall-fit");
+    char text[96];
+    if (*warning)
+        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
+    for (int m = 0; m < all->count; m++)
+        if (!all->fit[m].result.converged)
+            sf_sink_tell(&sink, SF_WARNING, "%s%snot converged after %d iterations",
+                         all->count > 1 ? sf_model_label(&all->input[m], text, sizeof text) : "",
+                         all->count > 1 ? ": " : "", all->fit[m].result.iterations);
+}
+
+static sf_status run(const options *o, models *all, sf_fit_memory *memory, sf_staging *output,
+                     sf_error *err) {
     char runs[PATH_MAX], warning[512] = "";
     names n;
     char columns[PATH_MAX + 16];
     const char *const none[] = {NULL}; /* the names are in the input */
+    const sf_fit_input *in = &all->input[0];
     if (sf_staging_check(o->directory, none, o->force, err) != SF_OK ||
-        sf_fit_input_read(o->input, in, err) != SF_OK)
+        read_models(o->input, all, err) != SF_OK)
         return err->status;
     name_files(in, &n);
     if (sf_staging_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
@@ -96,25 +195,20 @@ static sf_status run(const options *o, sf_fit_input *in, sf_drop_fit *fit, sf_fi
     sf_runner runner = {.folder = runs, .threads = o->threads, .jobs = o->jobs, .log = stdout};
     snprintf(columns, sizeof columns, "%s/columns.bin", runs);
     sf_fit_memory_open(columns, memory);
-    *fit = (sf_drop_fit){.input = in, .runner = &runner, .folder = runs, .log = stdout, .memory = memory};
     printf("softfall-fit drop: %d unknown parameters, %d drops; finished drops are kept in %s\n",
            in->unknown_count, in->drop_count, runs);
     print_curves(in);
-    if (sf_drop_fit_run(fit, err) != SF_OK ||
-        sf_drop_report_write(fit, o->input, o->command, output, warning, sizeof warning, err) != SF_OK ||
-        sf_staging_commit(output, err) != SF_OK)
+    omp_set_num_threads(o->threads);
+    if (fit_models(all, &runner, memory, err) != SF_OK ||
+        report(o, all, output, warning, sizeof warning, err) != SF_OK)
         return err->status;
     if (memory->file >= 0)
         sf_folder_remove_file(columns);
-    sf_drop_report_print(fit, stdout);
-    printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.html, fit.json, fit.png\n",
-           (long long)runner.simulated, (long long)runner.reused, o->directory, in->material_name);
+    printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.html, fit.json, fit.png%s\n",
+           (long long)runner.simulated, (long long)runner.reused, o->directory, in->material_name,
+           all->average.models > 0 ? ", posterior.csv, posterior/" : "");
     fflush(stdout);
-    const sf_sink sink = sf_program_sink("softfall-fit");
-    if (*warning)
-        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
-    if (!fit->result.converged)
-        sf_sink_tell(&sink, SF_WARNING, "not converged after %d iterations", fit->result.iterations);
+    warn(all, warning);
     return SF_OK;
 }
 
@@ -135,8 +229,7 @@ int sf_fit_drop_main(int argc, char **argv) {
     options o = {.threads = (int)sysconf(_SC_NPROCESSORS_ONLN),
                  .command = command ? command : "softfall-fit drop"};
     sf_error err = SF_ERROR_INIT;
-    sf_fit_input input = {0};
-    sf_drop_fit fit = {0};
+    models *all = sf_alloc(&err, 1, sizeof *all, "the models");
     sf_fit_memory memory = {.file = -1};
     sf_staging output = {0};
     static char name[] = "softfall-fit drop";
@@ -144,11 +237,16 @@ int sf_fit_drop_main(int argc, char **argv) {
     gsl_set_error_handler_off(); /* statuses are looked at */
     sf_process_handle_signals();
     argp_parse(&parser, argc, argv, 0, NULL, &o);
-    run(&o, &input, &fit, &memory, &output, &err);
+    if (all)
+        run(&o, all, &memory, &output, &err);
     sf_staging_end(&output);
     sf_fit_memory_close(&memory);
-    sf_drop_fit_free(&fit);
-    sf_fit_input_free(&input);
+    for (int m = 0; all && m < SF_FIT_MAX_MODELS; m++) {
+        sf_drop_inference_free(&all->inference[m]);
+        sf_drop_fit_free(&all->fit[m]);
+        sf_fit_input_free(&all->input[m]);
+    }
+    free(all);
     free(command);
     return sf_error_report(&err, "softfall-fit");
 }

@@ -93,9 +93,8 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
 
 /* ---- surrogate ---- */
 
-/* Drops `first` to `last` - 1 by columns of this foam; `u` has the speeds, NULL: as given. */
-static sf_status columns_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
-                                 const double *u, double *y, sf_error *err) {
+sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
+                              const double *u, double *y, sf_error *err) {
     const sf_material material = sf_foam_material(card);
     sf_material_law law;
     if (sf_material_law_build(&material, &law, err) != SF_OK)
@@ -172,7 +171,7 @@ static sf_status columns_at(const sf_drop_fit *fit, int first, int last, const d
         return SF_OK;
     if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
         return err->status;
-    if (columns_respond(fit, first, last, &card, u, y, err) == SF_OK)
+    if (sf_drop_fit_respond(fit, first, last, &card, u, y, err) == SF_OK)
         sf_fit_memory_add(fit->memory, key, count, &y[fit->row[first]]);
     sf_foam_card_free(&card);
     return err->status;
@@ -386,7 +385,8 @@ static sf_status respond_raised(const sf_drop_fit *fit, int b, double *y, sf_err
         double away = fabs(card.curve_strain[k] - (b + 0.5) * BIN_WIDTH) / BIN_WIDTH;
         card.curve_stress[k] *= 1 + RAISE * fmax(0, 1 - away);
     }
-    if (err->status == SF_OK && columns_respond(fit, 0, fit->measured_drops, &card, NULL, y, err) == SF_OK)
+    if (err->status == SF_OK &&
+        sf_drop_fit_respond(fit, 0, fit->measured_drops, &card, NULL, y, err) == SF_OK)
         sf_fit_memory_add(fit->memory, key, count, y);
     sf_foam_card_free(&card);
     return err->status;

@@ -59,6 +59,11 @@ typedef struct sf_drop_fit {
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err);
 void sf_drop_fit_free(sf_drop_fit *fit);
 
+/* Responses of drops `first` to `last` - 1 by columns of this foam into y [responses]; `u` has the speeds,
+ * NULL: as given. Reads the fit only: for several threads at a time. */
+sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
+                              const double *u, double *y, sf_error *err);
+
 /* The card of scaled parameters u, for every other parameter the start. */
 sf_status sf_drop_fit_card(const sf_fit_input *input, const double *u, sf_foam_card *card, sf_error *err);
 

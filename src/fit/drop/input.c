@@ -195,18 +195,30 @@ static sf_status read_solid(const sf_config *config, const config_setting_t *roo
     return SF_OK;
 }
 
+/* The group that describes the model: an entry of `forms`, or the whole file. */
+static const config_setting_t *model_of(const config_setting_t *root, const sf_fit_input *in) {
+    const config_setting_t *list = config_setting_get_member(root, "forms");
+    return list ? config_setting_get_elem(list, (unsigned)in->model) : root;
+}
+
+static bool starts_solid_fraction(const config_setting_t *holder) {
+    const config_setting_t *start = config_setting_get_member(holder, "start");
+    return start && config_setting_get_member(start, "solid_fraction");
+}
+
 /* gas_solid needs the solid fraction: by density, given, or sought. */
 static sf_status check_solid_fraction(const sf_config *config, const config_setting_t *root,
                                       const sf_fit_input *in, sf_error *err) {
-    const config_setting_t *start = config_setting_get_member(root, "start");
-    bool known = in->form.solid_density > 0 || (start && config_setting_get_member(start, "solid_fraction"));
+    const config_setting_t *model = model_of(root, in);
+    bool known = in->form.solid_density > 0 || starts_solid_fraction(root) || starts_solid_fraction(model);
     for (int k = 0; k < in->unknown_count; k++)
         known = known || in->unknown[k] == SF_PARAMETER_SOLID_FRACTION;
     if (in->form.curve == &sf_form_gas_solid && !known)
-        return sf_config_refuse(
-            config, config_setting_get_member(root, "curve_form"), err,
-            "curve_form = \"gas_solid\" needs solid_density, the density of the solid in the "
-            "cell walls, or solid_fraction as an unknown");
+        return sf_config_refuse(config,
+                                config_setting_get_member(model, model == root ? "curve_form" : "curve"), err,
+                                "%s = \"gas_solid\" needs solid_density, the density of the solid in the "
+                                "cell walls, or solid_fraction as an unknown",
+                                model == root ? "curve_form" : "curve");
     return SF_OK;
 }
 
@@ -214,20 +226,23 @@ static sf_status check_solid_fraction(const sf_config *config, const config_sett
 static sf_status read_material(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                                sf_error *err) {
     const char *form = "gas", *name = "material", *title = "Identified foam";
+    const config_setting_t *model = model_of(root, in);
     char override[4096];
     const char *const overrides[] = {override};
     const sf_sink sink = sf_program_sink("softfall-fit");
     sf_case c;
-    if (sf_config_text(config, root, "curve_form", false, &form, err) != SF_OK ||
+    if (sf_config_text(config, model, model == root ? "curve_form" : "curve", model != root, &form, err) !=
+            SF_OK ||
         sf_config_text(config, root, "name", false, &name, err) != SF_OK ||
         sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
         sf_config_file(config, root, "material", true, &in->material_path, err) != SF_OK)
         return err->status;
     in->form.curve = sf_curve_form_find(form);
     if (!in->form.curve)
-        return sf_config_refuse(config, config_setting_get_member(root, "curve_form"), err,
-                                "curve_form is \"%.80s\": one of %s is expected", form,
-                                sf_curve_form_words());
+        return sf_config_refuse(config,
+                                config_setting_get_member(model, model == root ? "curve_form" : "curve"), err,
+                                "%s is \"%.80s\": one of %s is expected",
+                                model == root ? "curve_form" : "curve", form, sf_curve_form_words());
     if (strpbrk(name, "/\"'\\\n\r") || strncmp(name, "fit", 3) == 0)
         return sf_config_refuse(
             config, config_setting_get_member(root, "name"), err,
@@ -257,9 +272,9 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     return read_solid(config, root, in, err);
 }
 
-static sf_status read_start(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+static sf_status read_start(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
                             sf_error *err) {
-    const config_setting_t *group = config_setting_get_member(root, "start");
+    const config_setting_t *group = config_setting_get_member(holder, "start");
     if (!group)
         return SF_OK;
     if (!config_setting_is_group(group))
@@ -324,40 +339,122 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
     return sf_config_number(config, entry, "prior_sd", false, 1e-3, 10, &in->prior_sd[k], err);
 }
 
+static sf_status read_list(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
+                           bool *given, sf_error *err) {
+    const config_setting_t *list;
+    if (sf_config_list(config, holder, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err) != SF_OK)
+        return err->status;
+    *given = list;
+    for (int k = 0; list && k < config_setting_length(list) && err->status == SF_OK; k++)
+        read_unknown(config, config_setting_get_elem(list, (unsigned)k), in, err);
+    return err->status;
+}
+
+static void add_unknown(sf_fit_input *in, sf_foam_parameter p) {
+    for (int k = 0; k < in->unknown_count; k++)
+        if (in->unknown[k] == p)
+            return;
+    if (!(in->start[p] > 0) || in->unknown_count == SF_FIT_MAX_UNKNOWNS) /* a material without the branch */
+        return;
+    in->unknown[in->unknown_count] = p;
+    in->prior[in->unknown_count] = in->start[p];
+    in->prior_sd[in->unknown_count++] = sf_foam_form_prior_sd(&in->form, p);
+}
+
 /* Without a list: those that are usual for the form. */
+static void add_usual(sf_fit_input *in) {
+    sf_foam_parameter usual[SF_PARAMETER_COUNT];
+    int count = sf_foam_form_usual(&in->form, usual);
+    for (int k = 0; k < count; k++)
+        add_unknown(in, usual[k]);
+}
+
+/* The rate terms of an entry of `forms`: those that it names are unknown, the others are not there. */
+static sf_status read_rate(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+                           sf_error *err) {
+    enum { FACTOR = 1, MAXWELL = 2 };
+    int rate = -1;
+    if (sf_config_choice(config, model, "rate", "none|factor|maxwell|both", &rate, err) != SF_OK || rate < 0)
+        return err->status;
+    if (rate & MAXWELL && !(in->start[SF_PARAMETER_ED] > 0 && in->start[SF_PARAMETER_BETA1] > 0))
+        return sf_config_refuse(config, model, err,
+                                "a Maxwell branch needs ED and BETA1 in the start material or in start");
+    if (rate & FACTOR)
+        sf_foam_form_start_rate(in->start);
+    else
+        in->start[SF_PARAMETER_RATE_FACTOR] = 0;
+    if (!(rate & MAXWELL))
+        in->start[SF_PARAMETER_ED] = 0;
+    return SF_OK;
+}
+
+static void add_rate(sf_fit_input *in) {
+    add_unknown(in, SF_PARAMETER_ED);
+    add_unknown(in, SF_PARAMETER_RATE_FACTOR);
+}
+
+/* Of an entry of `forms`: those that the file lists for all models, and its own or those usual for the form,
+ * with the rate terms that it names. */
 static sf_status read_unknowns(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                                sf_error *err) {
-    sf_foam_parameter usual[SF_PARAMETER_COUNT];
-    const config_setting_t *list;
-    if (sf_config_list(config, root, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err) != SF_OK)
+    const config_setting_t *model = model_of(root, in);
+    bool common = false, own = false;
+    if (read_list(config, root, in, &common, err) != SF_OK ||
+        (model != root && read_list(config, model, in, &own, err) != SF_OK))
         return err->status;
-    for (int k = 0; list && k < config_setting_length(list); k++)
-        if (read_unknown(config, config_setting_get_elem(list, (unsigned)k), in, err) != SF_OK)
-            return err->status;
-    int count = list ? 0 : sf_foam_form_usual(&in->form, usual);
-    for (int k = 0; k < count; k++) {
-        if (!(in->start[usual[k]] > 0)) /* a material without the branch */
-            continue;
-        in->unknown[in->unknown_count] = usual[k];
-        in->prior[in->unknown_count] = in->start[usual[k]];
-        in->prior_sd[in->unknown_count++] = sf_foam_form_prior_sd(&in->form, usual[k]);
-    }
+    if (model == root ? !common : !own)
+        add_usual(in);
+    if (config_setting_get_member(model, "rate"))
+        add_rate(in);
     return check_solid_fraction(config, root, in, err);
 }
 
-sf_status sf_fit_input_read(const char *path, sf_fit_input *in, sf_error *err) {
+static sf_status read_options(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                              sf_error *err) {
+    double seed = 1;
+    const config_setting_t *list;
+    in->posterior = true;
+    if (sf_config_number(config, root, "seed", false, 0, 1e9, &seed, err) != SF_OK ||
+        sf_config_flag(config, root, "posterior", &in->posterior, err) != SF_OK ||
+        sf_config_list(config, root, "forms", false, SF_FIT_MAX_MODELS, &list, err) != SF_OK)
+        return err->status;
+    in->seed = (uint64_t)seed;
+    in->model_count = list ? config_setting_length(list) : 1;
+    if (list && config_setting_get_member(root, "curve_form"))
+        return sf_config_refuse(config, list, err, "give either forms or curve_form");
+    if (list && !in->posterior)
+        return sf_config_refuse(config, list, err,
+                                "several forms are compared by their posteriors: posterior must be true");
+    for (int k = 0; k < in->model_count && list && err->status == SF_OK; k++)
+        sf_config_names(config, config_setting_get_elem(list, (unsigned)k), "curve|rate|start|unknown", err);
+    return err->status;
+}
+
+/* Start values of all models, then the model's own. */
+static sf_status read_starts(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                             sf_error *err) {
+    const config_setting_t *model = model_of(root, in);
+    if (read_start(config, root, in, err) != SF_OK ||
+        (model != root && read_start(config, model, in, err) != SF_OK) ||
+        (model != root && read_rate(config, model, in, err) != SF_OK))
+        return err->status;
+    return check_start(config, model, in, err);
+}
+
+sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_error *err) {
     sf_config config;
-    *in = (sf_fit_input){0};
+    *in = (sf_fit_input){.model = model};
     if (sf_config_open(path, &config, err) == SF_OK &&
         sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err) == SF_OK) {
         const config_setting_t *root = config_root_setting(&config.config);
         if (sf_config_names(&config, root,
-                            "name|title|material|curve_form|solid_density|start|unknown|drops|predict",
+                            "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
+                            "seed|posterior",
                             err) == SF_OK &&
+            read_options(&config, root, in, err) == SF_OK &&
             read_drops(&config, root, "drops", false, in, err) == SF_OK &&
             read_drops(&config, root, "predict", true, in, err) == SF_OK &&
-            read_material(&config, root, in, err) == SF_OK && read_start(&config, root, in, err) == SF_OK &&
-            check_start(&config, root, in, err) == SF_OK)
+            read_material(&config, root, in, err) == SF_OK && read_starts(&config, root, in, err) == SF_OK)
             read_unknowns(&config, root, in, err);
     }
     sf_config_close(&config);

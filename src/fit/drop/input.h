@@ -9,6 +9,7 @@
 #include "fit/space_mapping.h"
 #include "post/reference.h"
 
+enum { SF_FIT_MAX_MODELS = 16 };
 enum { SF_FIT_MAX_DROPS = 24, SF_FIT_MAX_UNKNOWNS = 12, SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
 
 /* A drop that was measured, or (predicted) is only to be simulated with the identified material. */
@@ -33,6 +34,9 @@ typedef struct sf_fit_input {
     char material_name[SF_FIT_NAME_SIZE]; /* of its files */
     char title[160];                      /* first line of its files */
     char *material_path;                  /* start material; owned */
+    int model, model_count;               /* which of the file's `forms` this is; 0 of 1 without a list */
+    bool posterior;                       /* Markov chains after the fit */
+    uint64_t seed;                        /* of them */
     sf_foam_form form;
     int drop_count; /* measured ones first */
     sf_fit_drop drop[SF_FIT_MAX_DROPS];
@@ -43,9 +47,9 @@ typedef struct sf_fit_input {
     double prior_sd[SF_FIT_MAX_UNKNOWNS]; /* of the logarithm */
 } sf_fit_input;
 
-/* Reads and checks everything, the cases and the measured curves too. Release with sf_fit_input_free, also on
- * failure. */
-sf_status sf_fit_input_read(const char *path, sf_fit_input *input, sf_error *err);
+/* Reads and checks everything, the cases and the measured curves too; of several `forms` that of the number
+ * `model`, which is below model_count of number 0. Release with sf_fit_input_free, also on failure. */
+sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *input, sf_error *err);
 void sf_fit_input_free(sf_fit_input *input);
 
 #endif

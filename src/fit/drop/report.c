@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/drop/report.h"
+#include "fit/drop/inference_report.h"
 
 #include "build_info.h"
 #include "campaign/material_file.h"
@@ -197,10 +198,10 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     if (!has_predictions(in))
         return;
-    sf_html_heading(f, "Predictions");
+    sf_html_heading(f, "Predictions by simulation with the written material");
     sf_html_note(
         f,
-        "Drops that were not used. The 95 %% intervals hold the uncertainty of the parameters; that of the "
+        "Drops that were not used. The 95 %% intervals are linearised and hold the uncertainty of this model's parameters alone; that of the "
         "discretisation and of the model's form come on top.");
     sf_html_table table =
         sf_html_table_begin(f, "dense", "drop|quantity|>predicted|>95 %|>largest local strain|verdict");
@@ -328,8 +329,8 @@ static void put_picture(FILE *f, const sf_staging *output) {
     free(svg);
 }
 
-static sf_status write_report(const sf_drop_fit *fit, const char *input_path, const char *command,
-                              const sf_staging *output, sf_error *err) {
+static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
+                              const char *command, const sf_staging *output, sf_error *err) {
     char title[256];
     snprintf(title, sizeof title, "Identification from drops: %s", fit->input->material_name);
     FILE *f = sf_html_begin(output, title, input_path, err);
@@ -337,6 +338,8 @@ static sf_status write_report(const sf_drop_fit *fit, const char *input_path, co
         return err->status;
     put_banner(f, fit);
     put_picture(f, output);
+    if (average)
+        sf_inference_html(f, average, err);
     put_drops(f, fit);
     put_speeds(f, fit);
     put_predictions(f, fit);
@@ -394,8 +397,8 @@ static void json_parameter(sf_json *j, const sf_drop_fit *fit, int k) {
     sf_json_close(j, '}');
 }
 
-static sf_status write_json(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
-                            sf_error *err) {
+static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
+                            const sf_staging *output, sf_error *err) {
     FILE *f = sf_staging_open(output, "fit.json", err);
     if (!f)
         return err->status;
@@ -425,6 +428,8 @@ static sf_status write_json(const sf_drop_fit *fit, const char *input_path, cons
     for (int d = 0; d < fit->input->drop_count; d++)
         json_drop(&j, fit, d);
     sf_json_close(&j, ']');
+    if (average)
+        sf_inference_json(&j, average, err);
     sf_json_close(&j, '}');
     fputc('\n', f);
     return sf_staging_close(f, "fit.json", err);
@@ -439,8 +444,8 @@ static void put_comment(FILE *f, const sf_drop_fit *fit, int d, int kind) {
             *about->unit ? " " : "", about->unit, about->digits, response(fit, d, kind));
 }
 
-static sf_status write_material(const sf_drop_fit *fit, const char *input_path, const sf_staging *output,
-                                sf_error *err) {
+static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *average,
+                                const char *input_path, const sf_staging *output, sf_error *err) {
     char *provenance = NULL;
     size_t size = 0;
     sf_foam_card card;
@@ -449,6 +454,8 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
     fprintf(f, "Identified by softfall-fit drop %s from %s; everything else is that of its start material.\n",
             SF_VERSION, input_path);
+    if (average)
+        sf_inference_comment(f, average);
     for (int d = 0; d < fit->input->drop_count && !fit->input->drop[d].predicted; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
         fprintf(f, "%s:", drop->name);
@@ -462,7 +469,7 @@ static sf_status write_material(const sf_drop_fit *fit, const char *input_path, 
     for (int k = 0; k < fit->input->unknown_count; k++) {
         estimate e = estimate_of(fit, k);
         double s = e.about->per_unit;
-        fprintf(f, "%s = %.4g%s%s (95 %%: %.4g to %.4g; %s)\n", e.about->name, e.value / s,
+        fprintf(f, "%s = %.4g%s%s (95 %%, linearised: %.4g to %.4g; %s)\n", e.about->name, e.value / s,
                 *e.about->unit ? " " : "", e.about->unit, e.low / s, e.high / s, e.about->description);
     }
     double low, high;
@@ -590,14 +597,17 @@ static sf_status write_script(const sf_drop_fit *fit, const sf_staging *output, 
     return sf_staging_close(f, "fit.gp", err);
 }
 
-sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const char *command,
-                               const sf_staging *output, char *warning, size_t size, sf_error *err) {
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
+                               const char *command, const sf_staging *output, char *warning, size_t size,
+                               sf_error *err) {
     if (write_strain_data(fit, output, err) != SF_OK || write_drop_data(fit, output, err) != SF_OK ||
-        write_script(fit, output, err) != SF_OK || write_material(fit, input_path, output, err) != SF_OK ||
-        write_json(fit, input_path, output, err) != SF_OK)
+        write_script(fit, output, err) != SF_OK ||
+        write_material(fit, average, input_path, output, err) != SF_OK ||
+        write_json(fit, average, input_path, output, err) != SF_OK ||
+        (average && sf_inference_csv(average, output, err) != SF_OK))
         return err->status;
     sf_gnuplot_draw(output, "fit", warning, size);
-    return write_report(fit, input_path, command, output, err);
+    return write_report(fit, average, input_path, command, output, err);
 }
 
 static void print_response(FILE *f, const sf_drop_fit *fit, int d, int kind) {
@@ -606,7 +616,7 @@ static void print_response(FILE *f, const sf_drop_fit *fit, int d, int kind) {
     fprintf(f, "  %s %.*f%s%s", about->name, about->digits + 1, response(fit, d, kind),
             *about->unit ? " " : "", about->unit);
     if (drop->predicted)
-        fprintf(f, " ± %.1f %% (95 %%)", 100 * half_width(fit) * response_sd(fit, d, kind));
+        fprintf(f, " ± %.1f %% (95 %%, linearised)", 100 * half_width(fit) * response_sd(fit, d, kind));
     if (!isnan(drop->value[kind]))
         fprintf(f, " (measured %.4g)", drop->value[kind]);
 }
@@ -620,8 +630,8 @@ void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
     for (int k = 0; k < fit->input->unknown_count; k++) {
         estimate e = estimate_of(fit, k);
         double s = e.about->per_unit;
-        fprintf(f, "  %-8s %10.4g %-5s 95 %%: %.4g to %.4g  (%.0f %% of the prior's width)\n", e.about->name,
-                e.value / s, e.about->unit, e.low / s, e.high / s, 100 * e.shrinkage);
+        fprintf(f, "  %-8s %10.4g %-5s 95 %% linearised: %.4g to %.4g  (%.0f %% of the prior's width)\n",
+                e.about->name, e.value / s, e.about->unit, e.low / s, e.high / s, 100 * e.shrinkage);
     }
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];

@@ -3,14 +3,17 @@
 #ifndef SF_FIT_DROP_REPORT_H
 #define SF_FIT_DROP_REPORT_H
 
+#include "fit/drop/average.h"
 #include "fit/drop/fit.h"
 #include "io/staging.h"
 
-/* Writes everything into the staging directory; `command`: the words of the command; `warning` (size bytes)
- * says why there is no picture, or is
+/* Writes everything into the staging directory; `fit` is that of the material, `average` the posterior of all
+ * models (NULL: none); `command`: the words of the command; `warning` (size bytes) says why there is no
+ * picture, or is
  * "". */
-sf_status sf_drop_report_write(const sf_drop_fit *fit, const char *input_path, const char *command,
-                               const sf_staging *output, char *warning, size_t size, sf_error *err);
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
+                               const char *command, const sf_staging *output, char *warning, size_t size,
+                               sf_error *err);
 
 /* The short form, for the terminal. */
 void sf_drop_report_print(const sf_drop_fit *fit, FILE *file);

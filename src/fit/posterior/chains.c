@@ -15,7 +15,7 @@ sf_chains_options sf_chains_defaults(uint64_t seed) {
                                .seed = seed,
                                .burn_in_rounds = 4,
                                .round = 250,
-                               .most_steps = 8000,
+                               .most_steps = 6000,
                                .most_kept = 1000,
                                .rhat = 1.02,
                                .effective = 400};

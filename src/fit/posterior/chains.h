@@ -25,7 +25,7 @@ typedef struct sf_chains_options {
     double effective;   /* ... and above this effective size */
 } sf_chains_options;
 
-/* 4 chains, 4 rounds of 250 steps, at most 8000 steps and 1000 kept, R-hat 1.02, 400. */
+/* 4 chains, 4 rounds of 250 steps, at most 6000 steps and fewer than 1000 kept, R-hat 1.02, 400. */
 sf_chains_options sf_chains_defaults(uint64_t seed);
 
 typedef struct sf_chains {

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS = 40, N = SF_POSTERIOR_MOST };
+enum { ROUNDS = 25, N = SF_POSTERIOR_MOST };
 static const double RIDGE = 1e-6; /* of the samples' own variances, added to a part's */
 
 /* ---- density and draws ---- */

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Several models of one foam, compared and averaged. The weights are those of the leave-one-out predictive
+ * densities (posterior/weights.h), or of the evidence where only one drop was measured. */
+#ifndef SF_FIT_DROP_AVERAGE_H
+#define SF_FIT_DROP_AVERAGE_H
+
+#include "fit/drop/inference.h"
+
+enum { SF_POSTERIOR_DRAWS = 200 };
+
+typedef struct sf_drop_average {
+    int models;
+    const sf_drop_inference *model[SF_FIT_MAX_MODELS]; /* of the same drops; borrowed */
+    double weight[SF_FIT_MAX_MODELS];                  /* sum 1 */
+    double evidence_weight[SF_FIT_MAX_MODELS];         /* what the evidence alone would give; sum 1 */
+    double predictive[SF_FIT_MAX_MODELS]; /* sum of the leave-one-out log densities; NaN: one drop */
+    bool by_evidence;
+    uint64_t seed;
+} sf_drop_average;
+
+sf_status sf_drop_average_build(int models, const sf_drop_inference *const *model, uint64_t seed,
+                                sf_drop_average *average, sf_error *err);
+
+/* The model with the largest weight. */
+int sf_drop_average_best(const sf_drop_average *average);
+/* Everything reached its criteria: the chains of every model, their evidence, and those of left-out drops. */
+bool sf_drop_average_reached(const sf_drop_average *average);
+
+/* Quantiles of a predicted number (index of the inference's quantities), in its unit, over all models by
+ * their weights; of one model with `model` >= 0. NaN if no draw has a value. */
+sf_status sf_drop_average_quantiles(const sf_drop_average *average, int model, int quantity, int count,
+                                    const double *probability, double *value, sf_error *err);
+/* Quantiles of a parameter of one model, as the chains have it. */
+sf_status sf_drop_parameter_quantiles(const sf_drop_inference *inference, int parameter, int count,
+                                      const double *probability, double *value, sf_error *err);
+
+/* Draws of equal weight over the models: of which model, and which state of its chains. */
+typedef struct sf_posterior_draw {
+    int model, state;
+} sf_posterior_draw;
+void sf_drop_average_draw(const sf_drop_average *average, sf_posterior_draw draw[SF_POSTERIOR_DRAWS]);
+
+/* Writes draw-001.cfg ... with their curves into a folder that is softfall's own; a file of an earlier run is
+ * replaced. A delta is drawn for each. */
+sf_status sf_drop_average_write(const sf_drop_average *average, const char *folder, sf_error *err);
+
+#endif

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The posterior of one fitted model by Markov chain Monte Carlo (docs/theory.md, section "Inference"): of its
+ * unknown parameters and of the size tau of the discrepancy, on the corrected surrogate.
+ *
+ * The data's logarithms are y = s(u) + offset + M (u - u*) + J delta + e. delta is the logarithm of the true
+ * loading curve over the form's at SF_DISCREPANCY_PLACES strains, a Gaussian process of standard deviation
+ * tau and correlation length 0.12; J are the columns' derivatives at the maximum; e are the measurements'
+ * errors and those of the speeds, whose effect is taken as linear. So delta and the speeds are integrated in
+ * closed form, and drawn where predictions need them. */
+#ifndef SF_FIT_DROP_INFERENCE_H
+#define SF_FIT_DROP_INFERENCE_H
+
+#include "fit/drop/fit.h"
+#include "fit/posterior/chains.h"
+#include "fit/posterior/discrepancy.h"
+#include "fit/posterior/evidence.h"
+#include "fit/posterior/leave_one_out.h"
+
+enum { SF_DISCREPANCY_PLACES = 20 }; /* strains 0, 0.05, ..., 0.95 */
+
+/* A number of a predicted drop: quantity of the chains, in logarithms. */
+typedef struct sf_drop_quantity {
+    int drop;
+    int kind; /* kinds.h */
+} sf_drop_quantity;
+
+typedef struct sf_drop_inference {
+    const sf_drop_fit *fit; /* borrowed */
+    int parameters;         /* unknowns of the foam, then z of tau (sf_half_normal) */
+    int data;
+    int *data_row;    /* [data] response that was measured; owned */
+    double *offset;   /* [responses] of all drops, at u = 0 speeds: y = s(u) + offset + M (u - u*); owned */
+    double *jacobian; /* [responses][SF_DISCREPANCY_PLACES] J; owned */
+    double *base;     /* [data][data] covariance of e; owned */
+    sf_discrepancy all, without[SF_FIT_MAX_DROPS]; /* of all data; without those of one measured drop */
+    int quantities;
+    sf_drop_quantity quantity[3 * SF_FIT_MAX_DROPS];
+
+    sf_chains chains;
+    sf_evidence evidence;
+    sf_left_out left_out[SF_FIT_MAX_DROPS]; /* measured drops; none if there is only one */
+} sf_drop_inference;
+
+typedef struct sf_inference_options {
+    sf_chains_options chains;
+    sf_chains_options without; /* chains of the posteriors without a drop */
+    int evidence_draws;
+    bool leave_one_out;
+} sf_inference_options;
+
+/* As `softfall-fit drop` does. */
+sf_inference_options sf_inference_defaults(uint64_t seed);
+
+/* Samples the posterior of a finished fit, which outlives the inference. Release with sf_drop_inference_free,
+ * also on failure. */
+sf_status sf_drop_infer(const sf_drop_fit *fit, const sf_inference_options *options,
+                        sf_drop_inference *inference, sf_error *err);
+void sf_drop_inference_free(sf_drop_inference *inference);
+
+/* tau of a state of the chains. */
+double sf_drop_inference_tau(const sf_drop_inference *inference, const double *u);
+/* Strain of a place of delta. */
+double sf_discrepancy_strain(int place);
+/* delta [SF_DISCREPANCY_PLACES] given a state of the chains and the data. False: the columns fail there. */
+bool sf_drop_inference_draw(const sf_drop_inference *inference, const double *u, uint64_t seed,
+                            double *delta);
+/* The card of a state with its curve times exp(delta), linear between the places; a curve that would fall is
+ * held. Owned by the caller. */
+sf_status sf_drop_inference_card(const sf_drop_inference *inference, const double *u, const double *delta,
+                                 sf_foam_card *card, sf_error *err);
+
+#endif

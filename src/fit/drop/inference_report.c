@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/drop/inference_report.h"
+
+#include "io/html.h"
+#include <math.h>
+#include <string.h>
+
+static const double THREE[] = {0.025, 0.5, 0.975};
+enum { LABEL = 96 };
+
+const char *sf_model_label(const sf_fit_input *in, char *text, size_t size) {
+    bool maxwell = in->start[SF_PARAMETER_ED] > 0, factor = in->start[SF_PARAMETER_RATE_FACTOR] > 0;
+    for (int k = 0; k < in->unknown_count; k++) {
+        maxwell = maxwell || in->unknown[k] == SF_PARAMETER_ED;
+        factor = factor || in->unknown[k] == SF_PARAMETER_RATE_FACTOR;
+    }
+    snprintf(text, size, "%s%s%s", in->form.curve->name, factor ? ", rate factor" : "",
+             maxwell ? ", Maxwell branch" : "");
+    return text;
+}
+
+static const char *label_of(const sf_drop_average *a, int m, char text[LABEL]) {
+    return sf_model_label(a->model[m]->fit->input, text, LABEL);
+}
+
+/* Worst R-hat and least effective size of a model's chains. */
+static void find_worst(const sf_chains *c, double *rhat, double *effective) {
+    *rhat = 0;
+    *effective = INFINITY;
+    for (int i = 0; i < c->parameters + c->quantities; i++) {
+        *rhat = fmax(*rhat, isnan(c->rhat[i]) ? INFINITY : c->rhat[i]);
+        *effective = fmin(*effective, c->effective[i]);
+    }
+}
+
+/* ---- report.html ---- */
+
+static void put_models(FILE *f, const sf_drop_average *a) {
+    sf_html_heading(f, "Models and their weights");
+    sf_html_note(
+        f, "%s",
+        a->by_evidence
+            ? "Weights by the evidence, as only one drop was measured. The evidence depends on the widths of the priors."
+            : "Weights by the leave-one-out predictive densities: each drop predicted by the others, averaged over a "
+              "Bayesian bootstrap of the drops. The evidence, which depends on the widths of the priors, stands beside for "
+              "comparison. Misfit: at the maximum.");
+    sf_html_table table = sf_html_table_begin(
+        f, "dense",
+        "model|>weight|>log predictive density of left-out drops|>log evidence|>± (1 sd)|>weight by evidence|>unknowns|>misfit");
+    for (int m = 0; m < a->models; m++) {
+        const sf_drop_inference *in = a->model[m];
+        char text[LABEL];
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s%s", label_of(a, m, text), m == sf_drop_average_best(a) ? " (written)" : "");
+        sf_html_number(&table, 3, a->weight[m]);
+        sf_html_number(&table, 2, a->predictive[m]);
+        sf_html_number(&table, 2, in->evidence.log_value);
+        sf_html_number(&table, 2, in->evidence.error);
+        sf_html_number(&table, 3, a->evidence_weight[m]);
+        sf_html_cell(&table, "%d", in->parameters - 1);
+        sf_html_number(&table, 2, in->fit->result.misfit);
+    }
+    sf_html_table_end(&table);
+}
+
+static void put_interval(sf_html_table *table, int digits, const double *value) {
+    if (isfinite(value[0]) && isfinite(value[2]))
+        sf_html_cell(table, "%.*f to %.*f", digits, value[0], digits, value[2]);
+    else
+        sf_html_cell(table, "–");
+}
+
+static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *err) {
+    const sf_drop_inference *in = a->model[0];
+    char text[LABEL];
+    if (in->quantities == 0)
+        return SF_OK;
+    sf_html_heading(f, "Predictions, averaged over the models");
+    sf_html_note(f, "Medians and 95 %% intervals of the posterior predictive distribution. They hold the "
+                    "uncertainty of the parameters, of the form (by the weights) and of a loading curve that "
+                    "differs from every form. Not in them: the discretisation.");
+    sf_html_table table = sf_html_table_begin(
+        f, "dense", "drop|quantity|>median|>95 %|>95 % of the model with the largest weight alone");
+    for (int q = 0; q < in->quantities; q++) {
+        const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
+        double all[3], best[3];
+        if (sf_drop_average_quantiles(a, -1, q, 3, THREE, all, err) != SF_OK ||
+            sf_drop_average_quantiles(a, sf_drop_average_best(a), q, 3, THREE, best, err) != SF_OK)
+            return err->status;
+        snprintf(text, sizeof text, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", in->fit->input->drop[in->quantity[q].drop].name);
+        sf_html_cell(&table, "%s", text);
+        sf_html_number(&table, about->digits, all[1]);
+        put_interval(&table, about->digits, all);
+        put_interval(&table, about->digits, best);
+    }
+    sf_html_table_end(&table);
+    return SF_OK;
+}
+
+static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err) {
+    char text[LABEL];
+    sf_html_heading(f, "Posterior of the parameters");
+    sf_html_note(f,
+                 "Medians and 95 %% intervals by Markov chains. tau: standard deviation of the logarithm of "
+                 "the true loading curve over the form's; a large one says that the form does not fit.");
+    sf_html_table table =
+        sf_html_table_begin(f, "dense", "model|parameter|>median|>95 %|>R-hat|>effective sample size");
+    for (int m = 0; m < a->models; m++) {
+        const sf_drop_inference *in = a->model[m];
+        for (int k = 0; k < in->parameters; k++) {
+            bool tau = k == in->parameters - 1;
+            const sf_parameter_info *about = tau ? NULL : sf_parameter_get(in->fit->input->unknown[k]);
+            double value[3], u[SF_POSTERIOR_MOST] = {0};
+            if (sf_drop_parameter_quantiles(in, k, 3, THREE, value, err) != SF_OK)
+                return err->status;
+            for (int q = 0; q < 3; q++) {
+                u[k] = value[q];
+                value[q] = tau ? sf_drop_inference_tau(in, u) : exp(value[q]) / about->per_unit;
+            }
+            sf_html_row(&table);
+            sf_html_cell(&table, "%s", k == 0 ? label_of(a, m, text) : "");
+            sf_html_cell(&table, "%s%s%s", tau ? "tau" : about->name, !tau && *about->unit ? ", " : "",
+                         tau ? "" : about->unit);
+            sf_html_cell(&table, "%.4g", value[1]);
+            sf_html_cell(&table, "%.4g to %.4g", value[0], value[2]);
+            sf_html_number(&table, 3, in->chains.rhat[k]);
+            sf_html_number(&table, 0, in->chains.effective[k]);
+        }
+    }
+    sf_html_table_end(&table);
+    return SF_OK;
+}
+
+static void put_left_out(FILE *f, const sf_drop_average *a) {
+    char text[LABEL];
+    if (a->by_evidence)
+        return;
+    sf_html_heading(f, "Drops left out one by one");
+    sf_html_note(
+        f, "log p of a drop's data given the others'. By importance weights of the whole posterior where "
+           "their Pareto k is below 0.5; else by chains without the drop.");
+    sf_html_table table = sf_html_table_begin(f, "dense", "model|drop|>log density|>Pareto k|by");
+    for (int m = 0; m < a->models; m++)
+        for (int d = 0; d < a->model[m]->fit->measured_drops; d++) {
+            const sf_left_out *out = &a->model[m]->left_out[d];
+            sf_html_row(&table);
+            sf_html_cell(&table, "%s", d == 0 ? label_of(a, m, text) : "");
+            sf_html_cell(&table, "%s", a->model[m]->fit->input->drop[d].name);
+            sf_html_number(&table, 2, out->log_density);
+            sf_html_number(&table, 2, out->pareto_k);
+            sf_html_cell(&table, "%s%s", out->sampled ? "chains" : "weights",
+                         out->converged ? "" : " (criteria not reached)");
+        }
+    sf_html_table_end(&table);
+}
+
+static void put_diagnostics(FILE *f, const sf_drop_average *a) {
+    char text[LABEL];
+    sf_html_heading(f, "Diagnostics of the chains");
+    sf_html_note(f,
+                 "Reached: R-hat below 1.02 and an effective sample size above 400 for every parameter and "
+                 "prediction; the evidence from at least 100 effective draws.");
+    sf_html_table table = sf_html_table_begin(
+        f, "dense",
+        "model|>largest R-hat|>least effective size|>states kept|>accepted (%)|>evaluations|>effective draws of the evidence|reached");
+    for (int m = 0; m < a->models; m++) {
+        const sf_drop_inference *in = a->model[m];
+        double rhat, effective;
+        find_worst(&in->chains, &rhat, &effective);
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", label_of(a, m, text));
+        sf_html_number(&table, 3, rhat);
+        sf_html_number(&table, 0, effective);
+        sf_html_cell(&table, "%d x %d", in->chains.chains, in->chains.kept);
+        sf_html_number(&table, 0, 100 * in->chains.accepted);
+        sf_html_cell(&table, "%lld", in->chains.evaluations);
+        sf_html_cell(&table, "%.0f of %d", in->evidence.effective, in->evidence.draws);
+        sf_html_cell(&table, "%s%s", in->chains.converged ? "yes" : "NO: chains",
+                     in->evidence.trusted ? "" : "; NO: evidence");
+    }
+    sf_html_table_end(&table);
+}
+
+sf_status sf_inference_html(FILE *f, const sf_drop_average *a, sf_error *err) {
+    if (!sf_drop_average_reached(a))
+        sf_html_banner(
+            f, "bad", "criteria not reached",
+            "Some chains or importance weights did not reach their criteria (see Diagnostics): weights "
+            "and intervals are less certain than they look.");
+    if (put_predictions(f, a, err) != SF_OK)
+        return err->status;
+    put_models(f, a);
+    if (put_parameters(f, a, err) != SF_OK)
+        return err->status;
+    put_left_out(f, a);
+    put_diagnostics(f, a);
+    return SF_OK;
+}
+
+/* ---- fit.json ---- */
+
+static void json_quantiles(sf_json *j, const double *value) {
+    sf_json_number(j, "median", value[1]);
+    sf_json_number(j, "low95", value[0]);
+    sf_json_number(j, "high95", value[2]);
+}
+
+static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_error *err) {
+    sf_json_open(j, "parameters", '[');
+    for (int k = 0; k < in->parameters; k++) {
+        bool tau = k == in->parameters - 1;
+        double value[3], u[SF_POSTERIOR_MOST] = {0};
+        if (sf_drop_parameter_quantiles(in, k, 3, THREE, value, err) != SF_OK)
+            return err->status;
+        for (int q = 0; q < 3; q++) {
+            u[k] = value[q];
+            value[q] = tau ? sf_drop_inference_tau(in, u) : exp(value[q]);
+        }
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "name", tau ? "tau" : sf_parameter_get(in->fit->input->unknown[k])->name);
+        sf_json_text(j, "unit", "SI");
+        json_quantiles(j, value);
+        sf_json_number(j, "rhat", in->chains.rhat[k]);
+        sf_json_number(j, "effective_sample_size", in->chains.effective[k]);
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+    return SF_OK;
+}
+
+static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_error *err) {
+    const sf_drop_inference *in = a->model[m];
+    double rhat, effective;
+    char text[LABEL];
+    find_worst(&in->chains, &rhat, &effective);
+    sf_json_open(j, NULL, '{');
+    sf_json_text(j, "model", label_of(a, m, text));
+    sf_json_number(j, "weight", a->weight[m]);
+    sf_json_number(j, "weight_by_evidence", a->evidence_weight[m]);
+    sf_json_number(j, "log_predictive_density", a->predictive[m]);
+    sf_json_number(j, "log_evidence", in->evidence.log_value);
+    sf_json_number(j, "log_evidence_sd", in->evidence.error);
+    sf_json_number(j, "log_evidence_effective_draws", in->evidence.effective);
+    sf_json_number(j, "misfit", in->fit->result.misfit);
+    sf_json_bool(j, "chains_reached", in->chains.converged);
+    sf_json_number(j, "largest_rhat", rhat);
+    sf_json_number(j, "least_effective_sample_size", effective);
+    sf_json_integer(j, "evaluations", in->chains.evaluations);
+    sf_json_open(j, "left_out", '[');
+    for (int d = 0; d < in->fit->measured_drops && !a->by_evidence; d++) {
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "drop", in->fit->input->drop[d].name);
+        sf_json_number(j, "log_density", in->left_out[d].log_density);
+        sf_json_number(j, "pareto_k", in->left_out[d].pareto_k);
+        sf_json_bool(j, "by_chains", in->left_out[d].sampled);
+        sf_json_bool(j, "reached", in->left_out[d].converged);
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+    json_parameters(j, in, err);
+    sf_json_close(j, '}');
+    return err->status;
+}
+
+static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf_error *err) {
+    const sf_drop_inference *in = a->model[0];
+    const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
+    double value[3];
+    if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
+        return err->status;
+    sf_json_open(j, NULL, '{');
+    sf_json_text(j, "drop", in->fit->input->drop[in->quantity[q].drop].name);
+    sf_json_text(j, "quantity", about->key);
+    json_quantiles(j, value);
+    sf_json_close(j, '}');
+    return SF_OK;
+}
+
+sf_status sf_inference_json(sf_json *j, const sf_drop_average *a, sf_error *err) {
+    sf_json_open(j, "inference", '{');
+    sf_json_integer(j, "seed", (int64_t)a->seed);
+    sf_json_bool(j, "criteria_reached", sf_drop_average_reached(a));
+    sf_json_text(j, "weights_by", a->by_evidence ? "evidence" : "leave-one-out predictive density");
+    sf_json_open(j, "models", '[');
+    for (int m = 0; m < a->models && err->status == SF_OK; m++)
+        json_model(j, a, m, err);
+    sf_json_close(j, ']');
+    sf_json_open(j, "predictions", '[');
+    for (int q = 0; q < a->model[0]->quantities && err->status == SF_OK; q++)
+        json_prediction(j, a, q, err);
+    sf_json_close(j, ']');
+    sf_json_close(j, '}');
+    return err->status;
+}
+
+/* ---- posterior.csv ---- */
+
+static int find_unknown(const sf_fit_input *in, int parameter) {
+    int k = 0;
+    while (k < in->unknown_count && (int)in->unknown[k] != parameter)
+        k++;
+    return k < in->unknown_count ? k : -1;
+}
+
+static bool is_unknown(const sf_drop_average *a, int parameter) {
+    for (int m = 0; m < a->models; m++)
+        if (find_unknown(a->model[m]->fit->input, parameter) >= 0)
+            return true;
+    return false;
+}
+
+sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, sf_error *err) {
+    sf_posterior_draw draw[SF_POSTERIOR_DRAWS];
+    char text[LABEL];
+    FILE *f = sf_staging_open(output, "posterior.csv", err);
+    if (!f)
+        return err->status;
+    fprintf(f, "draw,model,tau");
+    for (int p = 0; p < SF_PARAMETER_COUNT; p++) {
+        const sf_parameter_info *about = sf_parameter_get((sf_foam_parameter)p);
+        if (is_unknown(a, p))
+            fprintf(f, *about->unit ? ",%s (%s)" : ",%s", about->name, about->unit);
+    }
+    fputc('\n', f);
+    sf_drop_average_draw(a, draw);
+    for (int k = 0; k < SF_POSTERIOR_DRAWS; k++) {
+        const sf_drop_inference *in = a->model[draw[k].model];
+        const double *u = &in->chains.sample[draw[k].state * in->parameters];
+        fprintf(f, "%d,\"%s\",%.9g", k + 1, label_of(a, draw[k].model, text), sf_drop_inference_tau(in, u));
+        for (int p = 0; p < SF_PARAMETER_COUNT; p++) {
+            int at = find_unknown(in->fit->input, p);
+            if (at >= 0)
+                fprintf(f, ",%.9g", exp(u[at]) / sf_parameter_get((sf_foam_parameter)p)->per_unit);
+            else if (is_unknown(a, p))
+                fputc(',', f);
+        }
+        fputc('\n', f);
+    }
+    return sf_staging_close(f, "posterior.csv", err);
+}
+
+/* ---- lines ---- */
+
+void sf_inference_comment(FILE *f, const sf_drop_average *a) {
+    char text[LABEL];
+    fprintf(f,
+            "Weights of the models (%s): ", a->by_evidence ? "evidence" : "leave-one-out predictive density");
+    for (int m = 0; m < a->models; m++)
+        fprintf(f, "%s%s %.3f%s", m > 0 ? "; " : "", label_of(a, m, text), a->weight[m],
+                m == sf_drop_average_best(a) ? " (this file, its maximum)" : "");
+    fputs(".\n", f);
+    if (!sf_drop_average_reached(a))
+        fputs("The chains did not reach their criteria: see report.html.\n", f);
+}
+
+void sf_inference_print_chains(FILE *f, const sf_drop_inference *in) {
+    double rhat, effective;
+    find_worst(&in->chains, &rhat, &effective);
+    fprintf(
+        f,
+        "Markov chains: %lld evaluations, %.0f %% accepted, largest R-hat %.3f, least effective sample size %.0f%s\n",
+        in->chains.evaluations, 100 * in->chains.accepted, rhat, effective,
+        in->chains.converged ? "" : ": criteria NOT reached");
+    fflush(f);
+}
+
+sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
+    const sf_drop_inference *in = a->model[0];
+    char text[LABEL];
+    fputs("\nPosterior by Markov chains:\n", f);
+    for (int m = 0; m < a->models; m++)
+        fprintf(f, "  weight %.3f  log predictive density %7.2f  log evidence %8.2f  %s\n", a->weight[m],
+                a->predictive[m], a->model[m]->evidence.log_value, label_of(a, m, text));
+    for (int q = 0; q < in->quantities; q++) {
+        const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
+        double value[3];
+        if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
+            return err->status;
+        fprintf(f, "  %-20s %s %.*f %s (95 %%: %.*f to %.*f)\n",
+                in->fit->input->drop[in->quantity[q].drop].name, about->name, about->digits, value[1],
+                about->unit, about->digits, value[0], about->digits, value[2]);
+    }
+    if (!sf_drop_average_reached(a))
+        fputs("  The chains did NOT reach their criteria: see report.html.\n", f);
+    return SF_OK;
+}
