@@ -46,7 +46,7 @@ def main(report, document):
             inside = False
         if not inside:
             out.append(line)
-        name = re.fullmatch(r"<!-- ([a-z-]+) -->", line)
+        name = re.fullmatch(r"<!-- ([a-z,-]+) -->", line)
         if name and name[1] != "end":
             if name[1] not in found:
                 sys.exit(f"report_sections.py: {report} has no section {name[1]}")
