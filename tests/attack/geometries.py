@@ -2,7 +2,7 @@
 """Hostile geometries: none runs a program or makes, changes or removes a file; each is meshed or refused in time."""
 import os
 
-from place import COARSE, changed
+from place import COARSE, MESH_SECONDS, changed
 
 MARK = "/tmp/softfall-attack-marker"
 PAD = 'Include "geo/pad.geo";\n'
@@ -52,7 +52,7 @@ def attack(place, tally, random, turns):
         if os.path.exists(MARK):
             os.remove(MARK)
         outcome = place.run(place.command("pre", "good.cfg", "-o", "made.h5", *COARSE, "--set", 'geometry.file=self.geo',
-                                          "--set", "geometry.time_limit=20 s"), seconds=90)
+                                          "--set", "geometry.time_limit=20 s"), seconds=MESH_SECONDS)
         made = place.path("made.h5")
         if outcome.code == 0 and os.path.exists(made):
             os.remove(made)

@@ -7,7 +7,7 @@ import math
 import re
 import subprocess
 
-from place import COARSE
+from place import COARSE, MESH_SECONDS
 
 GEOMETRY = {"geometry.parameters.thickness": (1e-6, 1e12), "geometry.parameters.side": (1e-6, 1e12),
             "geometry.missile_parameters.diameter": (1e-6, 1e300)}
@@ -47,7 +47,7 @@ def attack(place, tally, random, turns):
             words += ["--set", "%s=%s" % (key, '"%s %s"' % (value, unit) if unit else value)]
         attempt = " ".join(words)
         outcome = place.run(place.command("pre", "good.cfg", "-o", "model.h5", "--force", *COARSE, "--set",
-                                          "geometry.time_limit=20 s", *words), seconds=90)
+                                          "geometry.time_limit=20 s", *words), seconds=MESH_SECONDS)
         if outcome.code == 0 and not outcome.fault():
             # A drop may last long by its values alone: interrupted after a while, it ends in the agreed form.
             solve = place.command("solve", "model.h5", "-o", "results.h5", "--force", "--threads", "1")

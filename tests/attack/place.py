@@ -19,6 +19,7 @@ COARSE = ["--set", "geometry.parameters.fine_spacing=20.0", "--set", "geometry.p
 CODES = {2, 3, 4, 5, 6, 7, 8, 9, 64, 130}  # of the programs; everything else is a crash or an accident
 OUTCOMES = {0: "succeeded", 5: "numerical failure", 130: "interrupted"}  # all others: refused
 SECONDS = 60  # a command of the coarse drop takes half a second; a slow machine is not a hang
+MESH_SECONDS = 600  # where gmsh may take 20 s of processor time: a starved process takes ten times that and more on the clock
 SANITIZERS = re.compile(r"(Address|Leak|Thread|UndefinedBehavior)Sanitizer|runtime error:")
 LOADER = "error while loading shared libraries"  # the attack ends the program before its first line
 SENTENCE = re.compile(r"^(softfall-\w+): (?!warning: |note: )")  # of an error; warnings and notes may stand before it
