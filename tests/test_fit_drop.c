@@ -349,11 +349,31 @@ static void put_case(const program_place *place) {
         place, "start.cfg",
         "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"start.csv\"; HU = 0.01; ED = \"2 MPa\"; "
         "BETA1 = \"5000 1/s\";\n");
+    program_write_text(
+        place, "rates.cfg",
+        "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curves = ( { rate = \"1 1/s\"; file = \"start.csv\"; },\n"
+        "{ rate = \"100 1/s\"; file = \"fast.csv\"; } );\n");
+    program_write_text(place, "fast.csv", "strain,stress_kPa\n0,0\n0.02,9\n0.5,90\n0.9,2200\n");
     program_write_text(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
 }
 
 #define TEN "0123456789"
 #define LONG_NAME TEN TEN TEN TEN TEN TEN TEN
+
+#define ONE(name) "{ name = \"" name "\"; }, "
+#define ALL_OF_SPLINE                                                                                        \
+    ONE("spline_1")                                                                                          \
+    ONE("spline_2")                                                                                          \
+    ONE("spline_3")                                                                                          \
+    ONE("spline_4")                                                                                          \
+    ONE("spline_5")                                                                                          \
+    ONE("spline_6")                                                                                          \
+    ONE("spline_7")                                                                                          \
+    ONE("spline_8")                                                                                          \
+    ONE("spline_9")                                                                                          \
+    ONE("s0")                                                                                                \
+    ONE("p0")                                                                                                \
+    ONE("B") ONE("m") ONE("E") ONE("HU") ONE("SHAPE") ONE("ALPHA") ONE("eta") "{ name = \"BETA1\"; }"
 
 static void bad_input_gets_one_sentence(void **state) {
     (void)state;
@@ -362,7 +382,7 @@ static void bad_input_gets_one_sentence(void **state) {
     } bad[] = {
         {MATERIAL, "drops is missing"},
         {MATERIAL "forms = ( { rate = \"none\"; } );\n" DROPS("a_max_g = 60.0;"),
-         "forms.[0].curve is missing"},
+         "fit.cfg:2: curve is missing"},
         {MATERIAL "curve_form = \"gas\"; forms = ( { curve = \"gas\"; } );\n" DROPS("a_max_g = 60.0;"),
          "give either forms or curve_form"},
         {MATERIAL "forms = ( { curve = \"gas\"; } ); posterior = false;\n" DROPS("a_max_g = 60.0;"),
@@ -411,6 +431,16 @@ static void bad_input_gets_one_sentence(void **state) {
         {GOOD "start: { q0 = \"3 kPa\"; };\n", "\"q0\" is no parameter of the foam"},
         {GOOD "start: { m = 0.5; };\n", "m is 0.5, outside 1.001 to 10"},
         {GOOD "start = 3;\n", "start must be a group"},
+        {GOOD "solid_density = \"940 kg/m3\";\n", "solid_density is given, but curve_form = \"gas\" has no"},
+        {GOOD
+         "curve_form = \"gas_solid\"; solid_density = \"940 kg/m3\"; start: { solid_fraction = 0.3; };\n",
+         "the solid fraction is given twice"},
+        {GOOD "start: { eta = \"1 Pa s\"; };\n"
+              "forms = ( { curve = \"spline\"; rate = \"both\"; unknown = ( " ALL_OF_SPLINE " ); } );\n",
+         "would be one more than 20 unknown parameters"},
+        {"material = \"rates.cfg\"; forms = ( { curve = \"table\"; rate = \"factor\"; } );\n" DROPS(
+             "a_max_g = 60.0;"),
+         "rates.cfg, which has 2 curves at several rates; a foam has one or the other"},
         {GOOD "unknown = ( { name = \"p1\"; } );\n", "\"p1\" is no parameter of the foam"},
         {GOOD "unknown = ( { name = \"stress_scale\"; } );\n", "is no parameter of curve_form = \"gas\""},
         {GOOD "unknown = ( { name = \"eta\"; } );\n", "eta is 0 in the start material"},
@@ -428,6 +458,31 @@ static void bad_input_gets_one_sentence(void **state) {
             fail_msg("%s\nexit code %d, expected \"%s\", got: %s", bad[k].text, r.code, bad[k].sentence,
                      r.err);
     }
+    program_tear_down(&place);
+}
+
+/* The form with most parameters, with unloading and both terms of the rate: none is lost. */
+static void every_unknown_is_identified(void **state) {
+    (void)state;
+    program_place place;
+    sf_fit_input input;
+    sf_error err = SF_ERROR_INIT;
+    bool factor = false, maxwell = false;
+    program_set_up(&place);
+    put_case(&place);
+    program_write_text(&place, "fit.cfg",
+                       GOOD
+                       "unknown = ( { name = \"HU\"; }, { name = \"SHAPE\"; }, { name = \"ALPHA\"; } );\n"
+                       "forms = ( { curve = \"spline\"; rate = \"both\"; } );\n");
+    if (sf_fit_input_read(program_path(&place, "fit.cfg"), 0, &input, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    for (int k = 0; k < input.unknown_count; k++) {
+        factor = factor || input.unknown[k] == SF_PARAMETER_RATE_FACTOR;
+        maxwell = maxwell || input.unknown[k] == SF_PARAMETER_ED;
+    }
+    assert_int_equal(input.unknown_count, 15);
+    assert_true(factor && maxwell);
+    sf_fit_input_free(&input);
     program_tear_down(&place);
 }
 
@@ -718,6 +773,7 @@ int main(void) {
         cmocka_unit_test(mapping_survives_rejected_and_failed_steps),
         cmocka_unit_test(mapping_passes_on_a_failed_simulation),
         cmocka_unit_test(bad_input_gets_one_sentence),
+        cmocka_unit_test(every_unknown_is_identified),
         cmocka_unit_test(measured_curves_are_filtered_like_the_simulated),
         cmocka_unit_test(hidden_foam_is_found),
         cmocka_unit_test(killed_fit_ends_with_the_same_material),

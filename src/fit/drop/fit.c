@@ -14,6 +14,9 @@ enum { MAX_ITERATIONS = 8 };
 static const double TOLERANCE = 0.1;  /* of a standard deviation: the last step */
 static const double BIN_WIDTH = 0.05; /* of strain */
 
+_Static_assert(SF_MAPPING_MAX_PARAMETERS >= SF_FIT_MAX_UNKNOWNS + SF_FIT_MAX_DROPS,
+               "the unknown parameters and the speed of every drop");
+
 /* ---- parameters and responses ---- */
 
 static void values_of(const sf_fit_input *in, const double *u, double value[SF_PARAMETER_COUNT]) {

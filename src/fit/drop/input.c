@@ -210,9 +210,18 @@ static bool starts_solid_fraction(const config_setting_t *holder) {
 static sf_status check_solid_fraction(const sf_config *config, const config_setting_t *root,
                                       const sf_fit_input *in, sf_error *err) {
     const config_setting_t *model = model_of(root, in);
-    bool known = in->form.solid_density > 0 || starts_solid_fraction(root) || starts_solid_fraction(model);
+    bool dense = in->form.solid_density > 0,
+         given = starts_solid_fraction(root) || starts_solid_fraction(model), known = dense || given;
     for (int k = 0; k < in->unknown_count; k++)
         known = known || in->unknown[k] == SF_PARAMETER_SOLID_FRACTION;
+    if (dense && given)
+        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err,
+                                "the solid fraction is given twice: by solid_density, and as solid_fraction "
+                                "in start");
+    if (dense && model == root && !sf_curve_form_entry(in->form.curve, SF_PARAMETER_SOLID_FRACTION))
+        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err,
+                                "solid_density is given, but curve_form = \"%s\" has no solid fraction",
+                                in->form.curve->name);
     if (in->form.curve == &sf_form_gas_solid && !known)
         return sf_config_refuse(config,
                                 config_setting_get_member(model, model == root ? "curve_form" : "curve"), err,
@@ -311,6 +320,21 @@ static sf_status check_start(const sf_config *config, const config_setting_t *ro
     return SF_OK;
 }
 
+/* One more unknown, with its usual prior; SF_ERR_INPUT names `where` if there are too many. */
+static sf_status put_unknown(const sf_config *config, const config_setting_t *where, sf_fit_input *in,
+                             sf_foam_parameter p, sf_error *err) {
+    int k = in->unknown_count;
+    if (k == SF_FIT_MAX_UNKNOWNS)
+        return sf_config_refuse(config, where, err,
+                                "%s would be one more than %d unknown parameters, which is the most",
+                                sf_parameter_get(p)->name, SF_FIT_MAX_UNKNOWNS);
+    in->unknown[k] = p;
+    in->prior[k] = in->start[p];
+    in->prior_sd[k] = sf_foam_form_prior_sd(&in->form, p);
+    in->unknown_count++;
+    return SF_OK;
+}
+
 static sf_status read_unknown(const sf_config *config, const config_setting_t *entry, sf_fit_input *in,
                               sf_error *err) {
     const char *name = NULL;
@@ -332,11 +356,9 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
         return sf_config_refuse(config, entry, err,
                                 "%s is 0 in the start material: give a start value, start: { %s = ...; }",
                                 name, name);
-    int k = in->unknown_count++;
-    in->unknown[k] = p;
-    in->prior[k] = in->start[p];
-    in->prior_sd[k] = sf_foam_form_prior_sd(&in->form, p);
-    return sf_config_number(config, entry, "prior_sd", false, 1e-3, 10, &in->prior_sd[k], err);
+    SF_TRY(put_unknown(config, entry, in, p, err));
+    return sf_config_number(config, entry, "prior_sd", false, 1e-3, 10, &in->prior_sd[in->unknown_count - 1],
+                            err);
 }
 
 static sf_status read_list(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
@@ -350,23 +372,24 @@ static sf_status read_list(const sf_config *config, const config_setting_t *hold
     return err->status;
 }
 
-static void add_unknown(sf_fit_input *in, sf_foam_parameter p) {
+static sf_status add_unknown(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+                             sf_foam_parameter p, sf_error *err) {
     for (int k = 0; k < in->unknown_count; k++)
         if (in->unknown[k] == p)
-            return;
-    if (!(in->start[p] > 0) || in->unknown_count == SF_FIT_MAX_UNKNOWNS) /* a material without the branch */
-        return;
-    in->unknown[in->unknown_count] = p;
-    in->prior[in->unknown_count] = in->start[p];
-    in->prior_sd[in->unknown_count++] = sf_foam_form_prior_sd(&in->form, p);
+            return SF_OK;
+    if (!(in->start[p] > 0)) /* a material without the branch */
+        return SF_OK;
+    return put_unknown(config, model, in, p, err);
 }
 
 /* Without a list: those that are usual for the form. */
-static void add_usual(sf_fit_input *in) {
+static sf_status add_usual(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+                           sf_error *err) {
     sf_foam_parameter usual[SF_PARAMETER_COUNT];
     int count = sf_foam_form_usual(&in->form, usual);
     for (int k = 0; k < count; k++)
-        add_unknown(in, usual[k]);
+        SF_TRY(add_unknown(config, model, in, usual[k], err));
+    return SF_OK;
 }
 
 /* The rate terms of an entry of `forms`: those that it names are unknown, the others are not there. */
@@ -388,9 +411,22 @@ static sf_status read_rate(const sf_config *config, const config_setting_t *mode
     return SF_OK;
 }
 
-static void add_rate(sf_fit_input *in) {
-    add_unknown(in, SF_PARAMETER_ED);
-    add_unknown(in, SF_PARAMETER_RATE_FACTOR);
+static sf_status add_rate(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+                          sf_error *err) {
+    SF_TRY(add_unknown(config, model, in, SF_PARAMETER_ED, err));
+    return add_unknown(config, model, in, SF_PARAMETER_RATE_FACTOR, err);
+}
+
+/* The law refuses it too, but only when the material is simulated. */
+static sf_status check_rate_factor(const sf_config *config, const config_setting_t *model,
+                                   const sf_fit_input *in, sf_error *err) {
+    if (in->start[SF_PARAMETER_RATE_FACTOR] > 0 && !in->form.curve->stress && in->form.base.curve_count > 1)
+        return sf_config_refuse(
+            config, model, err,
+            "a rate factor cannot act on the form \"table\" of %s, which has %lld curves at "
+            "several rates; a foam has one or the other",
+            in->material_path, (long long)in->form.base.curve_count);
+    return SF_OK;
 }
 
 /* Of an entry of `forms`: those that the file lists for all models, and its own or those usual for the form,
@@ -403,9 +439,10 @@ static sf_status read_unknowns(const sf_config *config, const config_setting_t *
         (model != root && read_list(config, model, in, &own, err) != SF_OK))
         return err->status;
     if (model == root ? !common : !own)
-        add_usual(in);
+        SF_TRY(add_usual(config, model, in, err));
     if (config_setting_get_member(model, "rate"))
-        add_rate(in);
+        SF_TRY(add_rate(config, model, in, err));
+    SF_TRY(check_rate_factor(config, model, in, err));
     return check_solid_fraction(config, root, in, err);
 }
 

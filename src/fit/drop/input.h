@@ -10,7 +10,7 @@
 #include "post/reference.h"
 
 enum { SF_FIT_MAX_MODELS = 16 };
-enum { SF_FIT_MAX_DROPS = 24, SF_FIT_MAX_UNKNOWNS = 12, SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
+enum { SF_FIT_MAX_DROPS = 24, SF_FIT_MAX_UNKNOWNS = 20, SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
 
 /* A drop that was measured, or (predicted) is only to be simulated with the identified material. */
 typedef struct sf_fit_drop {
