@@ -209,16 +209,19 @@ static void zorbium_has_a_master_curve(void **state) {
 
 /* ---- the program ---- */
 
-static void put_data(const program_place *place) {
-    FILE *file = fopen(program_path(place, "t.csv"), "w");
+static void put_data(const program_place *place, const char *name, double factor) {
+    FILE *file = fopen(program_path(place, name), "w");
     assert_non_null(file);
     const sf_gas_curve curve = {0.4e6, 8e3, 101e3, 25e3, 3, 0};
     fputs("strain,stress_kPa\n", file);
     for (int k = 1; k <= 70; k++)
-        fprintf(file, "%.3f,%.4f\n", 0.01 * k, 1e-3 * sf_gas_curve_stress(&curve, 0.01 * k));
+        fprintf(file, "%.3f,%.4f\n", 0.01 * k, 1e-3 * factor * sf_gas_curve_stress(&curve, 0.01 * k));
     assert_int_equal(fclose(file), 0);
 }
 
+#define TWO                                                                                                  \
+    "density = \"35 kg/m3\"; curve_form = \"gas\"; tests = ( { file = \"t.csv\"; rate = \"0.01 1/s\"; },\n"  \
+    "{ file = \"t.csv\"; rate = \"0.1 1/s\"; } );\n"
 #define GOOD "density = \"35 kg/m3\"; tests = ( { file = \"t.csv\"; rate = \"0.01 1/s\"; } );\n"
 
 static void bad_input_gets_one_sentence(void **state) {
@@ -236,13 +239,32 @@ static void bad_input_gets_one_sentence(void **state) {
         {GOOD "curve_form = \"gas\"; unknown = ( \"HU\" );", "neither E nor a parameter of"},
         {GOOD "curve_form = \"gas\"; unknown = \"E\";", "unknown must be a list"},
         {GOOD "curve_form = \"gas\"; start = { HU = 0.1; };", "start: \"HU\" is neither E"},
+        {TWO "rate_model = \"factor\"; rate_reference = \"0.1 1/s\";", "the fastest test has 0.1 1/s"},
+        {TWO "rate_model = \"factor\"; rate_reference = \"1e3 1/s\";", "the fastest test has 0.1 1/s"},
+        {TWO "rate_model = \"factor\"; rate_reference = \"1e-10 1/s\";", "it must be at least 1e-09"},
+        {TWO "rate_model = \"maxwell\"; rate_reference = \"0.01 1/s\";",
+         "rate_reference is given, but rate_model = \"maxwell\" has none"},
+        {TWO "start = { ED = \"1 MPa\"; };", "ED is given, but rate_model = \"none\" has none"},
+        {TWO "rate_model = \"factor\"; start = { BETA1 = \"10 1/s\"; };",
+         "BETA1 is given, but rate_model = \"factor\" has none: give rate_model = \"maxwell\" or"},
+        {TWO "start = { rate_factor = 0.5; };",
+         "rate_factor is given, but rate_model = \"none\" has none: give rate_model = \"factor\" or"},
+        {TWO "unknown = ();", "there is nothing to fit"},
+        {GOOD "curve_form = \"gas\"; solid_density = \"940 kg/m3\";", "has no solid fraction"},
+        {GOOD "curve_form = \"gas_solid\"; solid_density = \"940 kg/m3\"; start = { solid_fraction = 0.1; };",
+         "given twice: by solid_density, which makes it 0.0372"},
+        {GOOD "curve_form = \"gas_solid\"; start = { solid_fraction = 0.3; };",
+         "t.csv reaches a strain of 0.7, but with solid_fraction = 0.3"},
+        {GOOD
+         "curve_form = \"gas_solid\"; unknown = ( \"solid_fraction\" ); start = { solid_fraction = 0.45; };",
+         "ends at 0.37: the solid fraction is too large"},
         {GOOD "curve_form = \"gas\"; densification = \"H1\";", "unknown key \"densification\""},
         {GOOD "predict = ( { file = \"t.csv\"; rate = \"1 1/s\"; } );", "unknown key \"predict\""},
         {GOOD "solid_density = \"940 kg/m3\";", "unknown key \"solid_density\""},
     };
     program_place place;
     program_set_up(&place);
-    put_data(&place);
+    put_data(&place, "t.csv", 1);
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         program_write_text(&place, "fit.cfg", bad[k].text);
         program_result r = program_run(&place, "fit", "compression fit.cfg -o out");
@@ -257,7 +279,7 @@ static void the_files_are_written(void **state) {
     (void)state;
     program_place place;
     program_set_up(&place);
-    put_data(&place);
+    put_data(&place, "t.csv", 1);
     program_write_text(&place, "fit.cfg", GOOD "curve_form = \"gas\"; name = \"foam of a test\";\n");
     program_result r = program_succeed(&place, "fit", "compression fit.cfg -o out");
     assert_non_null(strstr(r.out, "with 5 parameters"));
@@ -277,6 +299,121 @@ static void the_files_are_written(void **state) {
     program_tear_down(&place);
 }
 
+/* A law with a factor has the filter and the damping that cost no time step; DAMP is the user's if given. */
+static void the_factor_brings_its_filter_and_damping(void **state) {
+    (void)state;
+    static const struct {
+        const char *keys;
+        double filter, damp;
+    } cases[] = {{"rate_model = \"none\";", 1e-4, 0},
+                 {"rate_model = \"maxwell\";", 1e-4, 0},
+                 {"rate_model = \"factor\";", 5e-4, 0.05},
+                 {"rate_model = \"both\";", 5e-4, 0.05},
+                 {"rate_model = \"factor\"; DAMP = 0.2;", 5e-4, 0.2},
+                 {"rate_model = \"factor\"; DAMP = 0.0;", 5e-4, 0}};
+    program_place place;
+    program_set_up(&place);
+    put_data(&place, "t.csv", 1);
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        sf_compression_config config;
+        sf_foam_card card;
+        sf_error err = SF_ERROR_INIT;
+        char text[1024];
+        snprintf(text, sizeof text, "%s%s", TWO, cases[k].keys);
+        if (sf_compression_config_read(program_write_text(&place, "fit.cfg", text), &config, &err) != SF_OK ||
+            sf_foam_form_card(&config.form.form, config.form.start, &card, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_true(card.rate_filter_time == cases[k].filter && card.damp == cases[k].damp);
+        sf_foam_card_free(&card);
+        sf_compression_config_free(&config);
+    }
+    program_tear_down(&place);
+}
+
+/* What the tests do not determine, what is at a bound and what the law cannot say is marked where it stands.
+ */
+static void weak_results_are_marked(void **state) {
+    (void)state;
+    program_place place;
+    program_set_up(&place);
+    put_data(&place, "t.csv", 1);
+    put_data(&place, "fast.csv", 1.1);
+    program_write_text(&place, "fit.cfg",
+                       "density = \"35 kg/m3\"; curve_form = \"gas\"; rate_model = \"factor\";\n"
+                       "tests = ( { file = \"t.csv\"; rate = \"0.01 1/s\"; },\n"
+                       "{ file = \"fast.csv\"; rate = \"0.1 1/s\"; } );\n"
+                       "predict = ( { file = \"t.csv\"; rate = \"0.001 1/s\"; },\n"
+                       "{ file = \"fast.csv\"; rate = \"0.1 1/s\"; } );\n");
+    program_result r = program_succeed(&place, "fit", "compression fit.cfg -o out");
+    assert_non_null(strstr(r.err, "at 0.001 1/s is below rate_reference = 0.01 1/s"));
+    assert_null(strstr(r.err, "at 0.1 1/s is below"));
+    program_bytes material = program_read_file(program_path(&place, "out/material.cfg"));
+    assert_non_null(strstr(material.data, "at 0.001 1/s (below rate_reference"));
+    assert_non_null(strstr(material.data, "rate_filter_time = \"0.5 ms\""));
+    assert_null(strstr(material.data, "do not determine"));
+    free(material.data);
+    /* without B the search takes s0 to its bound, where E has no effect */
+    program_write_text(&place, "fit.cfg",
+                       GOOD "curve_form = \"gas\"; unknown = ( \"E\", \"s0\", \"p0\", \"m\" );\n"
+                            "start = { B = \"0.01 Pa\"; };\n");
+    program_succeed(&place, "fit", "compression fit.cfg -o out --force");
+    material = program_read_file(program_path(&place, "out/material.cfg"));
+    assert_non_null(strstr(material.data, "(these tests do not determine it), modulus"));
+    assert_non_null(strstr(material.data, "kPa (at its bound), yield stress"));
+    free(material.data);
+    program_tear_down(&place);
+}
+
+/* HU ends at its least with ALPHA = 1, and is inside with ALPHA free. */
+static void unloading_at_a_bound_is_marked_in_json(void **state) {
+    (void)state;
+    char arguments[1200];
+    program_place place;
+    program_set_up(&place);
+    snprintf(arguments, sizeof arguments, "compression %s/examples/fit/foams/vn600.cfg -o out",
+             getenv("SF_SOURCE_DIR"));
+    program_succeed(&place, "fit", arguments);
+    program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
+    const char *one = strstr(json.data, "\"unloading_with_ALPHA_1\""),
+               *all = strstr(json.data, "\"unloading\"");
+    assert_true(one && all);
+    const char *mark = strstr(one, "\"at_bound\": ["), *end = mark ? strchr(mark, ']') : NULL;
+    assert_true(end && strstr(mark, "\"HU\"") && strstr(mark, "\"HU\"") < end);
+    mark = strstr(all, "\"at_bound\": [");
+    assert_true(mark && !memchr(mark + 13, '"', (size_t)(strchr(mark, ']') - mark - 13)));
+    free(json.data);
+    program_tear_down(&place);
+}
+
+/* The files of examples/fit/foams say what docs/identification.md says of them. */
+static void examples_of_foams(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        int parameters;
+        double least, most; /* rms of loading */
+        bool poor;
+    } cases[] = {{"leap", 3, 0.0055, 0.0065, false},
+                 {"zorbium", 6, 0.015, 0.017, false},
+                 {"vn600", 2, 0.046, 0.048, false}};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        sf_compression_config config;
+        sf_form_fit fit;
+        sf_error err = SF_ERROR_INIT;
+        char path[1024];
+        snprintf(path, sizeof path, "%s/examples/fit/foams/%s.cfg", getenv("SF_SOURCE_DIR"), cases[k].name);
+        if (sf_compression_config_read(path, &config, &err) != SF_OK ||
+            sf_form_fit_run(&config, &fit, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_int_equal(config.form.unknown_count, cases[k].parameters);
+        if (!(fit.loading_rms > cases[k].least && fit.loading_rms < cases[k].most))
+            fail_msg("%s: rms %g", cases[k].name, fit.loading_rms);
+        assert_true(sf_form_fit_is_poor(&fit) == cases[k].poor);
+        sf_form_fit_free(&fit);
+        sf_compression_config_free(&config);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_known_foam_is_found),
@@ -285,6 +422,10 @@ int main(void) {
         cmocka_unit_test(zorbium_has_a_master_curve),
         cmocka_unit_test(bad_input_gets_one_sentence),
         cmocka_unit_test(the_files_are_written),
+        cmocka_unit_test(the_factor_brings_its_filter_and_damping),
+        cmocka_unit_test(weak_results_are_marked),
+        cmocka_unit_test(unloading_at_a_bound_is_marked_in_json),
+        cmocka_unit_test(examples_of_foams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,7 +11,8 @@
 #include <string.h>
 
 static const char *const output_names[] = {"fit.csv", "fit.json", "material.csv", "material.cfg", NULL};
-static const char AT_BOUND[] = " (at its bound)";
+static const char AT_BOUND[] = " (at its bound)", UNDETERMINED[] = " (these tests do not determine it)",
+                  BELOW_REFERENCE[] = " (below rate_reference, where the law has no effect of the rate)";
 static const char *const unloading_names[3] = {"HU", "SHAPE", "ALPHA"};
 static const char POOR_WARNING[] =
     "the form does not describe these tests: a deviation exceeds 10 % of the largest stress";
@@ -30,8 +31,10 @@ static void put_unknowns(FILE *out, const sf_form_fit *fit) {
                 *about->unit ? " " : "", about->unit);
         if (fit->at_bound[k])
             fputs(AT_BOUND, out);
-        else
+        else if (isfinite(fit->error[k]))
             fprintf(out, " +- %.2g %%", 100 * fit->error[k]);
+        if (!sf_form_fit_determines(fit, k) && !fit->at_bound[k])
+            fputs(UNDETERMINED, out);
         fprintf(out, ", %s\n", about->description);
     }
 }
@@ -45,9 +48,10 @@ static void put_unloading(FILE *out, const sf_form_unloading *u) {
             u->factor_rms);
 }
 
-static void put_test(FILE *out, const sf_compression_test *t, const sf_form_test *f, const char *how) {
-    fprintf(out, "  %s %s at %.4g 1/s: rms of loading %.2g %% of the largest stress", how, t->path, t->rate,
-            100 * f->loading_rms);
+static void put_test(FILE *out, const sf_form_fit *fit, const sf_compression_test *t, const sf_form_test *f,
+                     const char *how) {
+    fprintf(out, "  %s %s at %.4g 1/s%s: rms of loading %.2g %% of the largest stress", how, t->path, t->rate,
+            sf_form_fit_is_below_reference(fit, t) ? BELOW_REFERENCE : "", 100 * f->loading_rms);
     if (isfinite(f->unloading_rms))
         fprintf(out, ", of unloading %.2g %%; energy returned: %.3g %% measured, %.3g %% by the law",
                 100 * f->unloading_rms, 100 * f->returned_measured, 100 * f->returned_fitted);
@@ -65,9 +69,9 @@ static void put_fit(FILE *out, const sf_form_fit *fit) {
         put_unloading(out, &fit->unloading);
     }
     for (int k = 0; k < c->test_count; k++)
-        put_test(out, &c->test[k], &fit->test[k], "fitted");
+        put_test(out, fit, &c->test[k], &fit->test[k], "fitted");
     for (int k = 0; k < c->predicted_count; k++)
-        put_test(out, &c->predicted[k], &fit->predicted[k], "predicted");
+        put_test(out, fit, &c->predicted[k], &fit->predicted[k], "predicted");
 }
 
 /* ---- files ---- */
@@ -127,6 +131,7 @@ static void json_unknowns(sf_json *json, const sf_form_fit *fit) {
         sf_json_number(json, "value", fit->value[r->unknown[k]] / about->per_unit);
         sf_json_number(json, "relative_error", fit->error[k]);
         sf_json_bool(json, "at_bound", fit->at_bound[k]);
+        sf_json_bool(json, "determined", sf_form_fit_determines(fit, k));
         sf_json_close(json, '}');
     }
     sf_json_close(json, ']');
@@ -136,18 +141,24 @@ static void json_unloading(sf_json *json, const char *key, const sf_form_unloadi
     sf_json_open(json, key, '{');
     for (int k = 0; k < 3; k++)
         sf_json_number(json, unloading_names[k], u->value[k]);
+    sf_json_open(json, "at_bound", '[');
+    for (int k = 0; k < 3; k++)
+        if (u->at_bound[k])
+            sf_json_text(json, NULL, unloading_names[k]);
+    sf_json_close(json, ']');
     sf_json_number(json, "rms", u->rms);
     sf_json_number(json, "factor_rms", u->factor_rms);
     sf_json_close(json, '}');
 }
 
-static void json_tests(sf_json *json, const char *key, int count, const sf_compression_test *tests,
-                       const sf_form_test *fits) {
+static void json_tests(sf_json *json, const sf_form_fit *fit, const char *key, int count,
+                       const sf_compression_test *tests, const sf_form_test *fits) {
     sf_json_open(json, key, '[');
     for (int k = 0; k < count; k++) {
         sf_json_open(json, NULL, '{');
         sf_json_text(json, "file", tests[k].path);
         sf_json_number(json, "rate_1_s", tests[k].rate);
+        sf_json_bool(json, "below_rate_reference", sf_form_fit_is_below_reference(fit, &tests[k]));
         sf_json_number(json, "largest_strain", tests[k].largest_strain);
         sf_json_number(json, "largest_stress_Pa", tests[k].largest_stress);
         sf_json_number(json, "loading_rms", fits[k].loading_rms);
@@ -178,8 +189,8 @@ static sf_status write_json(const sf_staging *output, const sf_form_fit *fit, sf
         json_unloading(&json, "unloading_with_ALPHA_1", &fit->unloading_of_one);
         json_unloading(&json, "unloading", &fit->unloading);
     }
-    json_tests(&json, "tests", c->test_count, c->test, fit->test);
-    json_tests(&json, "predicted", c->predicted_count, c->predicted, fit->predicted);
+    json_tests(&json, fit, "tests", c->test_count, c->test, fit->test);
+    json_tests(&json, fit, "predicted", c->predicted_count, c->predicted, fit->predicted);
     sf_json_close(&json, '}');
     fputs("\n", file);
     return sf_staging_close(file, "fit.json", err);
@@ -195,6 +206,29 @@ static sf_status write_all(const sf_form_fit *fit, const char *directory, bool f
     return err->status;
 }
 
+static bool is_of_rate(sf_foam_parameter p) {
+    return p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
+}
+
+static void warn(const sf_form_fit *fit, const sf_sink *sink) {
+    const sf_compression_config *c = fit->config;
+    if (sf_form_fit_is_poor(fit))
+        sf_sink_tell(sink, SF_WARNING, "%s", POOR_WARNING);
+    for (int k = 0; k < c->form.unknown_count; k++)
+        if (is_of_rate(c->form.unknown[k]) && !sf_form_fit_determines(fit, k))
+            sf_sink_tell(
+                sink, SF_WARNING,
+                "these tests do not determine %s: its standard error exceeds 100 %%, or it is at its bound",
+                sf_parameter_get(c->form.unknown[k])->name);
+    for (int k = 0; k < c->predicted_count; k++)
+        if (sf_form_fit_is_below_reference(fit, &c->predicted[k]))
+            sf_sink_tell(
+                sink, SF_WARNING,
+                "the predicted test %s at %g 1/s is below rate_reference = %g 1/s, where the law has no "
+                "effect of the rate",
+                c->predicted[k].path, c->predicted[k].rate, fit->value[SF_PARAMETER_RATE_REFERENCE]);
+}
+
 sf_status sf_form_fit_write(const sf_compression_config *config, const char *directory, bool force, FILE *log,
                             const sf_sink *sink, sf_error *err) {
     sf_form_fit fit;
@@ -204,8 +238,7 @@ sf_status sf_form_fit_write(const sf_compression_config *config, const char *dir
         put_fit(log, &fit);
         fprintf(log, "Files in %s: material.cfg, material.csv, fit.json, fit.csv\n", directory);
         fflush(log);
-        if (sf_form_fit_is_poor(&fit))
-            sf_sink_tell(sink, SF_WARNING, "%s", POOR_WARNING);
+        warn(&fit, sink);
     }
     sf_form_fit_free(&fit);
     return err->status;

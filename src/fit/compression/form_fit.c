@@ -20,6 +20,8 @@ static const double FAR = 1e3;          /* deviation where there is no stress */
 static const double RIDGE = 1e-4;       /* holds what the tests do not determine near its median */
 static const double AT_BOUND = 1e-3;    /* of the range */
 static const double POOR = 0.1;         /* rms over the largest stress */
+static const double NO_FIT = 1;         /* the same */
+static const double UNDETERMINED = 1;   /* relative standard error */
 static const double AWAY = 1.5;         /* standard deviations of the prior, of the other starts */
 static const double LEAST_RATIO = 0.05; /* part of the largest W above which f is compared */
 static const double UNLOADING_LEAST[3] = {1e-4, 0.05, 0.1}, UNLOADING_RANGE[3] = {1 - 1e-4, 20, 4.9};
@@ -194,6 +196,12 @@ static sf_status fit_loading(problem *p, sf_form_fit *fit, sf_error *err) {
             sum += p->reduced[i] * p->reduced[i];
         fit->loading_rms = sqrt(sum / p->points);
         take_errors(p, best, covariance, least, fit);
+        if (!(fit->loading_rms < NO_FIT))
+            SF_FAIL(
+                err, SF_ERR_NUMERIC,
+                "the best curve of curve_form = \"%s\" deviates from the tests by more than their largest "
+                "stress (rms)",
+                p->request->form.curve->name);
     } else {
         SF_FAIL(err, SF_ERR_NUMERIC, "no search for the parameters of curve_form = \"%s\" converges",
                 p->request->form.curve->name);
@@ -439,6 +447,15 @@ void sf_form_fit_free(sf_form_fit *fit) {
     }
     sf_foam_card_free(&fit->card);
     *fit = (sf_form_fit){0};
+}
+
+bool sf_form_fit_determines(const sf_form_fit *fit, int unknown) {
+    return fit->error[unknown] < UNDETERMINED; /* NaN: at its bound */
+}
+
+bool sf_form_fit_is_below_reference(const sf_form_fit *fit, const sf_compression_test *test) {
+    return fit->config->form.rate & SF_FORM_RATE_FACTOR &&
+           test->rate < fit->value[SF_PARAMETER_RATE_REFERENCE] * (1 - 1e-9);
 }
 
 bool sf_form_fit_is_poor(const sf_form_fit *fit) {

@@ -36,9 +36,18 @@ typedef struct sf_form_fit {
     sf_foam_card card; /* the material; curves owned */
 } sf_form_fit;
 
-/* `config` is borrowed until sf_form_fit_free. SF_ERR_NUMERIC if no search converges or its curve is none. */
+/* `config` is borrowed until sf_form_fit_free. SF_ERR_NUMERIC if no search converges, its curve is none, or
+ * it deviates by more than the tests' largest stress. */
 sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit, sf_error *err);
 void sf_form_fit_free(sf_form_fit *fit);
+
+/* Is the standard error of an unknown, by its number, below its own value? Not at a bound, where there is
+ * none. */
+bool sf_form_fit_determines(const sf_form_fit *fit, int unknown);
+
+/* Is the test slower than the reference rate of the rate factor, below which the law has no effect of the
+ * rate? */
+bool sf_form_fit_is_below_reference(const sf_form_fit *fit, const sf_compression_test *test);
 
 /* Is a deviation of the fitted tests above a tenth of the largest stress? */
 bool sf_form_fit_is_poor(const sf_form_fit *fit);

@@ -9,6 +9,11 @@ static const char RATE_WORDS[] = "none|factor|maxwell|both";
 static const char FREE_FORM[] = "free";
 enum { LEAST_POINTS = 4 }; /* of the slope that E begins with */
 
+/* A material with a rate factor: its filter of the rate is short beside an impact and costs no time step, and
+ * little damping is enough (ADR 20). */
+static const double FILTER_TIME = 1e-4, FACTOR_FILTER_TIME = 5e-4; /* s */
+static const double FACTOR_DAMP = 0.05;
+
 const char *sf_form_rate_name(sf_form_rate rate) {
     return RATES[rate];
 }
@@ -41,6 +46,20 @@ static bool is_of_curve(const sf_form_request *r, sf_foam_parameter p) {
     return p < SF_PARAMETER_COUNT && (p == SF_PARAMETER_E || sf_curve_form_entry(r->form.curve, p));
 }
 
+/* A value of the rate that the rate model does not have would be lost, or act where none is asked for. */
+static sf_status check_rate_value(const sf_config *file, const config_setting_t *item, sf_foam_parameter p,
+                                  const sf_form_request *r, sf_error *err) {
+    bool factor = p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE,
+         maxwell = p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
+    if ((factor && !(r->rate & SF_FORM_RATE_FACTOR)) || (maxwell && !(r->rate & SF_FORM_RATE_MAXWELL)))
+        return sf_config_refuse(file, item, err,
+                                "%s is given, but rate_model = \"%s\" has none: give rate_model = \"%s\" "
+                                "or \"both\", or leave it out",
+                                sf_parameter_get(p)->name, RATES[r->rate],
+                                RATES[factor ? SF_FORM_RATE_FACTOR : SF_FORM_RATE_MAXWELL]);
+    return SF_OK;
+}
+
 static sf_status read_value(const sf_config *file, const config_setting_t *group,
                             const config_setting_t *item, sf_form_request *r, sf_error *err) {
     const char *name = config_setting_name(item);
@@ -51,6 +70,7 @@ static sf_status read_value(const sf_config *file, const config_setting_t *group
             file, item, err,
             "start: \"%.80s\" is neither E, a parameter of curve_form = \"%s\", nor rate_factor, ED or BETA1",
             name, r->form.curve->name);
+    SF_TRY(check_rate_value(file, item, p, r, err));
     const sf_parameter_info *about = sf_parameter_get(p);
     if (about->quantity == SF_QUANTITY_COUNT)
         return sf_config_number(file, group, about->name, true, about->low, about->high, &r->start[p], err);
@@ -103,17 +123,71 @@ static sf_status read_unknowns(const sf_config *file, const config_setting_t *ro
     return SF_OK;
 }
 
+/* The solid fraction is known in one way, where the form has one. */
 static sf_status check_solid_fraction(const sf_config *file, const config_setting_t *root,
                                       const sf_form_request *r, sf_error *err) {
-    const config_setting_t *start = config_setting_get_member(root, "start");
-    bool known = r->form.solid_density > 0 || (start && config_setting_get_member(start, "solid_fraction"));
+    const config_setting_t *start = config_setting_get_member(root, "start"),
+                           *density = config_setting_get_member(root, "solid_density"),
+                           *given = start ? config_setting_get_member(start, "solid_fraction") : NULL;
+    bool known = density || given;
     for (int k = 0; k < r->unknown_count; k++)
         known = known || r->unknown[k] == SF_PARAMETER_SOLID_FRACTION;
+    if (density && !sf_curve_form_entry(r->form.curve, SF_PARAMETER_SOLID_FRACTION))
+        return sf_config_refuse(file, density, err,
+                                "solid_density is given, but curve_form = \"%s\" has no solid fraction; "
+                                "leave it out, or take gas_solid",
+                                r->form.curve->name);
+    if (density && given)
+        return sf_config_refuse(file, given, err,
+                                "the solid fraction is given twice: by solid_density, which makes it %.3g, "
+                                "and as solid_fraction in start",
+                                r->form.base.density / r->form.solid_density);
     if (r->form.curve == &sf_form_gas_solid && !known)
         return sf_config_refuse(file, config_setting_get_member(root, "curve_form"), err,
                                 "curve_form = \"gas_solid\" needs solid_density, the density of the solid in "
                                 "the cell walls, or solid_fraction among the unknown parameters");
     return SF_OK;
+}
+
+/* At its pole the curve is infinite: no test can get there. */
+static sf_status check_pole(const sf_config *file, const config_setting_t *root, int test_count,
+                            const sf_compression_test *test, const sf_form_request *r, sf_error *err) {
+    double pole = r->form.curve->pole(r->start);
+    for (int k = 0; k < test_count; k++)
+        if (!(test[k].largest_strain < pole))
+            return sf_config_refuse(
+                file, config_setting_get_member(root, "curve_form"), err,
+                "%s reaches a strain of %.3g, but with solid_fraction = %.3g the curve of "
+                "curve_form = \"%s\" ends at %.3g: the solid fraction is too large",
+                test[k].path, test[k].largest_strain, r->start[SF_PARAMETER_SOLID_FRACTION],
+                r->form.curve->name, pole);
+    return SF_OK;
+}
+
+/* The rate up to which the curve holds as it is: below the fastest test, or the factor would be 1 in all. */
+static sf_status read_reference(const sf_config *file, const config_setting_t *root, int test_count,
+                                const sf_compression_test *test, sf_form_request *r, sf_error *err) {
+    const sf_parameter_info *about = sf_parameter_get(SF_PARAMETER_RATE_REFERENCE);
+    const config_setting_t *given = config_setting_get_member(root, about->name);
+    double *reference = &r->start[SF_PARAMETER_RATE_REFERENCE], fastest = test[test_count - 1].rate;
+    *reference = test[0].rate;
+    if (!given)
+        return SF_OK;
+    SF_TRY(check_rate_value(file, given, SF_PARAMETER_RATE_REFERENCE, r, err));
+    SF_TRY(sf_config_quantity(file, root, about->name, SF_RATE, false, about->low, reference, err));
+    if (!(*reference < fastest))
+        return sf_config_refuse(file, given, err,
+                                "rate_reference is %g 1/s, but the fastest test has %g 1/s: the rate factor "
+                                "would be 1 in every test; give a rate below it, or leave it out",
+                                *reference, fastest);
+    return SF_OK;
+}
+
+/* Unless the user says otherwise. */
+static void stabilise_factor(const config_setting_t *root, sf_form_request *r) {
+    r->form.base.rate_filter_time = FACTOR_FILTER_TIME;
+    if (!config_setting_get_member(root, "DAMP"))
+        r->form.base.damp = r->start[SF_PARAMETER_DAMP] = FACTOR_DAMP;
 }
 
 static sf_status read_rate(const sf_config *file, const config_setting_t *root, int test_count,
@@ -122,25 +196,27 @@ static sf_status read_rate(const sf_config *file, const config_setting_t *root, 
     double largest = test[test_count - 1].largest_stress;
     SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &rate, err));
     r->rate = (sf_form_rate)rate;
+    bool factor = r->rate & SF_FORM_RATE_FACTOR, maxwell = r->rate & SF_FORM_RATE_MAXWELL;
     if (r->rate != SF_FORM_RATE_NONE && test_count < 2)
         return sf_config_refuse(file, config_setting_get_member(root, "rate_model"), err,
                                 "the rate model \"%s\" needs tests at two rates; there is one test",
                                 RATES[rate]);
-    r->start[SF_PARAMETER_RATE_REFERENCE] = test[0].rate;
-    SF_TRY(sf_config_quantity(file, root, "rate_reference", SF_RATE, false, 0,
-                              &r->start[SF_PARAMETER_RATE_REFERENCE], err));
+    SF_TRY(read_reference(file, root, test_count, test, r, err));
     r->start[SF_PARAMETER_RATE_FACTOR] = 0;
-    if (r->rate & SF_FORM_RATE_FACTOR)
+    r->start[SF_PARAMETER_ED] = maxwell ? 0.1 * largest : 0;
+    r->start[SF_PARAMETER_BETA1] = maxwell ? sqrt(test[0].rate * test[test_count - 1].rate) : 5000;
+    if (factor) {
         sf_foam_form_start_rate(r->start);
-    r->start[SF_PARAMETER_ED] = r->rate & SF_FORM_RATE_MAXWELL ? 0.1 * largest : 0;
-    r->start[SF_PARAMETER_BETA1] =
-        r->rate & SF_FORM_RATE_MAXWELL ? sqrt(test[0].rate * test[test_count - 1].rate) : 5000;
-    if (r->rate & SF_FORM_RATE_FACTOR)
+        stabilise_factor(root, r);
         add_unknown(r, SF_PARAMETER_RATE_FACTOR);
-    if (r->rate & SF_FORM_RATE_MAXWELL) {
+    }
+    if (maxwell) {
         add_unknown(r, SF_PARAMETER_ED);
         add_unknown(r, SF_PARAMETER_BETA1);
     }
+    if (r->unknown_count == 0)
+        return sf_config_refuse(file, config_setting_get_member(root, "unknown"), err,
+                                "unknown is empty and rate_model is \"none\": there is nothing to fit");
     return SF_OK;
 }
 
@@ -155,12 +231,13 @@ static sf_foam_card base_card(double density, double damp, double modulus) {
                           .maxwell_rate = 5000,
                           .tension_cutoff = 1e30,
                           .densification_limit = 1,
-                          .rate_filter_time = 1e-4};
+                          .rate_filter_time = FILTER_TIME};
 }
 
 sf_status sf_form_request_read(const sf_config *file, const config_setting_t *root, double density,
                                double damp, double range, int test_count, const sf_compression_test *test,
-                               sf_form_request *r, sf_error *err) {
+                               int predicted_count, const sf_compression_test *predicted, sf_form_request *r,
+                               sf_error *err) {
     const char *name = NULL;
     sf_error inner = SF_ERROR_INIT;
     SF_TRY(sf_config_text(file, root, "curve_form", true, &name, err));
@@ -175,5 +252,7 @@ sf_status sf_form_request_read(const sf_config *file, const config_setting_t *ro
     SF_TRY(read_unknowns(file, root, r, err));
     SF_TRY(read_rate(file, root, test_count, test, r, err));
     SF_TRY(read_start(file, root, r, err));
-    return check_solid_fraction(file, root, r, err);
+    SF_TRY(check_solid_fraction(file, root, r, err));
+    SF_TRY(check_pole(file, root, test_count, test, r, err));
+    return check_pole(file, root, predicted_count, predicted, r, err);
 }

@@ -37,9 +37,12 @@ sf_status sf_form_request_asked(const sf_config *file, const config_setting_t *r
                                 sf_error *err);
 
 /* Reads the keys of a form. E begins as the slope of the slowest test's first points, up to the strain
- * `range`. */
+ * `range`. `predicted` are compared only. SF_ERR_INPUT also where the data cannot decide: a start value of a
+ * rate that the model does not have, a reference rate at or above the fastest test, two solid fractions, a
+ * test at the curve's pole or beyond, nothing unknown. */
 sf_status sf_form_request_read(const sf_config *file, const config_setting_t *root, double density,
                                double damp, double range, int test_count, const sf_compression_test *test,
+                               int predicted_count, const sf_compression_test *predicted,
                                sf_form_request *request, sf_error *err);
 
 #endif

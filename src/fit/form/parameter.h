@@ -46,7 +46,7 @@
     X(BETA1, "BETA1", SF_RATE, "1/s", 1, 1e-6, 1e9, 1, "its decay rate") \
     X(ETA, "eta", SF_VISCOSITY, "Pa s", 1, 1e-3, 1e6, 1, "Kelvin viscosity") \
     X(RATE_FACTOR, "rate_factor", NONE, "", 1, 1e-4, 10, 0.7, "growth of the stress with each decade of the strain rate") \
-    X(RATE_REFERENCE, "rate_reference", SF_RATE, "1/s", 1, 1e-9, 1e9, 0.7, "strain rate up to which the curve holds as it is")
+    X(RATE_REFERENCE, "rate_reference", SF_RATE, "1/s", 1, 1e-9, 1e6, 0.7, "strain rate up to which the curve holds as it is")
 /* clang-format on */
 
 typedef enum sf_foam_parameter {
