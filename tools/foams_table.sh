@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Fits every form of the loading curve to every foam of examples/data that was pressed, into out/foams, and prints the
-# tables of docs/identification.md: loading, loops, rates.
+# tables of docs/identification.md: measured curves against each other, loading, loops, rates.
 #
-#     tools/foams_table.sh             about a minute of one core
+#     tools/foams_table.sh             40 s of processor time
 #     tools/foams_table.sh --docs      the same, and writes the tables into docs/identification.md
 #
 # The programs are those in build/bin, or in $SF_BIN_DIR.
@@ -83,6 +83,52 @@ def table_of(head, rows):
     return ["| " + " | ".join(row) + " |" for row in [head, align] + rows]
 
 
+def measured_loading(name):
+    """Strains and stresses of a file's loading, to the largest strain."""
+    with open("%s/%s.csv" % (DATA, name)) as stream:
+        rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+    column = "strain_percent" if "strain_percent" in rows[0] else "strain"
+    points = [(float(r[column]) / (100 if column == "strain_percent" else 1), float(r["stress_kPa"])) for r in rows]
+    turn = max(range(len(points)), key=lambda k: points[k][0])
+    return points[:turn + 1]
+
+
+def stress_at(points, strain):
+    """By straight lines; None beyond the test."""
+    for (e0, s0), (e1, s1) in zip(points, points[1:]):
+        if e0 <= strain <= e1 and e1 > e0:
+            return s0 + (s1 - s0) * (strain - e0) / (e1 - e0)
+    return None
+
+
+def compared():
+    """How many times the stress of one measured curve is that of another."""
+    strains = (0.02, 0.1, 0.2, 0.3, 0.4, 0.5)
+    pairs = [("LEAP, cycle 1", "leap_cycle1", "cycle 3", "leap_cycle3"),
+             ("LEAP confined, cycle 1", "leap_confined_cycle1", "with free sides", "leap_cycle1"),
+             ("LEAP confined, cycle 3", "leap_confined_cycle3", "with free sides", "leap_cycle3"),
+             ("VN600, 10/s", "vn600_10_per_s", "quasi-static", "vn600_quasistatic"),
+             ("Zorbium, 0.2/s", "zorbium_0.2_per_s", "0.0002/s", "zorbium_0.0002_per_s")]
+    rows = []
+    for name, file, other, other_file in pairs:
+        values = [(stress_at(measured_loading(file), e), stress_at(measured_loading(other_file), e)) for e in strains]
+        rows.append([name, other] + ["%.2f" % (a / b) if a and b and b > 0 else "-" for a, b in values])
+    return table_of(["measured stress of loading", "over that of"] + ["at %g %% strain" % (100 * e) for e in strains], rows)
+
+
+def gas_of_leap():
+    """What the numbers of the forms come to where a test ends before densification."""
+    rows = []
+    for name in ("gas_solid, Phi free, p0 = 101 kPa, no B", "gas", "avalle"):
+        found, sentence = fit(FOAMS["LEAP, cycle 1"], *FORMS[name])
+        if not found:
+            sys.exit("foams_table: LEAP: %s" % sentence)
+        rows.append([name, percent(found["loading_rms"]),
+                     ", ".join("%s %.3g %s" % (p["name"], p["value"], p["unit"]) if p["unit"] else "%s %.3g" % (p["name"], p["value"])
+                               for p in found["parameters"])])
+    return table_of(["numbers of LEAP, cycle 1", "rms of loading (%)", "parameters found"], rows)
+
+
 def loading():
     refused, rows = [], []
     for name, (form, keys) in FORMS.items():
@@ -109,7 +155,7 @@ def loops():
             sys.exit("foams_table: %s: %s" % (foam, sentence))
         one, free, test = found["unloading_with_ALPHA_1"], found["unloading"], found["tests"][0]
         rows.append([foam, percent(one["rms"]), percent(free["rms"]), "%.2g" % one["factor_rms"], "%.2g" % free["factor_rms"],
-                     "%.2g" % free["HU"], "%.2g" % free["SHAPE"], "%.2g" % free["ALPHA"],
+                     *["%.2g%s" % (free[n], "*" if n in free["at_bound"] else "") for n in ("HU", "SHAPE", "ALPHA")],
                      "%.0f" % (100 * test["returned_energy_measured"]), "%.0f" % (100 * test["returned_energy_fitted"])])
     head = ["rms of unloading", "% of the largest stress, ALPHA = 1", "ALPHA free", "of f, ALPHA = 1", "of f, ALPHA free", "HU", "SHAPE",
             "ALPHA", "energy returned (%)", "by the law (%)"]
@@ -128,11 +174,13 @@ def predicted():
         test = found["predicted"][0]
         rows.append([fitted, other, form, percent(test["loading_rms"]), percent(test["unloading_rms"]),
                      "%.0f" % (100 * test["returned_energy_measured"]), "%.0f" % (100 * test["returned_energy_fitted"])])
-    for left_out in ZORBIUM:
-        found, sentence = fit([f for f in ZORBIUM if f != left_out], "avalle", 'rate_model = "factor";', [left_out])
+    for left_out, reference in [(f, None) for f in ZORBIUM] + [(ZORBIUM[0], ZORBIUM[0][1])]:
+        keys = 'rate_model = "factor";' + (' rate_reference = "%g 1/s";' % reference if reference else "")
+        found, sentence = fit([f for f in ZORBIUM if f != left_out], "avalle", keys, [left_out])
         if not found:
             sys.exit("foams_table: Zorbium: %s" % sentence)
-        rows.append(["Zorbium, the other two rates", "Zorbium, %g/s" % left_out[1], "avalle, factor",
+        rows.append(["Zorbium, the other two rates", "Zorbium, %g/s" % left_out[1],
+                     "avalle, factor" + (", rate_reference %g 1/s" % reference if reference else ""),
                      percent(found["predicted"][0]["loading_rms"]), "-", "-", "-"])
     return table_of(["fitted", "predicted", "form", "rms of loading (%)", "of unloading (%)", "energy returned (%)", "by the law (%)"], rows)
 
@@ -165,7 +213,7 @@ def fast_plateau(foam, points, value):
 
 first, refused = loading()
 last, refused_rates = rates()
-for table in (first, loops(), predicted(), last):
+for table in (compared(), first, gas_of_leap(), loops(), predicted(), last):
     print("\n".join(table) + "\n")
     if sys.argv[2] == "--docs":
         replace_table(DOCUMENT, table)
