@@ -388,7 +388,7 @@ static void bad_input_gets_one_sentence(void **state) {
         {MATERIAL "forms = ( { curve = \"gas\"; } ); posterior = false;\n" DROPS("a_max_g = 60.0;"),
          "posterior must be true"},
         {MATERIAL "forms = ( { curve = \"gas\"; rate = \"fast\"; } );\n" DROPS("a_max_g = 60.0;"),
-         "none|factor|maxwell|both"},
+         "must be one of none, factor, maxwell, both"},
         {MATERIAL "forms = ( { curve = \"gas\"; }, { curve = \"gass\"; } );\n" DROPS("a_max_g = 60.0;"),
          "curve is \"gass\""},
         {MATERIAL "drops = 3;\n", "drops must be a list"},
