@@ -367,12 +367,10 @@ static void weak_results_are_marked(void **state) {
 /* HU ends at its least with ALPHA = 1, and is inside with ALPHA free. */
 static void unloading_at_a_bound_is_marked_in_json(void **state) {
     (void)state;
-    char arguments[1200];
     program_place place;
     program_set_up(&place);
-    snprintf(arguments, sizeof arguments, "compression %s/examples/fit/foams/vn600.cfg -o out",
-             getenv("SF_SOURCE_DIR"));
-    program_succeed(&place, "fit", arguments);
+    program_succeed(&place, "fit", "compression %s/examples/fit/foams/vn600.cfg -o out",
+                    getenv("SF_SOURCE_DIR"));
     program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
     const char *one = strstr(json.data, "\"unloading_with_ALPHA_1\""),
                *all = strstr(json.data, "\"unloading\"");
