@@ -118,7 +118,7 @@ static void write_draws(const program_place *p, const char *folder, int count) {
 static void draws_of_the_foam_give_the_interval(void **state) {
     const program_place *p = *state;
     char words[1200];
-    write_draws(p, "posterior", 20);
+    write_draws(p, "posterior", 100);
     snprintf(words, sizeof words, "'%s' -o out -t 1 --force --limit-hic 1e6 %s", fixture_source(EXAMPLE),
              program_coarse(SPACING));
     program_result r = program_succeed(p, "cfh", "%s --rig '%s' --posterior posterior --check-drops 2", words,
@@ -137,13 +137,14 @@ static void draws_of_the_foam_give_the_interval(void **state) {
     assert_true(number_of(json, "critical_fall_height", "rig_height_high_m") /
                     number_of(json, "critical_fall_height", "rig_height_low_m") >
                 high / low);
-    assert_true(number_of(json, "\"posterior\"", "draws") == 20);
+    assert_true(number_of(json, "\"posterior\"", "draws") == 100);
+    assert_non_null(strstr(json, "\"height_open\": \"no\""));
     assert_int_equal(count_of(json, "\"share_below\""), 2);
     assert_true(fabs(number_of(json, "\"checks\"", "height_shift")) < 0.05);
     assert_relative(number_of(json, "\"checks\"", "a_max_columns_g"), 200, 0.01);
     char *band = read_text(p, "out/cfh_band.csv"), *draws = read_text(p, "out/cfh_draws.csv");
     assert_int_equal(strncmp(band, "height_m,a_max_low_g,", 21), 0);
-    assert_int_equal(count_of(draws, "\n"), 21);
+    assert_int_equal(count_of(draws, "\n"), 101);
     program_assert_page(p, "out/report.html", "Interval of the critical height");
     program_assert_page(p, "out/report.html", "foam alone (the draws)");
     program_assert_page(p, "out/report.html", "with these uncertainties and that of g_eff: 95 % interval");
@@ -168,7 +169,11 @@ static void posteriors_that_cannot_be_meant_are_refused(void **state) {
         const char *spoil, *words, *part;
     } cases[] = {
         {"true", "--posterior none", "--posterior none: there is no draw-001.cfg"},
-        {"rm bad/draw-020.cfg", "--posterior bad", "--posterior bad: 19 draws, at least 20 are needed"},
+        {"rm bad/draw-100.cfg", "--posterior bad", "--posterior bad: 99 draws, at least 100 are needed"},
+        {"for k in bad/draw-*.csv; do cp bad/draw-001.csv $k.new && mv $k.new $k; done", "--posterior bad",
+         "--posterior bad: all 100 draws are the same material"},
+        {"true", "--posterior bad --set material.HU=0.5",
+         "--set material.HU=0.5: with --posterior the draws are the material"},
         {"rm bad/draw-007.cfg", "--posterior bad", "draw-008.cfg is there, but draw-007.cfg is not"},
         {"rm bad/draw-007.csv", "--posterior bad", "draw-007.csv"},
         {"sed -i 's/^HU.*/HU = 7;/' bad/draw-007.cfg", "--posterior bad", "HU"},

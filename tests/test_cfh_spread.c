@@ -20,7 +20,7 @@
 
 #include "post_check.h"
 
-enum { DRAWS = 41, POINTS = 6 };
+enum { DRAWS = 41, FEW = 20, POINTS = 6 };
 
 static const double heights[POINTS] = {1.2, 1.4, 1.6, 1.8, 2.0, 2.3};
 static const double limit[SF_CFH_CRITERIA] = {200, 1000};
@@ -155,11 +155,12 @@ static void the_interval_is_that_of_direct_drops(void **state) {
     sf_cfh_draws_free(&(sf_cfh_draws){.count = 1, .draw = memcpy(malloc(sizeof own), &own, sizeof own)});
 }
 
-/* Of foams that are all the same the interval holds mesh, fit and columns only, each of its closed form. */
+/* Of foams that are all the same the interval holds mesh, fit and columns only, each of its closed form, and
+ * its median is the height simulated. */
 static void without_a_spread_of_the_foam_the_other_errors_are_left(void **state) {
     (void)state;
     sf_cfh_pad pad = test_pad();
-    sf_cfh_draws draws = make_draws(SF_CFH_LEAST_DRAWS, 0);
+    sf_cfh_draws draws = make_draws(FEW, 0);
     pad.mesh_error = 0.03;
     sf_cfh_spread s = build(&pad, &draws, &draws.draw[0].law, limit);
     double value[2][SF_CFH_CRITERIA], h = direct_height(&pad, &draws.draw[0].law);
@@ -173,9 +174,9 @@ static void without_a_spread_of_the_foam_the_other_errors_are_left(void **state)
     assert_relative(s.part[SF_CFH_PART_FOAM][SF_CFH_FIRST].high, h, 1e-3);
     const sf_cfh_interval *mesh = &s.part[SF_CFH_PART_MESH][SF_CFH_FIRST];
     for (int side = -1; side <= 1; side++) {
-        double q = SF_CFH_MESH_MEDIAN * exp(1.96 * side * SF_CFH_MESH_SCATTER);
-        double expected = h * exp(SF_CFH_MESH_HIC * log(1 - q * pad.mesh_error) / slope);
-        assert_relative(side < 0 ? mesh->high : side == 0 ? mesh->median : mesh->low, expected, 1.5e-3);
+        double error = 1.96 * side * SF_CFH_MESH_SIZE * pad.mesh_error;
+        double expected = h * exp(SF_CFH_MESH_HIC * error / slope);
+        assert_relative(side < 0 ? mesh->low : side == 0 ? mesh->median : mesh->high, expected, 2e-3);
     }
     s.mesh_error = 0;
     s.fit_scatter[SF_CFH_HIC] = 0.02;
@@ -186,69 +187,186 @@ static void without_a_spread_of_the_foam_the_other_errors_are_left(void **state)
     sf_cfh_draws_free(&draws);
 }
 
-/* A draw that the columns miss widens the interval by how far its height moves. */
-static void the_checks_widen_the_interval(void **state) {
+static sf_cfh_spread build_with_checks(const sf_cfh_pad *pad, const sf_cfh_draws *draws, int checks) {
+    sf_cfh_spread s = build(pad, draws, &draws->draw[FEW / 2].law, limit);
+    sf_cfh_spread_choose(&s, checks, 1e-3);
+    assert_int_equal(s.checks, checks);
+    for (int k = 0; k < checks; k++) {
+        sf_cfh_check *check = &s.check[k];
+        simulate(pad, &draws->draw[check->draw].law, check->height, check->simulated);
+        sf_cfh_check_compare(&s, check);
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            assert_close(check->shift[c], 0, 1e-3); /* the columns miss nothing here */
+        assert_relative(check->columns[check->first], limit[check->first], 0.01);
+        assert_true(k == 0 || check->height > s.check[k - 1].height);
+    }
+    return s;
+}
+
+/* The checks' shifts of HIC become centre + slope (ln h - middle) + remainder[k]; those of a_max stay. */
+static void shift_checks(sf_cfh_spread *s, double centre, double slope, const double *remainder) {
+    double middle = 0;
+    for (int k = 0; k < s->checks; k++)
+        middle += log(s->check[k].height) / s->checks;
+    for (int k = 0; k < s->checks; k++)
+        s->check[k].shift[SF_CFH_HIC] =
+            centre + slope * (log(s->check[k].height) - middle) + (remainder ? remainder[k] : 0);
+}
+
+/* Too few checks for a trend widen the interval by Student's t of how far the height of their criterion
+ * moves, and that of the other not. */
+static void few_checks_widen_the_interval(void **state) {
     (void)state;
     sf_cfh_pad pad = test_pad();
-    sf_cfh_draws draws = make_draws(SF_CFH_LEAST_DRAWS, 0.1);
+    sf_cfh_draws draws = make_draws(FEW, 0);
     pad.mesh_error = 0;
-    sf_cfh_spread s = build(&pad, &draws, &draws.draw[10].law, limit);
-    sf_cfh_spread_choose(&s, 3, 1e-3);
-    assert_int_equal(s.checks, 3);
-    assert_true(s.check[0].height < s.check[1].height && s.check[1].height < s.check[2].height);
-    for (int k = 0; k < 3; k++) {
-        sf_cfh_check *check = &s.check[k];
-        simulate(&pad, &draws.draw[check->draw].law, check->height, check->simulated);
-        sf_cfh_check_compare(&s, check);
-        assert_close(check->shift, 0, 1e-3); /* the columns miss nothing here */
-        assert_relative(check->columns[check->first], limit[check->first], 0.01);
-    }
+    sf_cfh_spread s = build_with_checks(&pad, &draws, 1);
+    s.checks = 3; /* of draws that are all the same, at one height */
+    s.check[1] = s.check[2] = s.check[0];
     evaluate(&s);
-    sf_cfh_interval before = *sf_cfh_spread_whole(&s, SF_CFH_FIRST);
-    for (int k = 0; k < 3; k++) {
-        s.check[k].simulated[SF_CFH_HIC] *= 1.1;
-        sf_cfh_check_compare(&s, &s.check[k]);
-        assert_true(s.check[k].shift < -0.03 && s.check[k].shift > -0.06); /* 10 % of HIC, slope about 2.4 */
-    }
+    sf_cfh_interval before[] = {*sf_cfh_spread_whole(&s, SF_CFH_A_MAX), *sf_cfh_spread_whole(&s, SF_CFH_HIC)};
+    s.check[0].shift[SF_CFH_HIC] = 0.02;
+    s.check[1].shift[SF_CFH_HIC] = s.check[2].shift[SF_CFH_HIC] = -0.02;
     evaluate(&s);
-    const sf_cfh_interval *after = sf_cfh_spread_whole(&s, SF_CFH_FIRST);
-    assert_true(after->low < before.low * exp(-0.02) && after->high > before.high * exp(0.02));
-    s.check[0].failed = s.check[1].failed = s.check[2].failed = true; /* no figures: no scatter known */
+    const sf_cfh_interval *after = sf_cfh_spread_whole(&s, SF_CFH_HIC);
+    double expected = gsl_cdf_tdist_Pinv(0.975, 3) * 0.02;
+    assert_close(s.trend[SF_CFH_HIC].scatter, 0.02, 1e-12);
+    assert_relative(after->median, before[SF_CFH_HIC].median, 5e-3);
+    assert_close(log(after->high / after->median), expected, 0.2 * expected);
+    assert_close(log(after->median / after->low), expected, 0.2 * expected);
+    assert_relative(sf_cfh_spread_whole(&s, SF_CFH_A_MAX)->high, before[SF_CFH_A_MAX].high, 1e-3);
+    s.check[1].failed = true; /* it has no figures */
     evaluate(&s);
-    assert_close(s.columns_scatter, 0, 0);
+    assert_int_equal(s.trend[SF_CFH_HIC].checks, 2);
+    sf_cfh_spread_free(&s);
+    sf_cfh_draws_free(&draws);
+}
+
+/* Columns that exaggerate what the foam does: the heights follow the trend, and the interval is that of the
+ * true heights, narrower; the remainder about the trend widens it. */
+static void the_trend_of_the_checks_corrects_the_heights(void **state) {
+    (void)state;
+    static const double zigzag[5] = {0.01, -0.01, 0, -0.01, 0.01};
+    sf_cfh_pad pad = test_pad();
+    sf_cfh_draws draws = make_draws(FEW, 0.2);
+    pad.mesh_error = 0;
+    sf_cfh_spread s = build_with_checks(&pad, &draws, 5);
+    evaluate(&s);
+    const sf_cfh_interval *whole = sf_cfh_spread_whole(&s, SF_CFH_HIC);
+    sf_cfh_interval before = *whole;
+    shift_checks(&s, -0.01, -0.3, NULL);
+    evaluate(&s);
+    assert_close(s.trend[SF_CFH_HIC].slope, -0.3, 1e-9);
+    assert_close(s.trend[SF_CFH_HIC].scatter, 0, 1e-9);
+    double corrected = 0.3 * log(s.check[4].height / s.check[0].height); /* constant beyond */
+    assert_true(corrected > 0.015);
+    assert_close(log(whole->high / whole->low), log(before.high / before.low) - corrected, 1e-3);
+    assert_close(log(whole->median / before.median), -0.01, 2e-3);
+    sf_cfh_interval trend = *whole;
+    shift_checks(&s, -0.01, -0.3, zigzag);
+    evaluate(&s);
+    assert_int_equal(s.trend[SF_CFH_HIC].freedom, 3);
+    assert_true(whole->high > trend.high * 1.01 && whole->low < trend.low * 0.99);
+    sf_cfh_spread_free(&s);
+    sf_cfh_draws_free(&draws);
+}
+
+/* Without a check that has figures the columns' error is not known, not 0. */
+static void without_a_check_the_columns_error_is_not_known(void **state) {
+    (void)state;
     char text[SF_CFH_NOTE_SIZE];
+    sf_cfh_pad pad = test_pad();
+    sf_cfh_draws draws = make_draws(FEW, 0.1);
+    pad.mesh_error = 0;
+    sf_cfh_spread s = build_with_checks(&pad, &draws, 3);
+    s.check[0].failed = s.check[1].failed = s.check[2].failed = true;
+    evaluate(&s);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        assert_true(isnan(s.trend[c].scatter) && s.trend[c].checks == 0);
+    assert_true(isfinite(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->high));
     sf_cfh_draws_text(&s, text, sizeof text);
     assert_string_equal(text, "3 of the 3 simulated draws failed: there the columns are not confirmed.");
     s.own_height *= 1.3;
     sf_cfh_draws_text(&s, text, sizeof text);
     assert_non_null(strstr(text, "lies outside of 95 % of the draws"));
+    s.checks = 0;
+    evaluate(&s);
+    assert_true(isnan(s.trend[SF_CFH_HIC].scatter));
     sf_cfh_spread_free(&s);
     sf_cfh_draws_free(&draws);
+}
+
+/* At the edge of what the columns reach the shift is by the slope there is, and the share of the draws below
+ * counts those without a height too. */
+static void checks_at_an_edge(void **state) {
+    (void)state;
+    sf_cfh_pad pad = test_pad();
+    sf_cfh_draws draws = make_draws(FEW, 0.1);
+    pad.mesh_error = 0;
+    sf_cfh_spread s = build_with_checks(&pad, &draws, 1);
+    sf_cfh_check *check = &s.check[0];
+    check->simulated[SF_CFH_HIC] *= 1.1;
+    sf_cfh_check_compare(&s, check);
+    double inside = check->shift[SF_CFH_HIC];
+    assert_true(inside < -0.03 && inside > -0.06); /* 10 % of HIC, slope about 2.4 */
+    while (s.height[s.reach[check->draw] - 1] > check->height)
+        s.reach[check->draw]--; /* as if its columns collapsed there */
+    check->height = s.height[s.reach[check->draw] - 1];
+    sf_cfh_check_compare(&s, check);
+    assert_relative(check->shift[SF_CFH_HIC], inside, 0.1);
+    for (int d = 0; d < 5; d++)
+        for (int c = 0; c <= SF_CFH_FIRST; c++)
+            s.crossing[d * (SF_CFH_FIRST + 1) + c] = d < 4 ? 0 : INFINITY;
+    s.below = 4;
+    s.above = 1;
+    sf_cfh_spread_choose(&s, 1, 1e-3);
+    assert_close(check->share, (4 + 7) / (double)FEW, 1e-12); /* the middle one of the other 15 */
+    sf_cfh_spread_free(&s);
+    sf_cfh_draws_free(&draws);
+}
+
+/* What is printed and what is written of an interval. */
+static void assert_bound(const sf_cfh_spread *s, const char *words, const char *json_words) {
+    char text[64], *written = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&written, &size);
+    sf_json json = {.file = file};
+    const sf_cfh_interval *whole = sf_cfh_spread_whole(s, SF_CFH_FIRST);
+    assert_string_equal(sf_cfh_interval_text(whole, text, sizeof text), words);
+    sf_json_open(&json, NULL, '{');
+    sf_cfh_put_interval_json(&json, "height", whole);
+    sf_json_close(&json, '}');
+    fclose(file);
+    assert_string_equal(written, json_words);
+    free(written);
 }
 
 /* Limits that draws do not reach, or exceed from the start, leave the end of the interval open. */
 static void ends_that_draws_do_not_reach_are_open(void **state) {
     (void)state;
     sf_cfh_pad pad = test_pad();
-    sf_cfh_draws draws = make_draws(SF_CFH_LEAST_DRAWS, 0.1);
+    sf_cfh_draws draws = make_draws(FEW, 0.1);
     const double beyond[SF_CFH_CRITERIA] = {1e5, 1e7}, trivial[SF_CFH_CRITERIA] = {1, 1};
     char text[400];
     pad.mesh_error = 0;
     sf_cfh_spread s = build(&pad, &draws, &draws.draw[10].law, beyond);
     evaluate(&s);
-    assert_int_equal(s.above, SF_CFH_LEAST_DRAWS);
+    assert_int_equal(s.above, FEW);
     assert_true(isinf(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->high));
+    assert_bound(
+        &s, "above 3.45 m",
+        "{\n  \"height_low_m\": 3.45,\n  \"height_median_m\": null,\n  \"height_high_m\": null,\n  \"height_open\": \"above\"\n}\n");
     sf_cfh_draws_text(&s, text, sizeof text);
     assert_non_null(strstr(text, "20 of the 20 draws reach no limit"));
-    assert_non_null(
-        strstr(sf_cfh_interval_text(sf_cfh_spread_whole(&s, SF_CFH_FIRST), text, sizeof text), "open above"));
     sf_cfh_spread_choose(&s, 3, 1e-3);
     assert_int_equal(s.checks, 0);
     sf_cfh_spread_free(&s);
     s = build(&pad, &draws, &draws.draw[10].law, trivial);
     evaluate(&s);
-    assert_int_equal(s.below, SF_CFH_LEAST_DRAWS);
-    assert_close(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->low, 0, 0);
+    assert_int_equal(s.below, FEW);
+    assert_bound(
+        &s, "below 0.800 m",
+        "{\n  \"height_low_m\": null,\n  \"height_median_m\": null,\n  \"height_high_m\": 0.8,\n  \"height_open\": \"below\"\n}\n");
     sf_cfh_draws_text(&s, text, sizeof text);
     assert_non_null(strstr(text, "20 of the 20 draws exceed a limit at the lowest height"));
     sf_cfh_spread_free(&s);
@@ -258,6 +376,11 @@ static void ends_that_draws_do_not_reach_are_open(void **state) {
         s.reach[k] = k < 15 ? 10 : s.reach[k];
     evaluate(&s);
     assert_relative(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->median, s.height[9], 1e-12);
+    for (int k = 0; k < s.draws; k++) /* half of them have no height: between that and one there is nothing */
+        s.reach[k] = k < FEW / 2 ? 0 : 10;
+    evaluate(&s);
+    assert_true(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->median <= 0);
+    assert_relative(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->high, s.height[9], 1e-12);
     sf_cfh_spread_free(&s);
     sf_cfh_draws_free(&draws);
 }
@@ -265,7 +388,7 @@ static void ends_that_draws_do_not_reach_are_open(void **state) {
 static void threads_change_no_bit(void **state) {
     (void)state;
     sf_cfh_pad pad = test_pad();
-    sf_cfh_draws draws = make_draws(SF_CFH_LEAST_DRAWS, 0.1);
+    sf_cfh_draws draws = make_draws(FEW, 0.1);
     sf_cfh_interval whole[2];
     int before = omp_get_max_threads();
     for (int run = 0; run < 2; run++) {
@@ -285,7 +408,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_interval_is_that_of_direct_drops),
         cmocka_unit_test(without_a_spread_of_the_foam_the_other_errors_are_left),
-        cmocka_unit_test(the_checks_widen_the_interval),
+        cmocka_unit_test(few_checks_widen_the_interval),
+        cmocka_unit_test(the_trend_of_the_checks_corrects_the_heights),
+        cmocka_unit_test(without_a_check_the_columns_error_is_not_known),
+        cmocka_unit_test(checks_at_an_edge),
         cmocka_unit_test(ends_that_draws_do_not_reach_are_open),
         cmocka_unit_test(threads_change_no_bit),
     };

@@ -27,7 +27,7 @@ enum {
 
 static const double LOWEST_HEIGHT = 0.01, GREATEST_HEIGHT = 100; /* m */
 static const double DEFAULT_MAX_HEIGHT = 10;                     /* m */
-enum { DEFAULT_CHECKS = 3 };
+enum { DEFAULT_CHECKS = 5 };
 
 typedef struct parser_state {
     sf_cfh_options *options;
@@ -206,7 +206,7 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
          "draws of the foam, draw-001.cfg ..., as softfall-fit drop writes them: gives the interval of the height",
          4},
         {"check-drops", KEY_CHECKS, "N", 0,
-         "simulate N of the draws to check the columns that stand for them (default 3)", 4},
+         "simulate N of the draws to check the columns that stand for them (default 5)", 4},
         {0},
     };
     const struct argp parser = {
@@ -216,7 +216,7 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         .doc =
             "Critical fall height of a pad: the lowest drop height at which a_max or HIC reaches its limit "
             "(--limit-g, --limit-hic).\vSimulates up to 8 drops with softfall-pre and softfall-solve, with "
-            "--posterior 3 more, and writes cfh.json, cfh.csv, cfh.png (and .gp) and report.html. After an interruption run the same "
+            "--posterior 5 more, and writes cfh.json, cfh.csv, cfh.png (and .gp) and report.html. After an interruption run the same "
             "command again to resume. The height is indicative, not a certification.",
     };
     parser_state state = {.options = options, .err = err};

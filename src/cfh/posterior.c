@@ -3,6 +3,7 @@
 
 #include "campaign/runner.h"
 #include "case/case.h"
+#include "core/hash.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,6 +63,30 @@ static sf_status check_draw(const sf_cfh_draw *draw, const sf_material *own, sf_
     return SF_OK;
 }
 
+/* An override of the material would make it that of every draw. */
+static sf_status check_overrides(int count, const char *const *overrides, sf_error *err) {
+    static const char group[] = "material";
+    for (int k = 0; k < count; k++) {
+        const char *name = overrides[k] + strspn(overrides[k], " \t"), *end = name + strlen(group);
+        if (strncmp(name, group, strlen(group)) == 0 && strchr(". \t=", *end) && *end)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "--set %s: with --posterior the draws are the material, and this would be the same in "
+                "every one of them",
+                overrides[k]);
+    }
+    return SF_OK;
+}
+
+static sf_status check_difference(const sf_cfh_draws *draws, sf_error *err) {
+    uint64_t first = sf_material_hash(SF_HASH_START, &draws->draw[0].material);
+    for (int k = 1; k < draws->count; k++)
+        if (sf_material_hash(SF_HASH_START, &draws->draw[k].material) != first)
+            return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: all %d draws are the same material", draws->folder,
+                   draws->count);
+}
+
 /* list[0] is the place of the material. */
 static sf_status read_draw(const char *case_path, int count, const char **list, const sf_material *own,
                            sf_cfh_draw *draw, sf_error *err) {
@@ -90,7 +115,7 @@ sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int overr
     const char *list[SF_RUNNER_OVERRIDES + 1];
     int count = 0;
     *out = (sf_cfh_draws){.folder = folder};
-    if (count_draws(folder, &count, err) != SF_OK)
+    if (check_overrides(override_count, overrides, err) != SF_OK || count_draws(folder, &count, err) != SF_OK)
         return err->status;
     out->draw = sf_alloc(err, (unsigned long)count, sizeof *out->draw, "draws");
     for (int k = 0; k < override_count; k++)
@@ -101,7 +126,7 @@ sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int overr
         if (draw->path)
             read_draw(case_path, override_count + 1, list, own, draw, err);
     }
-    return err->status;
+    return err->status == SF_OK ? check_difference(out, err) : err->status;
 }
 
 void sf_cfh_draws_free(sf_cfh_draws *draws) {

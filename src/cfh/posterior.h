@@ -6,7 +6,7 @@
 
 #include "solver/material/law.h"
 
-enum { SF_CFH_LEAST_DRAWS = 20, SF_CFH_MOST_DRAWS = 2000 };
+enum { SF_CFH_LEAST_DRAWS = 100, SF_CFH_MOST_DRAWS = 2000 };
 
 typedef struct sf_cfh_draw {
     char *path;           /* owned, as the next two */
@@ -21,8 +21,9 @@ typedef struct sf_cfh_draws {
 } sf_cfh_draws;
 
 /* Reads every draw as the material of the case, with the case's overrides; `own` is the case's own material.
- * SF_ERR_INPUT: no draw, a gap in their numbers, fewer than SF_CFH_LEAST_DRAWS, one that the case refuses,
- * one with another law or density. Release with sf_cfh_draws_free, also on failure. */
+ * SF_ERR_INPUT: an override of the material, which would be the same in every draw; no draw, a gap in their
+ * numbers, fewer than SF_CFH_LEAST_DRAWS, one that the case refuses, one with another law or density; draws
+ * that are all the same. Release with sf_cfh_draws_free, also on failure. */
 sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int override_count,
                             const char *const *overrides, const sf_material *own, sf_cfh_draws *draws,
                             sf_error *err);

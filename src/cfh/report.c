@@ -584,10 +584,11 @@ static void put_checks(FILE *out, const sf_cfh_report *r) {
         if (!check->failed)
             fprintf(
                 out,
-                "  draw %d at %.3f m: a_max %.1f g by columns, %.1f g simulated; HIC %.0f, %.0f; the height moves "
-                "by %.2f %%\n",
+                "  draw %d at %.3f m: a_max %.1f g by columns, %.1f g simulated; HIC %.0f, %.0f; the height by %s "
+                "moves by %.2f %%\n",
                 check->draw + 1, check->height, check->columns[SF_CFH_A_MAX], check->simulated[SF_CFH_A_MAX],
-                check->columns[SF_CFH_HIC], check->simulated[SF_CFH_HIC], 100 * check->shift);
+                check->columns[SF_CFH_HIC], check->simulated[SF_CFH_HIC], sf_cfh_name(check->first),
+                100 * check->shift[check->first]);
     }
 }
 

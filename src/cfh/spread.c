@@ -3,17 +3,20 @@
 
 #include "campaign/run_folder.h"
 #include "io/process.h"
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_fit.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double STEP = 0.035;     /* of ln(height) on the grid */
-static const double OUTSIDE = 1.5;    /* factor by which it reaches beyond the simulated heights */
-static const double MOST_MESH = 0.9;  /* no value is corrected by more than 1 / (1 - 0.9) */
-static const double TAIL = 0.025;     /* on each side of the interval */
-static const double OUTERMOST = 0.05; /* share of the outermost draws that are simulated */
+static const double STEP = 0.035;      /* of ln(height) on the grid */
+static const double OUTSIDE = 1.5;     /* factor by which it reaches beyond the simulated heights */
+static const double TAIL = 0.025;      /* on each side of the interval */
+static const double OUTERMOST = 0.05;  /* share of the outermost draws that are simulated */
+static const double MOST_SHIFT = 50;   /* of ln(height), for Student's t of one degree of freedom */
+static const double TREND_SPAN = 0.02; /* of ln(height): checks closer together show no trend */
 enum { SEED = 1 };
 
 /* ---- columns ---- */
@@ -105,10 +108,9 @@ static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const 
     if (err->status != SF_OK)
         return err->status;
     if (count == 0)
-        return SF_FAIL(
-            err, SF_ERR_NUMERIC,
-            "no interval: there is no simulated height at which the columns of the case's material, "
-            "which stand for the draws, have figures");
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "there is no simulated height at which the columns of the case's material, "
+                       "which stand for the draws, have figures");
     s->simulated[0] = height[0];
     s->simulated[1] = height[count - 1];
     double low = height[0] / OUTSIDE, span = log(OUTSIDE * height[count - 1] / low);
@@ -190,21 +192,21 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Of sorted values, of which the last may be infinite. */
+/* Of sorted values, of which the first may be 0 and the last infinite: between those and a value there is
+ * nothing. */
 static double quantile(const double *sorted, int count, double share) {
     double at = share * (count - 1);
     int k = (int)floor(at);
-    if (k >= count - 1 || isinf(sorted[k]) || sorted[k + 1] == sorted[k])
+    if (k >= count - 1 || isinf(sorted[k]) || sorted[k] <= 0 || sorted[k + 1] == sorted[k])
         return sorted[k];
     return isinf(sorted[k + 1]) ? INFINITY : sorted[k] + (at - k) * (sorted[k + 1] - sorted[k]);
 }
 
 static sf_cfh_interval interval_of(double *values, int count) {
     qsort(values, (size_t)count, sizeof *values, compare);
-    double low = quantile(values, count, TAIL);
-    if (values[(int)floor(TAIL * (count - 1))] <= 0)
-        low = 0; /* nothing between that and the lowest height of the grid */
-    return (sf_cfh_interval){low, quantile(values, count, 0.5), quantile(values, count, 1 - TAIL)};
+    return (sf_cfh_interval){.low = quantile(values, count, TAIL),
+                             .median = quantile(values, count, 0.5),
+                             .high = quantile(values, count, 1 - TAIL)};
 }
 
 static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
@@ -228,13 +230,12 @@ sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, 
                               const sf_cfh_points *points, const sf_cfh_result *result, const double *limit,
                               sf_cfh_spread *s, sf_error *err) {
     unsigned long n = (unsigned long)draws->count;
-    *s = (sf_cfh_spread){.draws = draws->count, .mesh_error = fmax(0, pad->mesh_error)};
+    *s = (sf_cfh_spread){.draws = draws->count, .mesh_error = pad->mesh_error};
     s->own_height = result->verdict == SF_CFH_FOUND ? result->crossing[result->deciding].height : NAN;
     memcpy(s->limit, limit, sizeof s->limit);
     for (int c = 0; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_fit *fit = &result->crossing[c].fit;
-        if (fit->count > 3)
-            s->fit_scatter[c] = fit->rms * sqrt(fit->count / (fit->count - 3.0));
+        s->fit_scatter[c] = fit->count > 3 ? fit->rms * sqrt(fit->count / (fit->count - 3.0)) : NAN;
     }
     s->value = sf_alloc(err, n * SF_CFH_CRITERIA * SF_CFH_GRID, sizeof *s->value, "draws");
     s->reach = sf_alloc(err, n, sizeof *s->reach, "draws");
@@ -280,9 +281,11 @@ void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {
     s->checks = count < n ? count : n;
     for (int k = 0; k < s->checks; k++) {
         double share = s->checks == 1 ? 0.5 : OUTERMOST + (1 - 2 * OUTERMOST) * k / (s->checks - 1);
-        const place *p = &places[(int)lround(share * (n - 1))];
+        int rank = (int)lround(share * (n - 1));
+        const place *p = &places[rank];
         sf_cfh_check *check = &s->check[k];
-        *check = (sf_cfh_check){.draw = p->draw, .share = share, .shift = NAN};
+        *check = (sf_cfh_check){
+            .draw = p->draw, .share = (double)(s->below + rank) / s->draws, .shift = {NAN, NAN}};
         check->height = fmax(grain, grain * round(p->height / grain));
         const double *crossing = &s->crossing[(size_t)p->draw * (SF_CFH_FIRST + 1)];
         check->first = crossing[SF_CFH_HIC] < crossing[SF_CFH_A_MAX] ? SF_CFH_HIC : SF_CFH_A_MAX;
@@ -291,37 +294,94 @@ void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {
     }
 }
 
-void sf_cfh_check_compare(const sf_cfh_spread *s, sf_cfh_check *check) {
-    double low = check->height * exp(-STEP), high = check->height * exp(STEP);
-    int c = (int)check->first;
-    double slope = (value_at(s, check->draw, c, high) - value_at(s, check->draw, c, low)) / (2 * STEP);
-    check->shift = -log(check->simulated[c] / check->columns[c]) / slope;
+/* Slope of ln(value) over ln(height) around a height, on what the grid has of that. */
+static double slope_at(const sf_cfh_spread *s, int draw, int criterion, double height) {
+    double low = fmax(height * exp(-STEP), s->height[0]),
+           high = fmin(height * exp(STEP), s->height[s->reach[draw] - 1]);
+    return (value_at(s, draw, criterion, high) - value_at(s, draw, criterion, low)) / log(high / low);
 }
 
-static void find_columns_scatter(sf_cfh_spread *s) {
-    double sum = 0;
+void sf_cfh_check_compare(const sf_cfh_spread *s, sf_cfh_check *check) {
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        double slope = slope_at(s, check->draw, c, check->height);
+        check->shift[c] = slope > 0 ? -log(check->simulated[c] / check->columns[c]) / slope : NAN;
+    }
+}
+
+/* The checks that have a shift of the criterion, as ln(height) and shift. */
+static int list_shifts(const sf_cfh_spread *s, int criterion, double *x, double *y) {
     int count = 0;
     for (int k = 0; k < s->checks; k++)
-        if (!s->check[k].failed && isfinite(s->check[k].shift)) {
-            sum += s->check[k].shift * s->check[k].shift;
-            count++;
+        if (!s->check[k].failed && isfinite(s->check[k].shift[criterion])) {
+            x[count] = log(s->check[k].height);
+            y[count++] = s->check[k].shift[criterion];
         }
-    s->columns_scatter = count ? sqrt(sum / count) : 0;
+    return count;
+}
+
+/* x is ascending, as the checks are. */
+static void fit_trend(int count, const double *x, const double *y, sf_cfh_trend *t) {
+    double constant, variance[3], rest;
+    gsl_fit_linear(x, 1, y, 1, (size_t)count, &constant, &t->slope, &variance[0], &variance[1], &variance[2],
+                   &rest);
+    for (int k = 0; k < count; k++)
+        t->centre += x[k] / count;
+    for (int k = 0; k < count; k++)
+        t->sum += (x[k] - t->centre) * (x[k] - t->centre);
+    t->shift = constant + t->slope * t->centre;
+    t->range[0] = x[0];
+    t->range[1] = x[count - 1];
+    t->freedom = count - 2;
+}
+
+static double from_centre(const sf_cfh_trend *t, double x) {
+    return fmin(fmax(x, t->range[0]), t->range[1]) - t->centre;
+}
+
+static double shift_of(const sf_cfh_trend *t, double x) {
+    return t->shift + t->slope * from_centre(t, x);
+}
+
+/* Standard deviation of a further check's remainder, but for Student's t. */
+static double remainder_of(const sf_cfh_trend *t, double x) {
+    double d = from_centre(t, x), line = t->sum > 0 ? 1.0 / t->checks + d * d / t->sum : 0;
+    return t->freedom > 0 ? t->scatter * sqrt(1 + line) : 0;
+}
+
+static sf_cfh_trend find_trend(const sf_cfh_spread *s, int criterion) {
+    double x[SF_CFH_CHECKS], y[SF_CFH_CHECKS], sum = 0;
+    int count = list_shifts(s, criterion, x, y);
+    sf_cfh_trend t = {.checks = count, .scatter = NAN, .freedom = count};
+    if (count >= SF_CFH_TREND && x[count - 1] - x[0] > TREND_SPAN)
+        fit_trend(count, x, y, &t);
+    for (int k = 0; k < count; k++)
+        sum += pow(y[k] - shift_of(&t, x[k]), 2);
+    if (count > 0)
+        t.scatter = sqrt(sum / t.freedom);
+    return t;
 }
 
 /* ---- the random errors ---- */
 
 /* Of one repeat of a draw. */
 typedef struct errors {
-    double mesh, fit[SF_CFH_CRITERIA], columns, rig;
+    double mesh, fit[SF_CFH_CRITERIA];
+    double columns[SF_CFH_CRITERIA]; /* Student's t, the same quantile of both */
+    double rig;
 } errors;
 
+static double or_none(double scatter) {
+    return isnan(scatter) ? 0 : scatter;
+}
+
 static errors random_errors(const sf_cfh_spread *s, const sf_cfh_rig *rig, gsl_rng *random) {
-    double q = SF_CFH_MESH_MEDIAN * exp(gsl_ran_gaussian(random, SF_CFH_MESH_SCATTER));
-    errors e = {.mesh = -log(1 - fmin(q * s->mesh_error, MOST_MESH))};
+    errors e = {.mesh = SF_CFH_MESH_SIZE * or_none(s->mesh_error) * gsl_ran_ugaussian(random)};
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
-        e.fit[c] = s->fit_scatter[c] * gsl_ran_ugaussian(random);
-    e.columns = s->columns_scatter * gsl_ran_ugaussian(random);
+        e.fit[c] = or_none(s->fit_scatter[c]) * gsl_ran_ugaussian(random);
+    double share = gsl_rng_uniform_pos(random);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        if (s->trend[c].freedom > 0)
+            e.columns[c] = gsl_cdf_tdist_Pinv(share, s->trend[c].freedom);
     if (rig->pairs > 1)
         e.rig = gsl_ran_tdist(random, rig->pairs - 1) * rig->standard_error / rig->gravity;
     return e;
@@ -336,12 +396,23 @@ static double raise_of(const errors *e, sf_cfh_part part, int criterion) {
     return raise;
 }
 
+/* What the checks do to the height of a criterion: a factor. */
+static double factor_of(const sf_cfh_spread *s, int d, const errors *e, sf_cfh_part part, int criterion) {
+    const sf_cfh_trend *t = &s->trend[criterion];
+    double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];
+    double x = log(fmin(fmax(height, s->height[0]), s->height[s->grid - 1]));
+    if (part < SF_CFH_PART_COLUMNS)
+        return 1;
+    double shift = shift_of(t, x) + remainder_of(t, x) * e->columns[criterion];
+    return exp(fmax(-MOST_SHIFT, fmin(shift, MOST_SHIFT)));
+}
+
 /* values [SF_CFH_FIRST + 1][count] and rig [count] of one repeat, at `at`. */
 static void repeat(const sf_cfh_spread *s, int d, const errors *e, const sf_cfh_rig *rig, sf_cfh_part part,
                    int count, int at, double *values, double *on_rig) {
-    double first = INFINITY, factor = part >= SF_CFH_PART_COLUMNS ? exp(e->columns) : 1;
+    double first = INFINITY;
     for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-        double height = cross(s, d, c, raise_of(e, part, c)) * factor;
+        double height = cross(s, d, c, raise_of(e, part, c)) * factor_of(s, d, e, part, c);
         values[(size_t)c * (size_t)count + (size_t)at] = height;
         first = fmin(first, height);
     }
@@ -349,14 +420,23 @@ static void repeat(const sf_cfh_spread *s, int d, const errors *e, const sf_cfh_
     on_rig[at] = sf_cfh_rig_height(rig, first) * exp(-e->rig);
 }
 
+/* The interval of heights, on the rig or not, of those looked at. */
+static sf_cfh_interval height_interval(const sf_cfh_spread *s, double *values, int count, double scale) {
+    sf_cfh_interval i = interval_of(values, count);
+    i.end[0] = scale * s->height[0];
+    i.end[1] = scale * s->height[s->grid - 1];
+    return i;
+}
+
 sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_error *err) {
     int count = s->draws * SF_CFH_REPEATS;
     double *values =
         sf_alloc(err, (unsigned long)count * (SF_CFH_FIRST + 2), sizeof *values, "repeats of the draws");
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        s->trend[c] = find_trend(s, c);
     if (values && random) {
         double *on_rig = &values[(size_t)count * (SF_CFH_FIRST + 1)];
-        find_columns_scatter(s);
         for (int part = 0; part < SF_CFH_PARTS; part++) {
             gsl_rng_set(random, SEED);
             for (int at = 0; at < count; at++) {
@@ -364,9 +444,10 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
                 repeat(s, at / SF_CFH_REPEATS, &e, rig, (sf_cfh_part)part, count, at, values, on_rig);
             }
             for (int c = 0; c <= SF_CFH_FIRST; c++)
-                s->part[part][c] = interval_of(&values[(size_t)c * (size_t)count], count);
+                s->part[part][c] = height_interval(s, &values[(size_t)c * (size_t)count], count, 1);
         }
-        s->rig = rig->pairs ? interval_of(on_rig, count) : (sf_cfh_interval){NAN, NAN, NAN};
+        s->rig = rig->pairs ? height_interval(s, on_rig, count, sf_cfh_rig_height(rig, 1))
+                            : (sf_cfh_interval){NAN, NAN, NAN, {NAN, NAN}};
     } else if (!random) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
     }

@@ -19,13 +19,13 @@ enum {
     SF_CFH_GRID = 80,               /* heights at which the columns drop, at most */
     SF_CFH_REPEATS = 64,            /* of a draw with random errors */
     SF_CFH_CHECKS = 9,              /* simulated draws at most */
+    SF_CFH_TREND = 4,               /* of them give a trend; fewer only a scatter */
     SF_CFH_FIRST = SF_CFH_CRITERIA, /* in place of a criterion: the one that is met first */
 };
 
-/* The mesh error of a_max is q times what softfall-pre expects, q log-normal; that of HIC is larger by a
+/* Root mean square of the mesh error of a_max over what softfall-pre expects; that of HIC is larger by a
  * factor (docs/cfh.md, from docs/theory.md section 11 and the mesh study). */
-#define SF_CFH_MESH_MEDIAN 0.72
-#define SF_CFH_MESH_SCATTER 0.28 /* of ln q */
+#define SF_CFH_MESH_SIZE 0.78
 #define SF_CFH_MESH_HIC 1.3
 
 /* What an interval holds, one after another. */
@@ -39,6 +39,7 @@ typedef enum sf_cfh_part {
 
 typedef struct sf_cfh_interval {
     double low, median, high; /* m, 2.5, 50 and 97.5 %; 0 or INFINITY: beyond the heights looked at */
+    double end[2];            /* m, the lowest and the highest of these */
 } sf_cfh_interval;
 
 /* The pad that the drops had, for the columns. */
@@ -50,15 +51,26 @@ typedef struct sf_cfh_pad {
 /* A draw that was simulated at its critical height. */
 typedef struct sf_cfh_check {
     int draw;     /* from 0 */
-    double share; /* of the draws whose height is lower */
+    double share; /* of all draws, those whose height is lower */
     double height;
     sf_cfh_criterion first;            /* which limit it meets first by the corrected columns */
     double columns[SF_CFH_CRITERIA];   /* g, -, corrected */
     bool failed;                       /* no figures: `note` says why */
     double simulated[SF_CFH_CRITERIA]; /* g, - */
-    double shift;                      /* of ln height, by the difference of that criterion */
+    double shift[SF_CFH_CRITERIA];     /* of ln height, by the difference of each; NaN: not known */
     char note[SF_CFH_NOTE_SIZE];
 } sf_cfh_check;
+
+/* How far the height of a criterion moves, by the checks: ln height += shift + slope (ln h - centre), where h
+ * is the draw's critical height by the columns, constant beyond the checks, and a remainder. */
+typedef struct sf_cfh_trend {
+    int checks;                  /* that were used */
+    double shift, slope, centre; /* 0 if they are no trend: fewer than SF_CFH_TREND, or all at one height */
+    double range[2];             /* of ln h */
+    double sum;                  /* of (ln h - centre)^2; 0: no trend */
+    double scatter;              /* of the remainder: its root mean square; NaN: not known */
+    int freedom;                 /* degrees of freedom of that */
+} sf_cfh_trend;
 
 typedef struct sf_cfh_band {
     double low, median, high; /* g, -; INFINITY: of draws whose columns collapse */
@@ -75,9 +87,9 @@ typedef struct sf_cfh_spread {
     double *crossing; /* [draws][SF_CFH_FIRST + 1] m, foam alone; 0 or INFINITY: beyond the grid; owned */
     double limit[SF_CFH_CRITERIA];
     double own_height;                   /* m, of the case's own material; NaN: none was found */
-    double mesh_error;                   /* -, expected of a_max; 0: none */
-    double fit_scatter[SF_CFH_CRITERIA]; /* of ln(value) */
-    double columns_scatter;              /* of ln(height), from the checks */
+    double mesh_error;                   /* -, expected of a_max; NaN: not known */
+    double fit_scatter[SF_CFH_CRITERIA]; /* of ln(value); NaN: not known */
+    sf_cfh_trend trend[SF_CFH_CRITERIA]; /* of the checks */
     int checks;
     sf_cfh_check check[SF_CFH_CHECKS];
     int above, below, collapsed,
@@ -98,10 +110,10 @@ void sf_cfh_spread_free(sf_cfh_spread *spread);
 /* Chooses `count` draws, of 5 to 95 % of the heights (one: 50 %), that are to be simulated; their heights are
  * multiples of `grain` m. Fewer if fewer draws have a height. */
 void sf_cfh_spread_choose(sf_cfh_spread *spread, int count, double grain);
-/* Takes the simulated values of a check into its shift. */
+/* Takes the simulated values of a check into its shifts. */
 void sf_cfh_check_compare(const sf_cfh_spread *spread, sf_cfh_check *check);
 
-/* The intervals, with the scatter that the checks show. */
+/* The intervals, with the trend and the scatter that the checks show. */
 sf_status sf_cfh_spread_evaluate(sf_cfh_spread *spread, const sf_cfh_rig *rig, sf_error *err);
 
 /* The whole interval of a criterion, or of SF_CFH_FIRST. */

@@ -6,6 +6,10 @@
 const char *sf_cfh_interval_text(const sf_cfh_interval *i, char *text, size_t size) {
     if (isnan(i->median))
         snprintf(text, size, "–");
+    else if (isinf(i->low))
+        snprintf(text, size, "above %#.3g m", i->end[1]);
+    else if (i->high <= 0)
+        snprintf(text, size, "below %#.3g m", i->end[0]);
     else if (i->low <= 0 && isinf(i->high))
         snprintf(text, size, "open at both ends");
     else if (i->low <= 0)
@@ -85,6 +89,51 @@ static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig)
     sf_html_table_end(&table);
 }
 
+/* What the checks say of a criterion's height. */
+static const char *trend_text(const sf_cfh_trend *t, char *text, size_t size) {
+    if (t->checks == 0)
+        snprintf(text, size, "not known");
+    else if (t->sum > 0)
+        snprintf(
+            text, size,
+            "%+.2g %% at the lowest and %+.2g %% at the highest of %d simulated draws by their trend, which the "
+            "heights follow, ±%.2g %% about it (Student's t, %d degrees of freedom)",
+            100 * (t->shift + t->slope * (t->range[0] - t->centre)),
+            100 * (t->shift + t->slope * (t->range[1] - t->centre)), t->checks, 100 * t->scatter, t->freedom);
+    else
+        snprintf(text, size,
+                 "±%.2g %%, the root mean square of %d simulated draws (Student's t, %d degrees of freedom)",
+                 100 * t->scatter, t->checks, t->freedom);
+    return text;
+}
+
+/* "0.12 %" */
+static const char *percent_text(double value, char text[24]) {
+    if (isnan(value))
+        snprintf(text, 24, "not known");
+    else
+        snprintf(text, 24, "%.2g %%", 100 * value);
+    return text;
+}
+
+static void put_errors(FILE *page, const sf_cfh_spread *s) {
+    char columns[SF_CFH_CRITERIA][240], fit[SF_CFH_CRITERIA][24], mesh[24];
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        trend_text(&s->trend[c], columns[c], sizeof columns[c]);
+        percent_text(s->fit_scatter[c], fit[c]);
+    }
+    sf_html_note(
+        page,
+        "%d draws of the foam, each as columns below the missile, corrected by the drops simulated with the "
+        "case's own material between %.3f and %.3f m. Error of the mesh (expected of a_max: %s): assumed is that the "
+        "draws were identified by drops of the same spacing, whose error of the mesh is in them. How much it differs at this "
+        "height is not known: a scatter of %.2g times that of a_max, and %.1f times as much of HIC, to both sides. Points about "
+        "their fit: %s of a_max, %s of HIC. The columns' own error of the height at a_max: %s; at HIC: %s. What is not known "
+        "is not in the interval.",
+        s->draws, s->simulated[0], s->simulated[1], percent_text(s->mesh_error, mesh), SF_CFH_MESH_SIZE,
+        SF_CFH_MESH_HIC, fit[SF_CFH_A_MAX], fit[SF_CFH_HIC], columns[SF_CFH_A_MAX], columns[SF_CFH_HIC]);
+}
+
 static void put_checks(FILE *page, const sf_cfh_spread *s) {
     if (s->checks == 0) {
         sf_html_paragraph(
@@ -94,8 +143,8 @@ static void put_checks(FILE *page, const sf_cfh_spread *s) {
     }
     sf_html_table table = sf_html_table_begin(
         page, "dense",
-        "simulated draw|>draws below (%)|>height (m)|limit|>a_max, columns (g)|>simulated (g)|>HIC, "
-        "columns|>simulated|>height moves by (%)");
+        "simulated draw|>draws below (%)|>height (m)|limit|>a_max, columns (g)|>simulated (g)|>its height moves by "
+        "(%)|>HIC, columns|>simulated|>its height moves by (%)");
     for (int k = 0; k < s->checks; k++) {
         const sf_cfh_check *check = &s->check[k];
         sf_html_row(&table);
@@ -106,8 +155,8 @@ static void put_checks(FILE *page, const sf_cfh_spread *s) {
         for (int c = 0; c < SF_CFH_CRITERIA; c++) {
             sf_html_number(&table, c == SF_CFH_A_MAX, check->columns[c]);
             sf_html_number(&table, c == SF_CFH_A_MAX, check->failed ? NAN : check->simulated[c]);
+            sf_html_number(&table, 2, check->failed ? NAN : 100 * check->shift[c]);
         }
-        sf_html_number(&table, 2, check->failed ? NAN : 100 * check->shift);
     }
     sf_html_table_end(&table);
     for (int k = 0; k < s->checks; k++)
@@ -123,29 +172,49 @@ void sf_cfh_put_spread(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig
     if (text[0])
         sf_html_paragraph(page, "%s", text);
     put_checks(page, s);
-    sf_html_note(
-        page,
-        "%d draws of the foam, each as columns below the missile, corrected by the drops simulated with the "
-        "case's own material between %.3f and %.3f m. Error of the mesh: %.2g %% of a_max are expected, of which "
-        "%.2f times (95 %%: %.2f to %.2f) are missing, and %.1f times as much of HIC; so the heights with it are "
-        "lower. Points about their fit: %.2g %% of a_max and %.2g %% of HIC; the columns' own error: %.2g %% of the "
-        "height, the root mean square over the simulated draws.",
-        s->draws, s->simulated[0], s->simulated[1], 100 * s->mesh_error, SF_CFH_MESH_MEDIAN,
-        SF_CFH_MESH_MEDIAN * exp(-1.96 * SF_CFH_MESH_SCATTER),
-        SF_CFH_MESH_MEDIAN * exp(1.96 * SF_CFH_MESH_SCATTER), SF_CFH_MESH_HIC,
-        100 * s->fit_scatter[SF_CFH_A_MAX], 100 * s->fit_scatter[SF_CFH_HIC], 100 * s->columns_scatter);
+    put_errors(page, s);
 }
 
 /* ---- cfh.json ---- */
 
+/* To which side is the interval open? NULL: there is none. */
+static const char *open_side(const sf_cfh_interval *i) {
+    if (!i || isnan(i->median))
+        return NULL;
+    return i->low <= 0 ? isinf(i->high) ? "both" : "below" : isinf(i->high) ? "above" : "no";
+}
+
 void sf_cfh_put_interval_json(sf_json *json, const char *name, const sf_cfh_interval *i) {
     char key[64];
+    static const sf_cfh_interval none = {NAN, NAN, NAN, {NAN, NAN}};
+    const char *open = open_side(i);
+    i = i ? i : &none;
     snprintf(key, sizeof key, "%s_low_m", name);
-    sf_json_number(json, key, i && i->low > 0 ? i->low : NAN);
+    sf_json_number(json, key, isinf(i->low) ? i->end[1] : i->low > 0 ? i->low : NAN);
     snprintf(key, sizeof key, "%s_median_m", name);
-    sf_json_number(json, key, i && i->median > 0 ? i->median : NAN);
+    sf_json_number(json, key, i->median > 0 ? i->median : NAN);
     snprintf(key, sizeof key, "%s_high_m", name);
-    sf_json_number(json, key, i ? i->high : NAN);
+    sf_json_number(json, key, i->high > 0 ? i->high : i->end[0]);
+    snprintf(key, sizeof key, "%s_open", name);
+    sf_json_text(json, key, open);
+}
+
+static void put_trends_json(sf_json *json, const sf_cfh_spread *s) {
+    sf_json_open(json, "columns_error", '[');
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_trend *t = &s->trend[c];
+        bool trend = t->sum > 0;
+        sf_json_open(json, NULL, '{');
+        sf_json_text(json, "criterion", sf_cfh_name((sf_cfh_criterion)c));
+        sf_json_integer(json, "checks", t->checks);
+        sf_json_number(json, "centre_m", trend ? exp(t->centre) : NAN);
+        sf_json_number(json, "shift", trend ? t->shift : NAN);
+        sf_json_number(json, "slope", trend ? t->slope : NAN);
+        sf_json_number(json, "scatter", t->scatter);
+        sf_json_integer(json, "degrees_of_freedom", t->freedom);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
 }
 
 static void put_checks_json(sf_json *json, const sf_cfh_spread *s) {
@@ -161,7 +230,9 @@ static void put_checks_json(sf_json *json, const sf_cfh_spread *s) {
         sf_json_number(json, "a_max_g", check->failed ? NAN : check->simulated[SF_CFH_A_MAX]);
         sf_json_number(json, "hic_columns", check->columns[SF_CFH_HIC]);
         sf_json_number(json, "hic", check->failed ? NAN : check->simulated[SF_CFH_HIC]);
-        sf_json_number(json, "height_shift", check->failed ? NAN : check->shift);
+        sf_json_number(json, "height_shift", check->failed ? NAN : check->shift[check->first]);
+        sf_json_number(json, "a_max_height_shift", check->failed ? NAN : check->shift[SF_CFH_A_MAX]);
+        sf_json_number(json, "hic_height_shift", check->failed ? NAN : check->shift[SF_CFH_HIC]);
         sf_json_bool(json, "failed", check->failed);
         sf_json_text(json, "note", check->note[0] ? check->note : NULL);
         sf_json_close(json, '}');
@@ -181,9 +252,9 @@ void sf_cfh_put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     sf_json_number(json, "expected_mesh_error", s->mesh_error);
     sf_json_number(json, "fit_scatter_a_max", s->fit_scatter[SF_CFH_A_MAX]);
     sf_json_number(json, "fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]);
-    sf_json_number(json, "columns_scatter_height", s->checks ? s->columns_scatter : NAN);
     for (int part = 0; part < SF_CFH_PARTS; part++)
         sf_cfh_put_interval_json(json, names[part], &s->part[part][SF_CFH_FIRST]);
+    put_trends_json(json, s);
     put_checks_json(json, s);
 }
 
