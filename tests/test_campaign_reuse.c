@@ -3,6 +3,7 @@
 #include "program_fixture.h"
 
 #include "campaign/run_folder.h"
+#include "campaign/runner.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -87,6 +88,32 @@ static void a_moved_project_keeps_its_drops(void **state) {
     assert_int_equal(chdir("/"), 0);
 }
 
+/* An orphan that finished after its campaign was killed leaves model and checkpoint: a drop that is used
+ * again has them no longer. */
+static void what_an_orphan_left_goes(void **state) {
+    const program_place *p = *state;
+    char folder[600], source[1024];
+    snprintf(folder, sizeof folder, "%s/orphan", p->folder);
+    snprintf(source, sizeof source, "%s", program_path(p, "examples/compression/case.cfg"));
+    sf_runner runner = {.folder = folder, .threads = 1};
+    const sf_runner_drop drop = {.label = "drop",
+                                 .case_path = source,
+                                 .override_count = 2,
+                                 .overrides = {"geometry.parameters.spacing=25", "solver.end_time=0.1 ms"}};
+    for (int again = 0; again < 2; again++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_runner_result result;
+        if (sf_runner_run(&runner, &drop, &result, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_int_equal(result.reused, again);
+        sf_runner_result_free(&result);
+        assert_int_equal(
+            program_shell(p, "cd orphan/drop-* && test ! -e model.h5 && test ! -e results.h5.restart").code,
+            0);
+        program_shell(p, "cd orphan/drop-* && touch model.h5 results.h5.restart");
+    }
+}
+
 /* The drop is simulated again where it was, and then used with the new content. */
 static void a_changed_geometry_is_simulated_again(void **state) {
     const program_place *p = *state;
@@ -111,6 +138,7 @@ int main(void) {
         cmocka_unit_test(what_was_included_or_merged_counts),
         cmocka_unit_test(a_copied_project_is_compared_with_its_own_files),
         cmocka_unit_test(a_changed_geometry_is_simulated_again),
+        cmocka_unit_test(what_an_orphan_left_goes),
         cmocka_unit_test(a_moved_project_keeps_its_drops),
         cmocka_unit_test(an_unconfined_drop_is_not_used_again),
     };

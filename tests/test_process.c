@@ -55,6 +55,28 @@ static void a_program_or_folder_that_is_not_there_has_its_reason(void **state) {
     assert_false(sf_process_stopped());
 }
 
+static sf_status end_by_signal(void *context, int index, sf_error *err) {
+    (void)context;
+    if (index == 1)
+        raise(SIGKILL);
+    return index == 2 ? SF_FAIL(err, SF_ERR_MODEL, "no good") : SF_OK;
+}
+
+/* Also where who started us ignores the end of children, which goes over to us. */
+static void children_are_waited_for_whatever_was_inherited(void **state) {
+    (void)state;
+    sf_error result[3], err = SF_ERROR_INIT;
+    signal(SIGCHLD, SIG_IGN);
+    assert_int_equal(shell("exit 7", NULL, NULL), 7);
+    signal(SIGCHLD, SIG_IGN);
+    assert_int_equal(sf_process_pool(3, 2, end_by_signal, NULL, result, &err), SF_OK);
+    assert_int_equal(result[0].status, SF_OK);
+    assert_int_equal(result[1].status, SF_ERR_LIBRARY);
+    assert_string_equal(result[1].text, SF_PROCESS_KILLED " 9");
+    assert_int_equal(result[2].status, SF_ERR_MODEL);
+    assert_string_equal(result[2].text, "no good");
+}
+
 static void our_programs_are_looked_for_in_SF_BIN_DIR(void **state) {
     const program_place *p = *state;
     char path[1024], before[1024];
@@ -77,6 +99,7 @@ int main(void) {
         cmocka_unit_test(what_it_prints_is_appended_to_the_log_and_it_reads_nothing),
         cmocka_unit_test(it_runs_in_its_folder),
         cmocka_unit_test(a_program_or_folder_that_is_not_there_has_its_reason),
+        cmocka_unit_test(children_are_waited_for_whatever_was_inherited),
         cmocka_unit_test(our_programs_are_looked_for_in_SF_BIN_DIR),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

@@ -188,12 +188,65 @@ static void a_signal_is_passed_on_to_the_drop_that_runs(void **state) {
     }
 }
 
+/* Two drops side by side. */
+static void run_batch(const program_place *p, int jobs, FILE *log, sf_error *err) {
+    char folder[600], source[1024];
+    sf_runner_result result[2];
+    snprintf(folder, sizeof folder, "%s/runs", p->folder);
+    snprintf(source, sizeof source, "%s", fixture_source(EXAMPLE));
+    sf_runner runner = {.folder = folder, .threads = 1, .jobs = jobs, .log = log};
+    const sf_runner_drop drop[2] = {
+        {.label = "slow", .case_path = source},
+        {.label = "fast", .case_path = source, .override_count = 1, .overrides = {"missile.velocity=5 m/s"}}};
+    *err = (sf_error)SF_ERROR_INIT;
+    sf_runner_run_batch(&runner, 2, drop, result, err);
+    for (int k = 0; k < 2; k++)
+        sf_runner_result_free(&result[k]);
+}
+
+/* The sentence names the drop whose copy was killed and says what to do. */
+static void a_killed_copy_is_named(void **state) {
+    const program_place *p = *state;
+    sf_error err;
+    program_shell(p, "rm -rf runs");
+    write_program(p, "softfall-pre", "/bin/sh",
+                  "case \"$*\" in */fast-*) kill -KILL $PPID;; esac; " MAKE_MODEL);
+    write_program(p, "softfall-solve", "/bin/sh", "exit 5");
+    run_batch(p, 2, NULL, &err);
+    assert_int_equal(err.status, SF_ERR_LIBRARY);
+    assert_non_null(strstr(err.text, "/runs/fast-"));
+    assert_non_null(strstr(
+        err.text, "its process was ended by signal 9; finished drops are kept: run the same command again"));
+}
+
+/* --threads 1 with --jobs 2 uses two processors, which is said. */
+static void more_drops_than_threads_are_said(void **state) {
+    const program_place *p = *state;
+    sf_error err;
+    char *words = NULL;
+    size_t size = 0;
+    write_program(p, "softfall-pre", "/bin/sh", MAKE_MODEL);
+    for (int jobs = 0; jobs < 3; jobs++) {
+        FILE *log = open_memstream(&words, &size);
+        program_shell(p, "rm -rf runs");
+        run_batch(p, jobs, log, &err);
+        fclose(log);
+        assert_int_equal(err.status, SF_ERR_NUMERIC);
+        assert_string_equal(words, jobs < 2 ? ""
+                                            : "  2 drops side by side, one thread each: more than 1 thread "
+                                              "together\n");
+        free(words);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_drop_that_fails_is_told_in_the_words_of_its_program),
         cmocka_unit_test(a_program_that_cannot_be_run_is_named),
         cmocka_unit_test(an_interrupted_drop_goes_on_or_starts_anew),
         cmocka_unit_test(a_signal_is_passed_on_to_the_drop_that_runs),
+        cmocka_unit_test(a_killed_copy_is_named),
+        cmocka_unit_test(more_drops_than_threads_are_said),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

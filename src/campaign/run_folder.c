@@ -126,6 +126,11 @@ static bool resume(const char *const *run, const char *const *restart, const sf_
     return true;
 }
 
+void sf_run_folder_clean(const sf_run_folder *at) {
+    sf_folder_remove_file(at->model);
+    sf_folder_remove_file(at->checkpoint);
+}
+
 sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err) {
     char pre[PATH_MAX], solve[PATH_MAX], thread_text[16];
@@ -150,9 +155,7 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
         if (run_program(build, at->log, err) == SF_OK)
             run_program(run, at->log, err);
     }
-    if (err->status != SF_INTERRUPTED) {
-        sf_folder_remove_file(at->model);
-        sf_folder_remove_file(at->checkpoint);
-    }
+    if (err->status != SF_INTERRUPTED)
+        sf_run_folder_clean(at);
     return err->status;
 }

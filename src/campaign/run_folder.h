@@ -26,6 +26,9 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
  * then. */
 bool sf_run_folder_is_finished(const sf_run_folder *folder);
 
+/* Removes model and checkpoint, which an orphan may have left in the folder of a finished drop. */
+void sf_run_folder_clean(const sf_run_folder *folder);
+
 /* Simulates the drop by softfall-pre and softfall-solve on `threads` threads, with their output in the log. A
  * drop that was interrupted or killed resumes from its model and its checkpoint, or starts anew if it cannot;
  * one whose campaign was killed, but whose solver still runs, is waited for. Errors: the last line that the

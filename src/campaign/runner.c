@@ -114,6 +114,8 @@ static sf_status prepare(const sf_runner *runner, const sf_runner_drop *drop, re
     if (sf_run_folder_name(runner->folder, drop->label, drop->case_path, r->count, r->overrides, &r->at,
                            err) == SF_OK)
         r->reused = sf_run_folder_is_finished(&r->at);
+    if (r->reused)
+        sf_run_folder_clean(&r->at);
     return err->status;
 }
 
@@ -151,20 +153,47 @@ static sf_status decide(int count, const sf_error *failure, sf_error *err) {
     return worst ? SF_FAIL(err, worst->status, "%s", worst->text) : SF_OK;
 }
 
+/* Which drop, and what to do about it. */
+static void name_killed(const batch *b, int pending, sf_error *failure) {
+    for (int k = 0; k < pending; k++) {
+        sf_error before = failure[k];
+        if (strncmp(before.text, SF_PROCESS_KILLED, strlen(SF_PROCESS_KILLED)) != 0)
+            continue;
+        failure[k] = (sf_error)SF_ERROR_INIT;
+        SF_FAIL(&failure[k], before.status,
+                "%.700s: %.100s; finished drops are kept: run the same command again to resume",
+                b->request[b->pending[k]].at.path, before.text);
+    }
+}
+
+/* How many drops run side by side; says where that is not what was asked for. */
+static int count_abreast(const sf_runner *runner, int pending) {
+    int jobs = runner->jobs > 0 ? runner->jobs : runner->threads, most = SF_PROCESS_JOBS;
+    int abreast = jobs < most ? jobs : most;
+    abreast = pending < abreast ? pending : abreast;
+    if (runner->log && runner->simulated == 0 && abreast < jobs && abreast < pending)
+        fprintf(runner->log, "  %d drops side by side, not %d: no more are possible\n", abreast, jobs);
+    if (runner->log && runner->simulated == 0 && abreast > runner->threads)
+        fprintf(runner->log, "  %d drops side by side, one thread each: more than %d thread%s together\n",
+                abreast, runner->threads, runner->threads > 1 ? "s" : "");
+    return abreast;
+}
+
 /* One drop alone has all threads and needs no process of its own. */
 static sf_status simulate_pending(batch *b, int pending, sf_error *err) {
-    int threads = b->runner->threads, jobs = b->runner->jobs > 0 ? b->runner->jobs : threads;
-    int abreast = pending < jobs ? pending : jobs;
     if (pending == 0)
         return SF_OK;
+    int threads = b->runner->threads, abreast = count_abreast(b->runner, pending);
     b->threads = threads > abreast ? threads / abreast : 1;
     if (sf_folder_own(b->runner->folder, err) != SF_OK)
         return err->status;
     if (pending == 1)
         return simulate(b, 0, err);
     sf_error *failure = sf_alloc(err, (unsigned long)pending, sizeof *failure, "failures");
-    if (failure && sf_process_pool(pending, jobs, simulate, b, failure, err) == SF_OK)
+    if (failure && sf_process_pool(pending, abreast, simulate, b, failure, err) == SF_OK) {
+        name_killed(b, pending, failure);
         decide(pending, failure, err);
+    }
     free(failure);
     return err->status;
 }

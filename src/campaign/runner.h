@@ -16,8 +16,9 @@
 
 typedef struct sf_runner {
     const char *folder; /* holds the drops' folders; made if need be; borrowed */
-    int threads;        /* of softfall-solve, together */
-    int jobs;           /* drops of a batch that run side by side; 0: as many as threads */
+    int threads;        /* of softfall-solve, together, but at least one of each drop that runs */
+    int jobs;           /* drops of a batch that run side by side, at most SF_PROCESS_JOBS; 0: as many as
+                           threads. More than threads: the log says so */
     FILE *log;          /* a line for each drop; borrowed; NULL: silent */
     int64_t simulated;  /* drops so far, out */
     int64_t reused;     /* drops whose results were there, out */

@@ -31,13 +31,13 @@ sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *e
     return SF_OK;
 }
 
-enum { MOST_JOBS = 64 };
 static volatile sig_atomic_t stopped;
-static volatile sig_atomic_t running[MOST_JOBS]; /* process ids of stoppable programs or copies; 0: none */
+/* Process ids of stoppable programs or copies; 0: none. */
+static volatile sig_atomic_t running[SF_PROCESS_JOBS];
 
 static void pass_on(int signal_number) {
     stopped = 1;
-    for (int k = 0; k < MOST_JOBS; k++)
+    for (int k = 0; k < SF_PROCESS_JOBS; k++)
         if (running[k] > 0)
             kill((pid_t)running[k], signal_number);
 }
@@ -57,6 +57,14 @@ void sf_process_handle_signals(void) {
 
 bool sf_process_stopped(void) {
     return stopped != 0;
+}
+
+/* Who started us may have set the end of children to be ignored: then none could be waited for. */
+static void notice_children(void) {
+    const struct sigaction action = {.sa_handler = SIG_DFL};
+    struct sigaction present;
+    if (sigaction(SIGCHLD, NULL, &present) == 0 && present.sa_handler == SIG_IGN)
+        sigaction(SIGCHLD, &action, NULL);
 }
 
 /* Where it runs, reads and prints. */
@@ -85,6 +93,7 @@ static int await(pid_t child, int *exit_code) {
 int sf_process_run(const sf_process *p, int *exit_code) {
     posix_spawn_file_actions_t actions;
     pid_t child = 0;
+    notice_children();
     int result = posix_spawn_file_actions_init(&actions);
     if (result != 0)
         return result;
@@ -154,8 +163,8 @@ static void end_job(job *j, int status, sf_error *result) {
         length += (size_t)got;
     close(j->pipe);
     if (WIFSIGNALED(status))
-        SF_FAIL(result, sf_process_stopped() ? SF_INTERRUPTED : SF_ERR_LIBRARY,
-                "a process of the batch was ended by signal %d", WTERMSIG(status));
+        SF_FAIL(result, sf_process_stopped() ? SF_INTERRUPTED : SF_ERR_LIBRARY, SF_PROCESS_KILLED " %d",
+                WTERMSIG(status));
     else if (WEXITSTATUS(status) != 0)
         SF_FAIL(result, (sf_status)WEXITSTATUS(status), "%s", *text ? text : "it said nothing");
     *j = (job){0};
@@ -177,9 +186,10 @@ static sf_status await_job(job *jobs, int count, sf_error *result, sf_error *err
 
 sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
                           sf_error *err) {
-    job at[MOST_JOBS] = {{0}};
+    job at[SF_PROCESS_JOBS] = {{0}};
     int next = 0, busy = 0;
-    jobs = jobs < 1 ? 1 : jobs > MOST_JOBS ? MOST_JOBS : jobs;
+    notice_children();
+    jobs = jobs < 1 ? 1 : jobs > SF_PROCESS_JOBS ? SF_PROCESS_JOBS : jobs;
     for (int k = 0; k < count; k++)
         result[k] = (sf_error)SF_ERROR_INIT;
     do {

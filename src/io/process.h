@@ -20,7 +20,7 @@ typedef struct sf_process {
 } sf_process;
 
 /* Runs the program with nothing to read. Returns 0 and its exit code (128 + the signal that ended it), or the
- * errno value that says why it cannot be run. */
+ * errno value that says why it cannot be run. From then on SIGCHLD is not ignored. */
 int sf_process_run(const sf_process *process, int *exit_code);
 
 /* From now on SIGINT and SIGTERM do not end this process but are passed on to the stoppable program that
@@ -29,14 +29,18 @@ void sf_process_handle_signals(void);
 /* True once such a signal has come. */
 bool sf_process_stopped(void);
 
+enum { SF_PROCESS_JOBS = 64 }; /* side by side, at most */
+/* So begins the sentence of a copy that a signal ended; its number follows. */
+#define SF_PROCESS_KILLED "its process was ended by signal"
+
 /* Work that sf_process_pool has done in a process of its own. */
 typedef sf_status (*sf_process_work)(void *context, int index, sf_error *err);
 
-/* Does `work` for every index below `count`, `jobs` at a time, each in a copy of this process that ends with
- * it: what it changes in memory is lost, its failure comes back in result[index] (the source line apart).
- * Signals are passed on to the copies and by these to their stoppable programs; after a signal no more is
- * begun (SF_INTERRUPTED). A copy ends when this process does. All are waited for. `err`: a copy cannot be
- * made. */
+/* Does `work` for every index below `count`, `jobs` at a time (at most SF_PROCESS_JOBS), each in a copy of
+ * this process that ends with it: what it changes in memory is lost, its failure comes back in result[index]
+ * (the source line apart); of one that a signal ended, SF_ERR_LIBRARY with SF_PROCESS_KILLED. Signals are
+ * passed on to the copies and by these to their stoppable programs; after a signal no more is begun
+ * (SF_INTERRUPTED). A copy ends when this process does. All are waited for. `err`: a copy cannot be made. */
 sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
                           sf_error *err);
 
