@@ -98,6 +98,8 @@ void sf_case_free(sf_case *c);
 /* Would a case with this material file (the keys of the group `material`) be refused for it? The sentence
  * names file, line and key. */
 sf_status sf_case_check_material(const char *path, sf_error *err);
+/* The material of such a file; owned by the caller (sf_material_free). */
+sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err);
 
 /* Bytes of motion_time, and of motion_displacement; 0: the missile is free. */
 size_t sf_case_motion_bytes(const sf_case *c);

@@ -575,18 +575,18 @@ done:
     return err->status;
 }
 
-sf_status sf_case_check_material(const char *path, sf_error *err) {
+/* The keys of a material file alone, into an empty case. */
+static sf_status read_alone(const char *path, sf_case *scratch, sf_error *err) {
     char *override = NULL;
     size_t size = 0;
-    sf_case scratch = {0};
     sf_case_reader reader = {.path = path,
-                             .out = &scratch,
-                             .material = &scratch.material,
+                             .out = scratch,
+                             .material = &scratch->material,
                              .material_group = "material",
                              .material_only = true};
     config_init(&reader.config);
     config_set_destructor(&reader.config, free);
-    reader.listing = open_memstream(&scratch.parameters, &size);
+    reader.listing = open_memstream(&scratch->parameters, &size);
     if (!reader.listing || asprintf(&override, "material=@%s", path) < 0)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material %s", path);
     else if (sf_units_open(&reader.units, err) == SF_OK &&
@@ -599,6 +599,23 @@ sf_status sf_case_check_material(const char *path, sf_error *err) {
     free(override);
     sf_units_close(&reader.units);
     config_destroy(&reader.config);
+    return err->status;
+}
+
+sf_status sf_case_check_material(const char *path, sf_error *err) {
+    sf_case scratch = {0};
+    read_alone(path, &scratch, err);
+    sf_case_free(&scratch);
+    return err->status;
+}
+
+sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err) {
+    sf_case scratch = {0};
+    *material = (sf_material){0};
+    if (read_alone(path, &scratch, err) == SF_OK) {
+        *material = scratch.material;
+        scratch.material = (sf_material){0};
+    }
     sf_case_free(&scratch);
     return err->status;
 }

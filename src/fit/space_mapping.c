@@ -307,12 +307,32 @@ static bool is_settled(const sf_mapping_problem *p, double step, double gain, in
     return step < p->tolerance || gain < p->tolerance * p->tolerance || idle >= 2;
 }
 
+/* The first simulation, at the minimum with the given offset or at the start; there too if it fails. */
+static sf_status begin(const sf_mapping_problem *p, const sf_mapping_result *r, point *best, sf_error *err) {
+    double next[SF_MAPPING_MAX_PARAMETERS];
+    size_t size = (size_t)p->parameters * sizeof *next;
+    sf_error failure = SF_ERROR_INIT;
+    memcpy(best->u, p->start, size);
+    if (!p->first_offset)
+        return simulate(p, 0, best, err);
+    for (int i = 0; i < p->responses; i++)
+        best->offset[i] = isfinite(p->first_offset[i]) ? p->first_offset[i] : 0;
+    if (propose(p, r, best, INFINITY, next, &failure) == SF_OK) {
+        memcpy(best->u, next, size);
+        if (simulate(p, 0, best, &failure) == SF_OK)
+            return SF_OK;
+    }
+    if (failure.status != SF_ERR_NUMERIC)
+        return SF_FAIL(err, failure.status, "%s", failure.text);
+    memcpy(best->u, p->start, size);
+    return simulate(p, 0, best, err);
+}
+
 static sf_status iterate(const sf_mapping_problem *p, sf_mapping_result *r, point *best, point *trial,
                          sf_error *err) {
     double radius = INFINITY, step = 0, gain = 0;
     int idle = 0; /* steps in a row that were taken and gained nothing that counts */
-    memcpy(best->u, p->start, (size_t)p->parameters * sizeof *best->u);
-    if (simulate(p, 0, best, err) != SF_OK)
+    if (begin(p, r, best, err) != SF_OK)
         return err->status;
     for (r->iterations = 1;; r->iterations++) {
         if (propose(p, r, best, INFINITY, trial->u, err) != SF_OK ||

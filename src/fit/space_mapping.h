@@ -25,6 +25,9 @@ typedef struct sf_mapping_problem {
     const double *prior_sd; /* [parameters] > 0 */
     const double *measured; /* [responses] */
     const double *sd;       /* [responses] > 0; INFINITY: predicted only, no datum */
+    /* [responses] y - s of a similar problem: the first simulation is then at the minimum of s with it; NULL:
+     * at the start */
+    const double *first_offset;
     sf_status (*surrogate)(void *context, const double *u, double *y, sf_error *err);
     sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
     void *context;

@@ -92,12 +92,10 @@ static sf_status read_rate(const sf_config *file, const config_setting_t *entry,
     return SF_OK;
 }
 
-static sf_status read_source(const sf_config *file, const config_setting_t *entry,
-                             const sf_compression_config *c, sf_compression_source *source, sf_error *err) {
-    sf_compression_specimen specimen = c->specimen;
+/* `specimen` and `source->toe`: of the tests without their own. */
+static sf_status read_keys(const sf_config *file, const config_setting_t *entry,
+                           sf_compression_specimen specimen, sf_compression_source *source, sf_error *err) {
     int invert = SF_INVERT_NONE;
-    *source = (sf_compression_source){.toe = c->toe};
-    SF_TRY(sf_config_names(file, entry, "file|rate|specimen|toe_correction|invert", err));
     SF_TRY(read_specimen(file, entry, &specimen, err));
     SF_TRY(read_rate(file, entry, specimen.thickness, &source->rate, err));
     SF_TRY(sf_config_flag(file, entry, "toe_correction", &source->toe, err));
@@ -106,6 +104,19 @@ static sf_status read_source(const sf_config *file, const config_setting_t *entr
     source->area = specimen.area;
     source->thickness = specimen.thickness;
     return SF_OK;
+}
+
+sf_status sf_compression_source_read(const sf_config *file, const config_setting_t *entry,
+                                     sf_compression_source *source, sf_error *err) {
+    *source = (sf_compression_source){0};
+    return read_keys(file, entry, (sf_compression_specimen){0}, source, err);
+}
+
+static sf_status read_source(const sf_config *file, const config_setting_t *entry,
+                             const sf_compression_config *c, sf_compression_source *source, sf_error *err) {
+    *source = (sf_compression_source){.toe = c->toe};
+    SF_TRY(sf_config_names(file, entry, "file|rate|specimen|toe_correction|invert", err));
+    return read_keys(file, entry, c->specimen, source, err);
 }
 
 /* Into the tests that are fitted, each rate once, or those that are predicted. */

@@ -4,6 +4,7 @@
 #define SF_FIT_COMPRESSION_CONFIG_H
 
 #include "fit/compression/form_request.h"
+#include "campaign/config.h"
 #include "fit/compression/test.h"
 #include <stdio.h>
 
@@ -55,5 +56,10 @@ const char *sf_rate_model_name(sf_rate_model model);
  * sf_compression_test_read refuses. On failure `*config` is zeroed. */
 sf_status sf_compression_config_read(const char *path, sf_compression_config *config, sf_error *err);
 void sf_compression_config_free(sf_compression_config *config);
+
+/* The keys `rate`, `specimen`, `toe_correction` and `invert` of one test, for other files with such tests;
+ * `path` is the caller's. */
+sf_status sf_compression_source_read(const sf_config *file, const config_setting_t *entry,
+                                     sf_compression_source *source, sf_error *err);
 
 #endif

@@ -87,6 +87,11 @@ static void print_curves(const sf_fit_input *in) {
     for (int k = 0; k < in->drop_count; k++)
         if (in->drop[k].curve_path)
             printf("reference %s: %s\n", in->drop[k].curve_path, in->drop[k].understood);
+    for (int t = 0; t < in->joint.test_count; t++)
+        printf("test %s\n", in->joint.test[t].understood);
+    for (int c = 0; c < in->joint.cushion_count; c++)
+        if (*in->joint.cushion[c].understood)
+            printf("cushion %s\n", in->joint.cushion[c].understood);
     fflush(stdout);
 }
 

@@ -61,7 +61,7 @@ static sf_status respond(const sf_fit_drop *drop, const sf_columns_figures *figu
 
 static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
-    fit->row[0] = 0;
+    fit->row[0] = in->joint.rows;
     for (int d = 0; d < in->drop_count; d++) {
         fit->row[d + 1] = fit->row[d] + SF_FIT_SAMPLES + in->drop[d].samples;
         fit->measured_drops += !in->drop[d].predicted;
@@ -78,6 +78,7 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
     fit->response_sd = sf_alloc(err, n, sizeof(double), "responses");
     if (err->status != SF_OK)
         return err->status;
+    sf_joint_data(&in->joint, fit->measured, fit->sd);
     for (int d = 0; d < in->drop_count; d++) {
         const sf_fit_drop *drop = &in->drop[d];
         double *measured = &fit->measured[fit->row[d]], *sd = &fit->sd[fit->row[d]];
@@ -96,12 +97,19 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
 
 /* ---- surrogate ---- */
 
+/* The joint data stand before the first drop. */
+static int first_row(const sf_drop_fit *fit, int first) {
+    return first == 0 ? 0 : fit->row[first];
+}
+
 sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
                               const double *u, double *y, sf_error *err) {
     const sf_material material = sf_foam_material(card);
     sf_material_law law;
     if (sf_material_law_build(&material, &law, err) != SF_OK)
         return err->status;
+    if (first == 0)
+        sf_joint_respond(&fit->input->joint, &law, y, err);
     for (int d = first; d < last && err->status == SF_OK; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
         sf_series curve = {0};
@@ -129,6 +137,7 @@ static uint64_t hash_inputs(const sf_drop_fit *fit) {
     hash = sf_hash(hash, &in->form.solid_density, sizeof in->form.solid_density);
     hash = sf_hash(hash, in->start, sizeof in->start);
     hash = sf_hash(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
+    hash = sf_joint_hash(hash, &in->joint);
     for (int d = 0; d < in->drop_count; d++) {
         const sf_fit_drop *drop = &in->drop[d];
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) { /* which must be defined */
@@ -168,14 +177,15 @@ static uint64_t key_of(const sf_drop_fit *fit, int first, int last, int bin, con
 static sf_status columns_at(const sf_drop_fit *fit, int first, int last, const double *u, double *y,
                             sf_error *err) {
     sf_foam_card card;
-    size_t count = (size_t)(fit->row[last] - fit->row[first]);
+    int begin = first_row(fit, first);
+    size_t count = (size_t)(fit->row[last] - begin);
     uint64_t key = key_of(fit, first, last, AS_GIVEN, u);
-    if (sf_fit_memory_find(fit->memory, key, count, &y[fit->row[first]]))
+    if (sf_fit_memory_find(fit->memory, key, count, &y[begin]))
         return SF_OK;
     if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
         return err->status;
     if (sf_drop_fit_respond(fit, first, last, &card, u, y, err) == SF_OK)
-        sf_fit_memory_add(fit->memory, key, count, &y[fit->row[first]]);
+        sf_fit_memory_add(fit->memory, key, count, &y[begin]);
     sf_foam_card_free(&card);
     return err->status;
 }
@@ -255,6 +265,8 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     sf_foam_card_free(&card);
     if (err->status == SF_OK && last > first)
         simulate_with(fit, first, last, path, y, err);
+    if (err->status == SF_OK && first == 0) /* the joint data need no simulation */
+        columns_at(fit, 0, 0, u, y, err);
     return err->status;
 }
 
@@ -306,9 +318,10 @@ static sf_status leave_one_out(sf_drop_fit *fit, const sf_mapping_problem *probl
     size_t n = (size_t)problem->responses;
     double u[SF_MAPPING_MAX_PARAMETERS];
     double *sd = sf_alloc(err, n, sizeof *sd, "responses"), *y = sf_alloc(err, n, sizeof *y, "responses");
+    bool others = fit->measured_drops > 1 || in->joint.rows > 0;
     for (int k = 0; k < fit->row[in->drop_count]; k++)
         fit->without[k] = NAN;
-    for (int d = 0; d < fit->measured_drops && fit->measured_drops > 1 && err->status == SF_OK; d++) {
+    for (int d = 0; d < fit->measured_drops && others && err->status == SF_OK; d++) {
         memcpy(sd, fit->sd, n * sizeof *sd);
         for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
             sd[k] = INFINITY;
@@ -467,6 +480,8 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     if (list_data(fit, err) != SF_OK)
         return err->status;
     fit->inputs = fit->memory ? hash_inputs(fit) : 0;
+    if (fit->earlier)
+        memcpy(fit->columns, fit->earlier->columns, sizeof fit->columns);
     for (int k = 0; k < in->unknown_count; k++) {
         start[k] = log(in->prior[k]);
         prior_sd[k] = in->prior_sd[k];
@@ -479,6 +494,7 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
                                         .start = start,
                                         .prior = start,
                                         .prior_sd = prior_sd,
+                                        .first_offset = fit->earlier ? fit->earlier->result.offset : NULL,
                                         .measured = fit->measured,
                                         .sd = fit->sd,
                                         .surrogate = surrogate,

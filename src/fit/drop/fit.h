@@ -27,13 +27,18 @@ typedef struct sf_fit_simulated {
 typedef struct sf_drop_fit {
     const sf_fit_input *input;
     sf_runner *runner;
-    const char *folder;    /* for the materials of the iterates; borrowed */
-    FILE *log;             /* progress; NULL: silent */
+    const char *folder; /* for the materials of the iterates; borrowed */
+    FILE *log;          /* progress; NULL: silent */
+    /* a finished fit of another model to the same data, whose correction the first iterate takes; NULL: none
+     */
+    const struct sf_drop_fit *earlier;
     sf_fit_memory *memory; /* of the columns' responses; borrowed; NULL: none */
 
     /* out */
-    uint64_t inputs;               /* hash of what all responses of columns depend on */
-    int row[SF_FIT_MAX_DROPS + 1]; /* first response of each drop, and their number; measured drops first */
+    uint64_t inputs; /* hash of what all responses of columns depend on */
+    /* first response of each drop, and their number; before them those of the joint data, then measured
+     * drops */
+    int row[SF_FIT_MAX_DROPS + 1];
     int measured_drops;
     int parameters;              /* unknown parameters of the foam, then speeds */
     int speed[SF_FIT_MAX_DROPS]; /* index of the drop's speed among them; -1: it is known */

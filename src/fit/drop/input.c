@@ -171,8 +171,8 @@ static sf_status read_drop(const sf_config *config, const config_setting_t *grou
 static sf_status read_drops(const sf_config *config, const config_setting_t *root, const char *name,
                             bool predicted, sf_fit_input *in, sf_error *err) {
     const config_setting_t *list;
-    if (sf_config_list(config, root, name, !predicted, SF_FIT_MAX_DROPS - in->drop_count, &list, err) !=
-        SF_OK)
+    bool required = !predicted && in->joint.rows == 0;
+    if (sf_config_list(config, root, name, required, SF_FIT_MAX_DROPS - in->drop_count, &list, err) != SF_OK)
         return err->status;
     for (int k = 0; list && k < config_setting_length(list); k++)
         if (read_drop(config, config_setting_get_elem(list, (unsigned)k), predicted, in, err) != SF_OK)
@@ -231,6 +231,27 @@ static sf_status check_solid_fraction(const sf_config *config, const config_sett
     return SF_OK;
 }
 
+/* Only this law's parameters are identified; `first`: the input takes the card with its curves. */
+static sf_status take_material(sf_material *material, bool first, sf_fit_input *in, sf_error *err) {
+    if (material->law != &sf_low_density_foam)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s is of the law %s; the parameters that drops identify are those of %s",
+                       in->material_path, material->law->name, sf_low_density_foam.name);
+    if (first) {
+        in->form.base = *sf_foam_card_of(material);
+        sf_foam_card_of(material)->curves = (sf_law_curves){0};
+    }
+    return SF_OK;
+}
+
+static sf_status read_material_alone(sf_fit_input *in, sf_error *err) {
+    sf_material material;
+    if (sf_case_read_material(in->material_path, &material, err) == SF_OK)
+        take_material(&material, true, in, err);
+    sf_material_free(&material);
+    return err->status;
+}
+
 /* The start material, read as the first drop's case would. */
 static sf_status read_material(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                                sf_error *err) {
@@ -263,17 +284,12 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     snprintf(in->material_name, sizeof in->material_name, "%s", name);
     snprintf(in->title, sizeof in->title, "%s", title);
     snprintf(override, sizeof override, "material=@%s", in->material_path);
+    if (in->drop_count == 0 && read_material_alone(in, err) != SF_OK)
+        return err->status;
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
         if (sf_case_read(in->drop[k].case_path, 1, overrides, &sink, &c, err) != SF_OK)
             return err->status;
-        if (c.material.law != &sf_low_density_foam)
-            SF_FAIL(err, SF_ERR_INPUT,
-                    "%s is of the law %s; the parameters that drops identify are those of %s",
-                    in->material_path, c.material.law->name, sf_low_density_foam.name);
-        else if (k == 0) {
-            in->form.base = *sf_foam_card_of(&c.material); /* with its curves */
-            sf_foam_card_of(&c.material)->curves = (sf_law_curves){0};
-        }
+        take_material(&c.material, k == 0, in, err);
         sf_case_free(&c);
         if (err->status != SF_OK)
             return err->status;
@@ -486,9 +502,10 @@ sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_er
         const config_setting_t *root = config_root_setting(&config.config);
         if (sf_config_names(&config, root,
                             "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
-                            "seed|posterior",
+                            "seed|posterior|compressions|cushions",
                             err) == SF_OK &&
             read_options(&config, root, in, err) == SF_OK &&
+            sf_joint_read(&config, root, &in->joint, err) == SF_OK &&
             read_drops(&config, root, "drops", false, in, err) == SF_OK &&
             read_drops(&config, root, "predict", true, in, err) == SF_OK &&
             read_material(&config, root, in, err) == SF_OK && read_starts(&config, root, in, err) == SF_OK)

@@ -4,6 +4,7 @@
 #ifndef SF_FIT_DROP_INPUT_H
 #define SF_FIT_DROP_INPUT_H
 
+#include "fit/drop/joint.h"
 #include "fit/drop/kinds.h"
 #include "fit/drop/parameters.h"
 #include "fit/space_mapping.h"
@@ -40,6 +41,7 @@ typedef struct sf_fit_input {
     sf_foam_form form;
     int drop_count; /* measured ones first */
     sf_fit_drop drop[SF_FIT_MAX_DROPS];
+    sf_joint joint;                   /* compression tests and cushion curves */
     double start[SF_PARAMETER_COUNT]; /* SI, every parameter */
     int unknown_count;
     sf_foam_parameter unknown[SF_FIT_MAX_UNKNOWNS];

@@ -117,8 +117,49 @@ static void put_response(sf_html_table *table, const sf_drop_fit *fit, int d, in
     put_difference(table, fit->without[fit->row[d] + kind], measured);
 }
 
+/* Compression tests and cushion curves. */
+static void put_joint(FILE *f, const sf_drop_fit *fit) {
+    const sf_joint *joint = &fit->input->joint;
+    const double *y = fit->y;
+    if (joint->rows == 0)
+        return;
+    sf_html_heading(f, "Compression tests and cushion curves");
+    sf_html_note(f,
+                 "The law at a material point, and as one column of foam under a flat mass. Deviations of a "
+                 "test are root mean squares over its largest stress.");
+    sf_html_table table =
+        sf_html_table_begin(f, "dense", "test|>rate (1/s)|>± %|>loading|>unloading|>largest strain");
+    for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
+        const sf_joint_test *test = &joint->test[t];
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", test->name);
+        sf_html_cell(&table, "%.3g", test->rate);
+        sf_html_number(&table, 1, 100 * test->sd);
+        sf_html_cell(&table, "%.1f %%", 100 * sf_joint_rms(test, false, y));
+        sf_html_number(&table, 3, sf_joint_rms(test, true, y));
+        sf_html_number(&table, 3, test->turn);
+    }
+    sf_html_table_end(&table);
+    table = sf_html_table_begin(
+        f, "dense", "cushion|>static stress (kPa)|>peak measured (g)|>± %|>of the foam (g)|>difference");
+    for (int c = 0; c < joint->cushion_count; c++)
+        for (int k = 0; k < joint->cushion[c].count; k++, y++) {
+            const sf_joint_cushion *cushion = &joint->cushion[c];
+            sf_html_row(&table);
+            sf_html_cell(&table, "%s", cushion->name);
+            sf_html_cell(&table, "%.4g", 1e-3 * cushion->static_stress[k]);
+            sf_html_number(&table, 1, cushion->peak_g[k]);
+            sf_html_number(&table, 1, 100 * cushion->sd);
+            sf_html_number(&table, 1, exp(*y));
+            put_difference(&table, *y, cushion->peak_g[k]);
+        }
+    sf_html_table_end(&table);
+}
+
 static void put_drops(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
+    if (fit->measured_drops == 0)
+        return;
     sf_html_heading(f, "Drops");
     sf_html_note(
         f,
@@ -141,6 +182,9 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
         sf_html_cell(&table, "%s", sf_verdict_phrase(fit->simulated[d].grade));
     }
     sf_html_table_end(&table);
+}
+
+static void put_misfit(FILE *f, const sf_drop_fit *fit) {
     sf_html_paragraph(
         f,
         "Misfit: %.2f (sum of squared residuals over their standard deviations) with %.1f degrees of "
@@ -341,6 +385,8 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
     if (average)
         sf_inference_html(f, average, err);
     put_drops(f, fit);
+    put_joint(f, fit);
+    put_misfit(f, fit);
     put_speeds(f, fit);
     put_predictions(f, fit);
     put_parameters(f, fit);
@@ -384,6 +430,35 @@ static void json_drop(sf_json *j, const sf_drop_fit *fit, int d) {
     sf_json_close(j, '}');
 }
 
+static void json_joint(sf_json *j, const sf_drop_fit *fit) {
+    const sf_joint *joint = &fit->input->joint;
+    const double *y = fit->y;
+    sf_json_open(j, "compressions", '[');
+    for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
+        const sf_joint_test *test = &joint->test[t];
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "name", test->name);
+        sf_json_text(j, "understood", test->understood);
+        sf_json_number(j, "rate_1_s", test->rate);
+        sf_json_integer(j, "points", test->count);
+        sf_json_number(j, "loading_rms", sf_joint_rms(test, false, y));
+        sf_json_number(j, "unloading_rms", sf_joint_rms(test, true, y));
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+    sf_json_open(j, "cushions", '[');
+    for (int c = 0; c < joint->cushion_count; c++)
+        for (int k = 0; k < joint->cushion[c].count; k++) {
+            sf_json_open(j, NULL, '{');
+            sf_json_text(j, "name", joint->cushion[c].name);
+            sf_json_number(j, "static_stress_Pa", joint->cushion[c].static_stress[k]);
+            sf_json_number(j, "peak_measured_g", joint->cushion[c].peak_g[k]);
+            sf_json_number(j, "peak_g", exp(*y++));
+            sf_json_close(j, '}');
+        }
+    sf_json_close(j, ']');
+}
+
 static void json_parameter(sf_json *j, const sf_drop_fit *fit, int k) {
     estimate e = estimate_of(fit, k);
     sf_json_open(j, NULL, '{');
@@ -424,6 +499,7 @@ static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *avera
         sf_json_close(&j, ']');
     }
     sf_json_close(&j, ']');
+    json_joint(&j, fit);
     sf_json_open(&j, "drops", '[');
     for (int d = 0; d < fit->input->drop_count; d++)
         json_drop(&j, fit, d);
@@ -466,6 +542,12 @@ static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *a
             fprintf(f, " measured curve, RMSE %.2f g;", curve_rmse(fit, d));
         fputc('\n', f);
     }
+    for (int t = 0; t < fit->input->joint.test_count; t++)
+        fprintf(f, "Compression test %s, %.4g 1/s.\n", fit->input->joint.test[t].name,
+                fit->input->joint.test[t].rate);
+    for (int c = 0; c < fit->input->joint.cushion_count; c++)
+        fprintf(f, "Cushion curve %s, %d points.\n", fit->input->joint.cushion[c].name,
+                fit->input->joint.cushion[c].count);
     for (int k = 0; k < fit->input->unknown_count; k++) {
         estimate e = estimate_of(fit, k);
         double s = e.about->per_unit;
@@ -592,7 +674,8 @@ static sf_status write_script(const sf_drop_fit *fit, const sf_staging *output, 
         return err->status;
     fprintf(f, "set multiplot title 'Identification from drops: %s'\n", fit->input->material_name);
     put_strain_panels(f);
-    put_drop_panel(f, fit);
+    if (fit->input->drop_count > 0)
+        put_drop_panel(f, fit);
     fputs("unset multiplot\n", f);
     return sf_staging_close(f, "fit.gp", err);
 }
@@ -608,6 +691,23 @@ sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *av
         return err->status;
     sf_gnuplot_draw(output, "fit", warning, size);
     return write_report(fit, average, input_path, command, output, err);
+}
+
+static void print_joint(FILE *f, const sf_drop_fit *fit) {
+    const sf_joint *joint = &fit->input->joint;
+    const double *y = fit->y;
+    for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
+        const sf_joint_test *test = &joint->test[t];
+        fprintf(f, "  %-20s  deviation %.1f %% of the largest stress in loading", test->name,
+                100 * sf_joint_rms(test, false, y));
+        if (test->count > test->loading)
+            fprintf(f, ", %.1f %% in unloading", 100 * sf_joint_rms(test, true, y));
+        fputc('\n', f);
+    }
+    for (int c = 0; c < joint->cushion_count; c++)
+        for (int k = 0; k < joint->cushion[c].count; k++)
+            fprintf(f, "  %-20s  %.4g kPa: peak %.1f g (measured %.4g)\n", joint->cushion[c].name,
+                    1e-3 * joint->cushion[c].static_stress[k], exp(*y++), joint->cushion[c].peak_g[k]);
 }
 
 static void print_response(FILE *f, const sf_drop_fit *fit, int d, int kind) {
@@ -641,5 +741,6 @@ void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
                 print_response(f, fit, d, kind);
         fputs(drop->predicted ? "  predicted\n" : "\n", f);
     }
+    print_joint(f, fit);
     fprintf(f, "  the drops see the curve between strains of %.2f and %.2f\n", low, high);
 }
