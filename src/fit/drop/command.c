@@ -109,6 +109,8 @@ static sf_status fit_model(models *all, int m, sf_runner *runner, sf_fit_memory 
     char text[96];
     *fit = (sf_drop_fit){
         .input = in, .runner = runner, .folder = runner->folder, .log = runner->log, .memory = memory};
+    if (m > 0)
+        fit->earlier = &all->fit[0];
     if (all->count > 1)
         printf("model %d of %d: %s, %d unknown parameters\n", m + 1, all->count,
                sf_model_label(in, text, sizeof text), in->unknown_count);
