@@ -737,7 +737,7 @@ static void killed_fit_ends_with_the_same_material(void **state) {
     put_case(&place);
     program_write_text(
         &place, "fit.cfg",
-        "material = \"start.cfg\";\nunknown = ( { name = \"p0\"; }, { name = \"B\"; }, { name = \"ED\"; "
+        "posterior = false;\nmaterial = \"start.cfg\";\nunknown = ( { name = \"p0\"; }, { name = \"B\"; }, { name = \"ED\"; "
         "}, { name = \"E\"; }, { name = \"HU\"; } );\n"
         "start: { m = 2.8; s0 = \"7.4 kPa\"; };\n"
         "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = 50.0; HIC = 180.0; }, "
