@@ -179,22 +179,22 @@ static int count_abreast(const sf_runner *runner, int pending) {
     return abreast;
 }
 
-/* One drop alone has all threads and needs no process of its own. */
-static sf_status simulate_pending(batch *b, int pending, sf_error *err) {
+/* One drop alone has all threads and needs no process of its own. `failure` by the request. */
+static sf_status simulate_pending(batch *b, int pending, sf_error *failure, sf_error *err) {
     if (pending == 0)
         return SF_OK;
     int threads = b->runner->threads, abreast = count_abreast(b->runner, pending);
     b->threads = threads > abreast ? threads / abreast : 1;
     if (sf_folder_own(b->runner->folder, err) != SF_OK)
         return err->status;
-    if (pending == 1)
-        return simulate(b, 0, err);
-    sf_error *failure = sf_alloc(err, (unsigned long)pending, sizeof *failure, "failures");
-    if (failure && sf_process_pool(pending, abreast, simulate, b, failure, err) == SF_OK) {
-        name_killed(b, pending, failure);
-        decide(pending, failure, err);
-    }
-    free(failure);
+    sf_error *own = sf_alloc(err, (unsigned long)pending, sizeof *own, "failures");
+    if (own && pending == 1)
+        simulate(b, 0, own);
+    else if (own && sf_process_pool(pending, abreast, simulate, b, own, err) == SF_OK)
+        name_killed(b, pending, own);
+    for (int k = 0; k < pending && own && err->status == SF_OK; k++)
+        failure[b->pending[k]] = own[k];
+    free(own);
     return err->status;
 }
 
@@ -212,23 +212,39 @@ static sf_status take_result(sf_runner *runner, const request *r, sf_runner_resu
     return SF_OK;
 }
 
-sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
-                              sf_runner_result *result, sf_error *err) {
+sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
+                             sf_runner_result *result, sf_error *failure, sf_error *err) {
     unsigned long n = (unsigned long)count;
     batch b = {.runner = runner,
                .request = sf_alloc(err, n, sizeof *b.request, "drops"),
                .pending = sf_alloc(err, n, sizeof *b.pending, "drops")};
     memset(result, 0, (size_t)count * sizeof *result);
+    for (int k = 0; k < count; k++)
+        failure[k] = (sf_error)SF_ERROR_INIT;
     for (int k = 0; k < count && err->status == SF_OK; k++)
         prepare(runner, &drop[k], &b.request[k], err);
     if (err->status == SF_OK && sf_process_stopped())
         sf_run_folder_interrupted(err);
     if (err->status == SF_OK)
-        simulate_pending(&b, list_pending(&b, count), err);
+        simulate_pending(&b, list_pending(&b, count), failure, err);
     for (int k = 0; k < count && err->status == SF_OK; k++)
-        take_result(runner, &b.request[k], &result[k], err);
+        if (failure[k].status == SF_INTERRUPTED)
+            sf_run_folder_interrupted(err);
+    for (int k = 0; k < count && err->status == SF_OK; k++)
+        if (failure[k].status == SF_OK)
+            take_result(runner, &b.request[k], &result[k], &failure[k]);
     free(b.request);
     free(b.pending);
+    return err->status;
+}
+
+sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
+                              sf_runner_result *result, sf_error *err) {
+    sf_error *failure = sf_alloc(err, (unsigned long)count, sizeof *failure, "failures");
+    memset(result, 0, (size_t)count * sizeof *result);
+    if (failure && sf_runner_run_each(runner, count, drop, result, failure, err) == SF_OK)
+        decide(count, failure, err);
+    free(failure);
     return err->status;
 }
 

@@ -66,6 +66,10 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
  * first drop that failed, other than numerically if there is one. */
 sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
                               sf_runner_result *result, sf_error *err);
+/* The same, but a drop that fails does not end the others: failure [count] holds each one's status and
+ * sentence; a drop without one has its result. Errors: of what all drops need, and interruptions. */
+sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
+                             sf_runner_result *result, sf_error *failure, sf_error *err);
 void sf_runner_result_free(sf_runner_result *result);
 
 #endif

@@ -127,6 +127,18 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
     return err->status;
 }
 
+double sf_drop_average_missing(const sf_drop_average *a, int quantity) {
+    double sum = 0;
+    for (int m = 0; m < a->models; m++) {
+        const sf_drop_inference *in = a->model[m];
+        int states = states_of(in), without = 0;
+        for (int s = 0; s < states; s++)
+            without += !isfinite(in->chains.quantity[s * in->quantities + quantity]);
+        sum += a->weight[m] * without / states;
+    }
+    return sum;
+}
+
 sf_status sf_drop_parameter_quantiles(const sf_drop_inference *in, int parameter, int count,
                                       const double *probability, double *value, sf_error *err) {
     weighted w;

@@ -8,6 +8,11 @@
 
 enum { SF_POSTERIOR_DRAWS = 200 };
 
+/* A model without a fit. */
+typedef struct sf_failed_model {
+    char label[96], sentence[512];
+} sf_failed_model;
+
 typedef struct sf_drop_average {
     int models;
     const sf_drop_inference *model[SF_FIT_MAX_MODELS]; /* of the same drops; borrowed */
@@ -16,6 +21,8 @@ typedef struct sf_drop_average {
     double predictive[SF_FIT_MAX_MODELS]; /* sum of the leave-one-out log densities; NaN: one drop */
     bool by_evidence;
     uint64_t seed;
+    int failed; /* models that are not among them; filled by the caller */
+    sf_failed_model failure[SF_FIT_MAX_MODELS];
 } sf_drop_average;
 
 sf_status sf_drop_average_build(int models, const sf_drop_inference *const *model, uint64_t seed,
@@ -30,6 +37,8 @@ bool sf_drop_average_reached(const sf_drop_average *average);
  * their weights; of one model with `model` >= 0. NaN if no draw has a value. */
 sf_status sf_drop_average_quantiles(const sf_drop_average *average, int model, int quantity, int count,
                                     const double *probability, double *value, sf_error *err);
+/* Weight of the draws that have no value of it: the foam of the columns collapses. */
+double sf_drop_average_missing(const sf_drop_average *average, int quantity);
 /* Quantiles of a parameter of one model, as the chains have it. */
 sf_status sf_drop_parameter_quantiles(const sf_drop_inference *inference, int parameter, int count,
                                       const double *probability, double *value, sf_error *err);

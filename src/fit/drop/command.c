@@ -65,7 +65,8 @@ typedef struct models {
     sf_fit_input input[SF_FIT_MAX_MODELS];
     sf_drop_fit fit[SF_FIT_MAX_MODELS];
     sf_drop_inference inference[SF_FIT_MAX_MODELS];
-    sf_drop_average average; /* without posterior: of no models */
+    sf_error failure[SF_FIT_MAX_MODELS]; /* of a model alone: the others go on */
+    sf_drop_average average;             /* without posterior: of no models */
 } models;
 
 static void name_files(const sf_fit_input *in, names *n) {
@@ -109,8 +110,9 @@ static sf_status fit_model(models *all, int m, sf_runner *runner, sf_fit_memory 
     char text[96];
     *fit = (sf_drop_fit){
         .input = in, .runner = runner, .folder = runner->folder, .log = runner->log, .memory = memory};
-    if (m > 0)
-        fit->earlier = &all->fit[0];
+    for (int k = 0; k < m && !fit->earlier; k++)
+        if (all->failure[k].status == SF_OK)
+            fit->earlier = &all->fit[k];
     if (all->count > 1)
         printf("model %d of %d: %s, %d unknown parameters\n", m + 1, all->count,
                sf_model_label(in, text, sizeof text), in->unknown_count);
@@ -121,14 +123,64 @@ static sf_status fit_model(models *all, int m, sf_runner *runner, sf_fit_memory 
     return err->status;
 }
 
-static sf_status fit_models(models *all, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
+/* Is it the model's own, so that the others may go on? */
+static bool is_of_the_model(const sf_error *failure) {
+    return failure->status == SF_ERR_NUMERIC || failure->status == SF_ERR_MODEL ||
+           failure->status == SF_ERR_INPUT;
+}
+
+/* The failure of all of them, or none. */
+static sf_status check_any(const models *all, sf_error *err) {
+    for (int m = 0; m < all->count; m++)
+        if (all->failure[m].status == SF_OK)
+            return SF_OK;
+    if (all->count == 1)
+        *err = all->failure[0];
+    else
+        SF_FAIL(err, all->failure[0].status, "none of the %d models was fitted; the first: %.800s",
+                all->count, all->failure[0].text);
+    return err->status;
+}
+
+/* Of the models that have a posterior; the others are listed. */
+static sf_status average_models(models *all, sf_error *err) {
     const sf_drop_inference *list[SF_FIT_MAX_MODELS];
-    for (int m = 0; m < all->count && err->status == SF_OK; m++) {
-        list[m] = &all->inference[m];
-        fit_model(all, m, runner, memory, err);
+    sf_drop_average *a = &all->average;
+    int count = 0;
+    for (int m = 0; m < all->count; m++)
+        if (all->failure[m].status == SF_OK)
+            list[count++] = &all->inference[m];
+    if (sf_drop_average_build(count, list, all->input[0].seed, a, err) != SF_OK)
+        return err->status;
+    for (int m = 0; m < all->count; m++) {
+        sf_failed_model *failed = &a->failure[a->failed];
+        if (all->failure[m].status == SF_OK)
+            continue;
+        sf_model_label(&all->input[m], failed->label, sizeof failed->label);
+        snprintf(failed->sentence, sizeof failed->sentence, "%.500s", all->failure[m].text);
+        a->failed++;
     }
-    if (err->status == SF_OK && all->input[0].posterior)
-        sf_drop_average_build(all->count, list, all->input[0].seed, &all->average, err);
+    return SF_OK;
+}
+
+static sf_status fit_models(models *all, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
+    char text[96];
+    for (int m = 0; m < all->count; m++) {
+        sf_error *failure = &all->failure[m];
+        *failure = (sf_error)SF_ERROR_INIT;
+        if (fit_model(all, m, runner, memory, failure) == SF_OK)
+            continue;
+        if (!is_of_the_model(failure)) {
+            *err = *failure;
+            return err->status;
+        }
+        if (all->count > 1)
+            printf("model %d of %d FAILED: %s: %s\n", m + 1, all->count,
+                   sf_model_label(&all->input[m], text, sizeof text), failure->text);
+        fflush(stdout);
+    }
+    if (check_any(all, err) == SF_OK && all->input[0].posterior)
+        average_models(all, err);
     return err->status;
 }
 
@@ -165,7 +217,7 @@ static sf_status commit(const char *directory, const sf_drop_average *average, s
 static sf_status report(const options *o, const models *all, sf_staging *output, char *warning, size_t size,
                         sf_error *err) {
     const sf_drop_average *average = all->average.models > 0 ? &all->average : NULL;
-    const sf_drop_fit *best = &all->fit[average ? sf_drop_average_best(average) : 0];
+    const sf_drop_fit *best = average ? average->model[sf_drop_average_best(average)]->fit : &all->fit[0];
     if (sf_drop_report_write(best, average, o->input, o->command, output, warning, size, err) != SF_OK ||
         commit(o->directory, &all->average, output, err) != SF_OK)
         return err->status;
@@ -179,7 +231,10 @@ static void warn(const models *all, const char *warning) {
     if (*warning)
         sf_sink_tell(&sink, SF_WARNING, "%s", warning);
     for (int m = 0; m < all->count; m++)
-        if (!all->fit[m].result.converged)
+        if (all->failure[m].status != SF_OK)
+            sf_sink_tell(&sink, SF_WARNING, "model %s has no weight: %s",
+                         sf_model_label(&all->input[m], text, sizeof text), all->failure[m].text);
+        else if (!all->fit[m].result.converged)
             sf_sink_tell(&sink, SF_WARNING, "%s%snot converged after %d iterations",
                          all->count > 1 ? sf_model_label(&all->input[m], text, sizeof text) : "",
                          all->count > 1 ? ": " : "", all->fit[m].result.iterations);

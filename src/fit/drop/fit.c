@@ -3,6 +3,7 @@
 
 #include "campaign/material_file.h"
 #include "core/hash.h"
+#include "io/process.h"
 #include "post/compare.h"
 #include "solver/material/foam.h"
 #include <limits.h>
@@ -102,6 +103,12 @@ static int first_row(const sf_drop_fit *fit, int first) {
     return first == 0 ? 0 : fit->row[first];
 }
 
+/* No value of the drop. */
+static void forget(const sf_drop_fit *fit, int d, double *y) {
+    for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
+        y[k] = NAN;
+}
+
 sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
                               const double *u, double *y, sf_error *err) {
     const sf_material material = sf_foam_material(card);
@@ -121,6 +128,10 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
             respond(drop, &figures, &curve, &y[fit->row[d]], err) == SF_OK)
             check_values(drop, &y[fit->row[d]], "its columns end", "this foam does not let go", err);
         sf_series_free(&curve);
+        if (drop->predicted && err->status == SF_ERR_NUMERIC) { /* the foam may be too soft for this one */
+            *err = (sf_error)SF_ERROR_INIT;
+            forget(fit, d, y);
+        }
     }
     sf_material_law_free(&law);
     return err->status;
@@ -232,6 +243,65 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
     return err->status;
 }
 
+/* The columns of a drop whose simulation failed: of its first instants, as they are in every simulation. */
+static void find_columns_early(sf_drop_fit *fit, int d, const char *material) {
+    sf_runner_drop request = {.label = fit->input->drop[d].name,
+                              .case_path = fit->input->drop[d].case_path,
+                              .material = material,
+                              .override_count = 1,
+                              .overrides = {"solver.end_time=2 ms"}};
+    sf_runner quiet = *fit->runner;
+    sf_runner_result result = {0};
+    sf_error none = SF_ERROR_INIT;
+    quiet.log = NULL;
+    if (sf_runner_run(&quiet, &request, &result, &none) == SF_OK)
+        find_columns(result.path, &fit->columns[d], &none);
+    sf_runner_result_free(&result);
+}
+
+/* A predicted drop without a figure, and why. */
+static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const char *material, double *y) {
+    sf_fit_simulated *s = &fit->simulated[d];
+    if (!sf_process_stopped() && fit->columns[d].count == 0)
+        find_columns_early(fit, d, material);
+    if (s->curve.count == 0) /* it did not end */
+        *s = (sf_fit_simulated){.max_local_strain = NAN, .energy_error = NAN, .grade = SF_GRADE_DO_NOT_USE};
+    snprintf(s->failure, sizeof s->failure, "%s", sentence);
+    if (!*s->verdict)
+        snprintf(s->verdict, sizeof s->verdict, "%.400s", sentence);
+    forget(fit, d, y);
+    if (fit->log) {
+        fprintf(fit->log, "  %-24s no prediction by simulation: %s\n", fit->input->drop[d].name, sentence);
+        fflush(fit->log);
+    }
+}
+
+/* Predicted drops side by side with a material file: one that fails is marked, the others go on. */
+static sf_status predict_with(sf_drop_fit *fit, int first, int last, const char *material, double *y,
+                              sf_error *err) {
+    sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
+    sf_runner_result result[SF_FIT_MAX_DROPS];
+    sf_error failure[SF_FIT_MAX_DROPS];
+    for (int d = first; d < last; d++)
+        request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
+                                              .case_path = fit->input->drop[d].case_path,
+                                              .material = material};
+    sf_runner_run_each(fit->runner, last - first, request, result, failure, err);
+    for (int d = first; d < last; d++) {
+        sf_error *own = &failure[d - first];
+        if (err->status == SF_OK && own->status == SF_OK)
+            take_drop(fit, d, &result[d - first], y, own);
+        if (err->status == SF_OK && own->status == SF_OK && fit->simulated[d].grade == SF_GRADE_DO_NOT_USE)
+            mark_failure(fit, d, fit->simulated[d].verdict, material, y);
+        else if (err->status == SF_OK && (own->status == SF_ERR_NUMERIC || own->status == SF_ERR_MODEL))
+            mark_failure(fit, d, own->text, material, y);
+        else if (err->status == SF_OK)
+            *err = *own;
+        sf_runner_result_free(&result[d - first]);
+    }
+    return err->status;
+}
+
 /* Drops `first` to `last` - 1 side by side with a material file. */
 static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char *material, double *y,
                                sf_error *err) {
@@ -263,7 +333,9 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     const sf_material material = sf_foam_material(&card);
     sf_material_write(fit->folder, name, &material, &text, err);
     sf_foam_card_free(&card);
-    if (err->status == SF_OK && last > first)
+    if (err->status == SF_OK && last > first && fit->input->drop[first].predicted)
+        predict_with(fit, first, last, path, y, err);
+    else if (err->status == SF_OK && last > first)
         simulate_with(fit, first, last, path, y, err);
     if (err->status == SF_OK && first == 0) /* the joint data need no simulation */
         columns_at(fit, 0, 0, u, y, err);

@@ -21,7 +21,10 @@ typedef struct sf_fit_simulated {
     double max_local_strain, energy_error;
     sf_grade grade;
     char verdict[SF_VERDICT_LINE_SIZE]; /* its sentence */
-    sf_series curve;                    /* s, g; owned */
+    /* of a predicted drop whose simulation ended without a result that may be used: why; its responses are
+     * NaN. Empty: none */
+    char failure[512];
+    sf_series curve; /* s, g; owned */
 } sf_fit_simulated;
 
 typedef struct sf_drop_fit {

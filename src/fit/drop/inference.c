@@ -128,8 +128,20 @@ static sf_status list_data(sf_drop_inference *in, sf_error *err) {
     return err->status;
 }
 
-/* Offset of the columns at the speeds as given: the fit's for what was measured, from the simulations with
- * the result for what is predicted. */
+/* Of a number of the measured drops: the mean. */
+static double mean_offset(const sf_drop_fit *fit, int kind) {
+    double sum = 0;
+    int count = 0;
+    for (int d = 0; d < fit->measured_drops; d++)
+        if (isfinite(fit->result.offset[fit->row[d] + kind])) {
+            sum += fit->result.offset[fit->row[d] + kind];
+            count++;
+        }
+    return count > 0 ? sum / count : 0;
+}
+
+/* Offset of the columns at the speeds as given: the fit's for what was measured; from the simulations with
+ * the result for what is predicted or, where one failed, the mean of the measured drops. */
 static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     int n = responses_of(fit), measured = fit->row[fit->measured_drops];
@@ -142,6 +154,9 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     sf_drop_fit_respond(fit, fit->measured_drops, fit->input->drop_count, &card, NULL, in->offset, err);
     for (int k = 0; k < n; k++)
         in->offset[k] = k < measured ? fit->result.offset[k] : fit->y[k] - in->offset[k];
+    for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
+        for (int kind = 0; kind < SF_FIT_SAMPLES && *fit->simulated[d].failure; kind++)
+            in->offset[fit->row[d] + kind] = mean_offset(fit, kind);
     sf_foam_card_free(&card);
     return err->status;
 }

@@ -28,6 +28,8 @@ static void find_worst(const sf_chains *c, double *rhat, double *effective) {
     *rhat = 0;
     *effective = INFINITY;
     for (int i = 0; i < c->parameters + c->quantities; i++) {
+        if (isnan(c->effective[i])) /* no state has it */
+            continue;
         *rhat = fmax(*rhat, isnan(c->rhat[i]) ? INFINITY : c->rhat[i]);
         *effective = fmin(*effective, c->effective[i]);
     }
@@ -60,6 +62,13 @@ static void put_models(FILE *f, const sf_drop_average *a) {
         sf_html_cell(&table, "%d", in->parameters - 1);
         sf_html_number(&table, 2, in->fit->result.misfit);
     }
+    for (int m = 0; m < a->failed; m++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s: FAILED, %s", a->failure[m].label, a->failure[m].sentence);
+        sf_html_number(&table, 3, 0);
+        for (int k = 0; k < 6; k++)
+            sf_html_cell(&table, "–");
+    }
     sf_html_table_end(&table);
 }
 
@@ -87,9 +96,14 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
         if (sf_drop_average_quantiles(a, -1, q, 3, THREE, all, err) != SF_OK ||
             sf_drop_average_quantiles(a, sf_drop_average_best(a), q, 3, THREE, best, err) != SF_OK)
             return err->status;
+        double missing = sf_drop_average_missing(a, q);
         snprintf(text, sizeof text, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
         sf_html_row(&table);
-        sf_html_cell(&table, "%s", in->fit->input->drop[in->quantity[q].drop].name);
+        if (missing > 0)
+            sf_html_cell(&table, "%s (%.0f %% of the draws without a value)",
+                         in->fit->input->drop[in->quantity[q].drop].name, 100 * missing);
+        else
+            sf_html_cell(&table, "%s", in->fit->input->drop[in->quantity[q].drop].name);
         sf_html_cell(&table, "%s", text);
         sf_html_number(&table, about->digits, all[1]);
         put_interval(&table, about->digits, all);
@@ -183,12 +197,30 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
     sf_html_table_end(&table);
 }
 
+/* Models and simulations that ended without a result. */
+static void put_failures(FILE *f, const sf_drop_average *a) {
+    char text[LABEL];
+    for (int m = 0; m < a->failed; m++)
+        sf_html_banner(f, "bad", "a model failed", "%s: %s. It has no weight.", a->failure[m].label,
+                       a->failure[m].sentence);
+    for (int m = 0; m < a->models; m++) {
+        const sf_drop_fit *fit = a->model[m]->fit;
+        for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
+            if (*fit->simulated[d].failure)
+                sf_html_banner(
+                    f, "bad", "a predicted drop failed",
+                    "%s, model %s: %s. The averaged prediction has this model by its columns, corrected as the measured drops are.",
+                    fit->input->drop[d].name, label_of(a, m, text), fit->simulated[d].failure);
+    }
+}
+
 sf_status sf_inference_html(FILE *f, const sf_drop_average *a, sf_error *err) {
     if (!sf_drop_average_reached(a))
         sf_html_banner(
             f, "bad", "criteria not reached",
             "Some chains or importance weights did not reach their criteria (see Diagnostics): weights "
             "and intervals are less certain than they look.");
+    put_failures(f, a);
     if (put_predictions(f, a, err) != SF_OK)
         return err->status;
     put_models(f, a);
@@ -230,6 +262,19 @@ static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_err
     return SF_OK;
 }
 
+/* Predicted drops without a figure of a simulation, with the reason. */
+static void json_failed_drops(sf_json *j, const sf_drop_fit *fit) {
+    sf_json_open(j, "failed_predictions", '[');
+    for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
+        if (*fit->simulated[d].failure) {
+            sf_json_open(j, NULL, '{');
+            sf_json_text(j, "drop", fit->input->drop[d].name);
+            sf_json_text(j, "failure", fit->simulated[d].failure);
+            sf_json_close(j, '}');
+        }
+    sf_json_close(j, ']');
+}
+
 static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_error *err) {
     const sf_drop_inference *in = a->model[m];
     double rhat, effective;
@@ -259,6 +304,7 @@ static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_erro
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
+    json_failed_drops(j, in->fit);
     json_parameters(j, in, err);
     sf_json_close(j, '}');
     return err->status;
@@ -274,6 +320,7 @@ static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf
     sf_json_text(j, "drop", in->fit->input->drop[in->quantity[q].drop].name);
     sf_json_text(j, "quantity", about->key);
     json_quantiles(j, value);
+    sf_json_number(j, "share_of_draws_without_value", sf_drop_average_missing(a, q));
     sf_json_close(j, '}');
     return SF_OK;
 }
@@ -286,6 +333,13 @@ sf_status sf_inference_json(sf_json *j, const sf_drop_average *a, sf_error *err)
     sf_json_open(j, "models", '[');
     for (int m = 0; m < a->models && err->status == SF_OK; m++)
         json_model(j, a, m, err);
+    for (int m = 0; m < a->failed; m++) {
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "model", a->failure[m].label);
+        sf_json_number(j, "weight", 0);
+        sf_json_text(j, "failure", a->failure[m].sentence);
+        sf_json_close(j, '}');
+    }
     sf_json_close(j, ']');
     sf_json_open(j, "predictions", '[');
     for (int q = 0; q < a->model[0]->quantities && err->status == SF_OK; q++)
@@ -350,6 +404,8 @@ void sf_inference_comment(FILE *f, const sf_drop_average *a) {
     for (int m = 0; m < a->models; m++)
         fprintf(f, "%s%s %.3f%s", m > 0 ? "; " : "", label_of(a, m, text), a->weight[m],
                 m == sf_drop_average_best(a) ? " (this file, its maximum)" : "");
+    for (int m = 0; m < a->failed; m++)
+        fprintf(f, "; %s 0 (failed)", a->failure[m].label);
     fputs(".\n", f);
     if (!sf_drop_average_reached(a))
         fputs("The chains did not reach their criteria: see report.html.\n", f);
@@ -373,6 +429,8 @@ sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
     for (int m = 0; m < a->models; m++)
         fprintf(f, "  weight %.3f  log predictive density %7.2f  log evidence %8.2f  %s\n", a->weight[m],
                 a->predictive[m], a->model[m]->evidence.log_value, label_of(a, m, text));
+    for (int m = 0; m < a->failed; m++)
+        fprintf(f, "  weight 0      FAILED: %s: %s\n", a->failure[m].label, a->failure[m].sentence);
     for (int q = 0; q < in->quantities; q++) {
         const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
         double value[3];

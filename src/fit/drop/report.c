@@ -233,7 +233,10 @@ static void put_prediction(sf_html_table *table, const sf_drop_fit *fit, int d, 
     sf_html_cell(table, "%s", fit->input->drop[d].name);
     sf_html_cell(table, "%s", heading(kind, text, sizeof text));
     sf_html_number(table, digits, value);
-    sf_html_cell(table, "%.*f to %.*f", digits, value * exp(-width), digits, value * exp(width));
+    if (isfinite(value * width))
+        sf_html_cell(table, "%.*f to %.*f", digits, value * exp(-width), digits, value * exp(width));
+    else
+        sf_html_cell(table, "–");
     sf_html_number(table, 3, fit->simulated[d].max_local_strain);
     sf_html_cell(table, "%s", sf_verdict_phrase(fit->simulated[d].grade));
 }
@@ -254,6 +257,10 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
             if (is_shown(fit, d, kind))
                 put_prediction(&table, fit, d, kind);
     sf_html_table_end(&table);
+    for (int d = fit->measured_drops; d < in->drop_count; d++)
+        if (*fit->simulated[d].failure)
+            sf_html_banner(f, "bad", "no prediction by simulation", "%s: %s.", in->drop[d].name,
+                           fit->simulated[d].failure);
 }
 
 /* A heading for each unknown parameter after the first one, all of numbers. */
@@ -427,6 +434,8 @@ static void json_drop(sf_json *j, const sf_drop_fit *fit, int d) {
     sf_json_number(j, "energy_error", fit->simulated[d].energy_error);
     sf_json_text(j, "grade", sf_verdict_phrase(fit->simulated[d].grade));
     sf_json_text(j, "verdict", fit->simulated[d].verdict);
+    if (*fit->simulated[d].failure)
+        sf_json_text(j, "failure", fit->simulated[d].failure);
     sf_json_close(j, '}');
 }
 
@@ -713,9 +722,12 @@ static void print_joint(FILE *f, const sf_drop_fit *fit) {
 static void print_response(FILE *f, const sf_drop_fit *fit, int d, int kind) {
     const sf_drop_kind_info *about = sf_drop_kind_get(kind);
     const sf_fit_drop *drop = &fit->input->drop[d];
-    fprintf(f, "  %s %.*f%s%s", about->name, about->digits + 1, response(fit, d, kind),
-            *about->unit ? " " : "", about->unit);
-    if (drop->predicted)
+    if (isnan(response(fit, d, kind)))
+        fprintf(f, "  %s –", about->name);
+    else
+        fprintf(f, "  %s %.*f%s%s", about->name, about->digits + 1, response(fit, d, kind),
+                *about->unit ? " " : "", about->unit);
+    if (drop->predicted && !isnan(response(fit, d, kind)))
         fprintf(f, " ± %.1f %% (95 %%, linearised)", 100 * half_width(fit) * response_sd(fit, d, kind));
     if (!isnan(drop->value[kind]))
         fprintf(f, " (measured %.4g)", drop->value[kind]);
@@ -739,7 +751,10 @@ void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
             if (is_shown(fit, d, kind))
                 print_response(f, fit, d, kind);
-        fputs(drop->predicted ? "  predicted\n" : "\n", f);
+        fputs(drop->predicted ? "  predicted" : "", f);
+        if (*fit->simulated[d].failure)
+            fprintf(f, "  FAILED: %s", fit->simulated[d].failure);
+        fputc('\n', f);
     }
     print_joint(f, fit);
     fprintf(f, "  the drops see the curve between strains of %.2f and %.2f\n", low, high);

@@ -213,12 +213,23 @@ static void observe(work *w) {
     }
 }
 
+static bool has_value(const double *x, int count) {
+    int k = 0;
+    while (k < count && !isfinite(x[k]))
+        k++;
+    return k < count;
+}
+
 /* Diagnostics of one column of `values` [chains][room][width]. */
 static bool judge(work *w, const double *values, int width, int column, int which) {
     sf_chains *r = w->out;
     for (int c = 0; c < r->chains; c++)
         for (int k = 0; k < r->kept; k++)
             w->column[c * r->kept + k] = values[(c * w->room + k) * width + column];
+    if (!has_value(w->column, r->chains * r->kept)) {
+        r->rhat[which] = r->effective[which] = NAN;
+        return true;
+    }
     r->rhat[which] = sf_split_rhat(r->chains, r->kept, w->column);
     r->effective[which] = sf_effective_size(r->chains, r->kept, w->column);
     return r->rhat[which] < w->options->rhat && r->effective[which] > w->options->effective;
