@@ -185,10 +185,8 @@ static sf_status put_point(const flight *f, int64_t *room, sf_series *curve, sf_
     return SF_OK;
 }
 
-/* The curve until the missile has left the foam, when `*rebound` is its speed upwards and `*contact` the time
- * of contact; else NaN. */
-static sf_status fall(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
-                      double *rebound, double *contact, sf_error *err) {
+sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
+                          double *rebound, double *contact, sf_error *err) {
     flight f = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP}, before;
     int64_t room = 512;
     *rebound = *contact = NAN;
@@ -208,12 +206,6 @@ static sf_status fall(const sf_columns *columns, const sf_material_law *law, sf_
     if (err->status != SF_OK)
         sf_series_free(curve);
     return err->status;
-}
-
-sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
-                          sf_error *err) {
-    double rebound, contact;
-    return fall(columns, law, curve, &rebound, &contact, err);
 }
 
 /* ---- its reading ---- */
@@ -280,8 +272,8 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
     sf_series curve = {0}, read = {0};
     sf_hic hic;
     double rebound, contact;
-    if (fall(columns, law, &curve, &rebound, &contact, err) == SF_OK && filter(&curve, &read, err) == SF_OK &&
-        sf_pulse_hic(&read, &hic, err) == SF_OK) {
+    if (sf_columns_drop(columns, law, &curve, &rebound, &contact, err) == SF_OK &&
+        filter(&curve, &read, err) == SF_OK && sf_pulse_hic(&read, &hic, err) == SF_OK) {
         *out = (sf_columns_figures){.a_max_g = peak_of(&read),
                                     .hic = hic.value,
                                     .hic_window = hic.t2 - hic.t1,

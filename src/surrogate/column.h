@@ -29,10 +29,10 @@ typedef struct sf_columns {
 sf_status sf_columns_build(const sf_results *results, sf_columns *columns, sf_error *err);
 
 /* Deceleration (s, g) from first contact until the missile has left the foam, at most 0.2 s, at
- * the times of the steps (velocity Verlet, 0.1 ms at most). `curve` is owned by the caller. Errors: the foam
- * collapses. */
+ * the times of the steps (velocity Verlet, 0.1 ms at most). `rebound` (m s-1, upwards) and `contact` (s, the
+ * time of contact) are NaN if it has not left. `curve` is owned by the caller. Errors: the foam collapses. */
 sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
-                          sf_error *err);
+                          double *rebound, double *contact, sf_error *err);
 
 /* What an accelerometer in the missile gives: figures of the curve, filtered with CFC 1000. */
 typedef struct sf_columns_figures {

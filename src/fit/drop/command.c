@@ -280,7 +280,9 @@ int sf_fit_drop_main(int argc, char **argv) {
          "write everything there (required); drops that are there already are used again", 0},
         {"force", 'f', 0, 0, "replace the results of an earlier fit in DIR", 0},
         {"threads", 't', "N", 0, "threads of the simulations together (default: every core)", 0},
-        {"jobs", 'j', "N", 0, "drops that run side by side (default: as many as threads)", 0},
+        {"jobs", 'j', "N", 0,
+         "drops that run side by side, 64 at most, each with at least one thread (default: as many as threads)",
+         0},
         {0},
     };
     static const struct argp parser = {.options = known,
