@@ -141,8 +141,8 @@ static void slope_is_derivative_of_stress_and_stress_of_energy(void **state) {
             assert_close(derivative(stress_at, &curve, strain, h), slope_at(&curve, strain),
                          1e-8 * slope_at(&curve, 0.75));
         }
-        for (double left = 0.19; left > 1e-3; left *= 0.8) {
-            double strain = 1 - left, h = 1e-3 * left;
+        for (double left = 0.19; 1 - left < curve.straight.start; left *= 0.8) {
+            double strain = 1 - left, h = 1e-4 * left;
             assert_relative(derivative(energy_at, &curve, strain, h), stress_at(&curve, strain), 1e-8);
             assert_relative(derivative(stress_at, &curve, strain, h), slope_at(&curve, strain), 1e-8);
         }
@@ -184,7 +184,7 @@ static void rule_h1_without_exponent_is_a_pure_power(void **state) {
         double n = (1 - e) * slope / stress;
         assert_relative(curve.beyond.exponent, n, 1e-6);
         assert_close(curve.beyond.constant, 0, 1e-9 * stress);
-        for (double strain = e; strain < 0.995; strain += 0.01)
+        for (double strain = e; strain < curve.straight.start; strain += 0.01)
             assert_relative(stress_at(&curve, strain), stress * pow((1 - e) / (1 - strain), n), 1e-5);
         sf_curve_free(&curve);
     }
@@ -202,7 +202,7 @@ static void assert_power_law(double limit, double exponent) {
     end_of_table(&curve, &stress, &slope);
     double b = slope * pow(room, exponent + 1) / exponent, a = stress - b / pow(room, exponent);
     double energy = energy_at(&curve, 0.8);
-    for (double left = 0.999 * room; left > 1e-4; left *= 0.7) {
+    for (double left = 0.999 * room; limit - left < curve.straight.start; left *= 0.9) {
         double x = limit - left,
                singular = exponent == 1
                               ? b * log(room / left)
@@ -232,7 +232,7 @@ static void energy_is_continuous_in_the_exponent_at_one(void **state) {
         point_card_add_eva(&card, 0, 33, 0.8, 1);
         card.card.densification_exponent = 1 + 3e-9 * (k - 1);
         sf_curve curve = built(&card);
-        energy[k] = energy_at(&curve, 0.99);
+        energy[k] = energy_at(&curve, 0.98);
         sf_curve_free(&curve);
     }
     assert_relative(energy[0], energy[1], 1e-6);
@@ -254,26 +254,57 @@ static void straight_line_has_its_modulus_and_energy(void **state) {
     sf_curve_free(&curve);
 }
 
-static void infinite_at_and_beyond_the_limit(void **state) {
+/* Before the pole the curve becomes a straight line: where 5 % of the way to it is left, or the slope is 1000
+ * times that at the start; with the pole at 1 at 1 % or a million times. A point that a step throws beyond
+ * the pole has a finite stress. */
+static void finite_at_any_strain_and_straight_near_the_pole(void **state) {
     (void)state;
-    const double limit[2] = {1, 0.9};
-    for (int k = 0; k < 2; k++) {
+    const double limit[4] = {1, 1, 0.9, 0.9}, exponent[4] = {0, 40, 2, 0.5};
+    for (int k = 0; k < 4; k++) {
         point_card card;
         point_card_init(&card);
         point_card_add_eva(&card, 0, 33, 0.8, 1);
         card.card.densification_limit = limit[k];
-        card.card.densification_exponent = k == 0 ? 0 : 2;
+        card.card.densification_exponent = exponent[k];
         sf_curve curve = built(&card);
-        const double beyond[3] = {limit[k], nextafter(limit[k], 2), 1.5};
-        for (int i = 0; i < 3; i++) {
-            assert_true(isinf(stress_at(&curve, beyond[i])) && stress_at(&curve, beyond[i]) > 0);
-            assert_true(isinf(slope_at(&curve, beyond[i])) && slope_at(&curve, beyond[i]) > 0);
-            assert_true(isinf(energy_at(&curve, beyond[i])) && energy_at(&curve, beyond[i]) > 0);
+        double at = curve.straight.start, steep = slope_at(&curve, at), room = limit[k] - 0.8,
+               h = 1e-9 * room;
+        assert_true(at > 0.8 && at < limit[k]);
+        double least = k < 2 ? 0.01 : 0.05, most = k < 2 ? 1e6 : 1e3;
+        assert_relative(fmax(steep / slope_at(&curve, 0.8) / most, least * room / (limit[k] - at)), 1, 1e-6);
+        assert_relative(slope_at(&curve, at - h), steep, 1e-5);
+        assert_relative(stress_at(&curve, at - h) + h * steep, stress_at(&curve, at), 1e-9);
+        for (double strain = at; strain < 1.6; strain += 0.013) {
+            double past = strain - at, stress = stress_at(&curve, at);
+            assert_relative(stress_at(&curve, strain), stress + steep * past, 1e-12);
+            assert_relative(slope_at(&curve, strain), steep, 1e-12);
+            assert_relative(energy_at(&curve, strain),
+                            energy_at(&curve, at) + past * (stress + 0.5 * steep * past), 1e-12);
         }
-        double near = stress_at(&curve, limit[k] - 1e-6);
-        assert_true(isfinite(near) && near > 1e3 * stress_at(&curve, 0.8));
         sf_curve_free(&curve);
     }
+}
+
+/* All lanes as one by one, on all parts of the curve. */
+static void lanes_are_finite_beyond_the_pole(void **state) {
+    (void)state;
+    point_card card;
+    point_card_init(&card);
+    point_card_add_eva(&card, 0, 33, 0.8, 1);
+    card.card.densification_limit = 0.9;
+    card.card.densification_exponent = 0.7;
+    sf_curve curve = built(&card);
+    double strain[SF_LANES], stress[SF_LANES], slope[SF_LANES], energy[SF_LANES];
+    for (int l = 0; l < SF_LANES; l++)
+        strain[l] = 0.75 + 0.03 * l;
+    sf_curve_evaluate_lanes(&curve, strain, stress, slope, energy);
+    for (int l = 0; l < SF_LANES; l++) {
+        assert_true(isfinite(stress[l]) && isfinite(slope[l]) && isfinite(energy[l]));
+        assert_relative(stress[l], stress_at(&curve, strain[l]), 1e-12);
+        assert_relative(slope[l], slope_at(&curve, strain[l]), 1e-12);
+        assert_relative(energy[l], energy_at(&curve, strain[l]), 1e-12);
+    }
+    sf_curve_free(&curve);
 }
 
 static void each_curve_of_a_family_is_built_from_its_own_points(void **state) {
@@ -345,7 +376,8 @@ int main(void) {
         cmocka_unit_test(user_exponent_and_rule_h2_follow_their_power_law),
         cmocka_unit_test(energy_is_continuous_in_the_exponent_at_one),
         cmocka_unit_test(straight_line_has_its_modulus_and_energy),
-        cmocka_unit_test(infinite_at_and_beyond_the_limit),
+        cmocka_unit_test(finite_at_any_strain_and_straight_near_the_pole),
+        cmocka_unit_test(lanes_are_finite_beyond_the_pole),
         cmocka_unit_test(each_curve_of_a_family_is_built_from_its_own_points),
         cmocka_unit_test(bad_cards_are_refused_with_a_sentence),
     };

@@ -267,6 +267,51 @@ static void elastic_pad_is_a_little_stiffer_than_uncoupled_columns(void **state)
     fixture_free(&f);
 }
 
+/* A missile that presses the foam to the pole of its curve, and with the exponent below 1 and a finite energy
+ * before the pole (H2) through it: the run keeps its balance of energy, ends in the rebound, and the pad
+ * stays this side of full compression. */
+static void assert_survives(const char *const *overrides) {
+    fixture f;
+    drop d;
+    build(ALL_LOSSES, overrides, &f);
+    sf_foam_card *card = sf_foam_card_of(&f.model.material[0]);
+    card->maxwell_modulus = 0;
+    card->hysteresis_hu = 0.9;
+    card->damp = 0.05;
+    sf_curve curve;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_curve_build(card, 0, &curve, &err), SF_OK);
+    run(&f, 0.04, &d);
+    assert_true(d.compression > curve.straight.start && d.compression < 1);
+    assert_true(d.end < 0.04 && d.rebound > 0 && d.rebound < d.speed);
+    assert_close(d.energy_error, 0, 0.01);
+    sf_curve_free(&curve);
+    fixture_free(&f);
+}
+
+static void a_run_survives_the_pole_of_the_curve(void **state) {
+    (void)state;
+    assert_survives(
+        (const char *const[]){FINE, OUTER, "material.densification.rule=H2",
+                              "material.densification.start=0.74", "material.densification.limit=0.78",
+                              "material.densification.exponent=0.73", "missile.velocity=4.5 m/s", NULL});
+}
+
+/* The work of the rate factor is a loss of the ledger; the viscous share is its own, DAMP being small. */
+static void rate_factor_keeps_the_balance(void **state) {
+    (void)state;
+    drop d;
+    fixture f;
+    build(HYSTERESIS_ONLY,
+          (const char *const[]){FINE, OUTER, "material.rate_factor=0.3", "material.rate_reference=1 1/s",
+                                "material.rate_filter_time=0.5 ms", NULL},
+          &f);
+    run(&f, 0.04, &d);
+    fixture_free(&f);
+    assert_sound(&d, 5e-3);
+    assert_true(d.ledger.viscous > 0.02 * d.ledger.reference);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(drop_to_rebound_keeps_every_balance),
@@ -276,6 +321,8 @@ int main(void) {
         cmocka_unit_test(elastic_drop_gives_its_energy_back),
         cmocka_unit_test(hysteresis_returns_the_fraction_of_the_closed_form),
         cmocka_unit_test(elastic_pad_is_a_little_stiffer_than_uncoupled_columns),
+        cmocka_unit_test(a_run_survives_the_pole_of_the_curve),
+        cmocka_unit_test(rate_factor_keeps_the_balance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

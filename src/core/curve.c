@@ -19,6 +19,17 @@ sf_densification sf_densification_join(double start, double limit, double expone
                               .start_energy = energy};
 }
 
+/* Where the law beyond the data ends. */
+static sf_curve_line straight_end(const sf_densification *law) {
+    bool full = law->limit >= 1;
+    double least = full ? SF_STRAIGHT_ROOM_AT_1 : SF_STRAIGHT_ROOM,
+           steep = full ? SF_STRAIGHT_SLOPE_AT_1 : SF_STRAIGHT_SLOPE;
+    double left = (law->limit - law->start) * fmax(least, pow(steep, -1 / (law->exponent + 1)));
+    sf_curve_line line = {.start = law->limit - left};
+    sf_densification_evaluate(law, line.start, &line.stress, &line.slope, &line.energy);
+    return line;
+}
+
 /* The law beyond the data, C1 at (start, stress) with the given slope. */
 static sf_status build_densification(const sf_foam_card *foam, double stress, double slope, double energy,
                                      sf_curve *curve, sf_error *err) {
@@ -34,6 +45,13 @@ static sf_status build_densification(const sf_foam_card *foam, double stress, do
     if (!(exponent > 0))
         exponent = sf_densification_natural_exponent(start, limit, stress, slope);
     curve->beyond = sf_densification_join(start, limit, exponent, stress, slope, energy);
+    curve->straight = straight_end(&curve->beyond);
+    curve->firm_slope = fmax(curve->largest_slope, slope);
+    if (limit - SF_FIRM_ROOM > start) {
+        double firm, ignored[2];
+        sf_densification_evaluate(&curve->beyond, limit - SF_FIRM_ROOM, &ignored[0], &firm, &ignored[1]);
+        curve->firm_slope = fmax(curve->firm_slope, firm);
+    }
     return SF_OK;
 }
 
@@ -158,9 +176,23 @@ void sf_densification_evaluate(const sf_densification *law, double strain, doubl
         *energy += (singular * left - law->factor * pow(room, 1 - m)) / (m - 1);
 }
 
+/* At a strain from the end of the table on. */
+static void evaluate_beyond(const sf_curve *curve, double strain, double *stress, double *slope,
+                            double *energy) {
+    const sf_curve_line *line = &curve->straight;
+    if (strain < line->start) {
+        sf_densification_evaluate(&curve->beyond, strain, stress, slope, energy);
+        return;
+    }
+    double past = strain - line->start;
+    *stress = line->stress + line->slope * past;
+    *slope = line->slope;
+    *energy = line->energy + past * (line->stress + 0.5 * line->slope * past);
+}
+
 void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, double *slope, double *energy) {
     if (!(strain < curve->start)) {
-        sf_densification_evaluate(&curve->beyond, strain, stress, slope, energy);
+        evaluate_beyond(curve, strain, stress, slope, energy);
         return;
     }
     int k = (int)(strain / curve->step);
@@ -195,5 +227,5 @@ SF_KERNEL void sf_curve_evaluate_lanes(const sf_curve *curve, const double strai
         return;
     for (int l = 0; l < SF_LANES; l++) /* few points at any time */
         if (strain[l] >= start)
-            sf_densification_evaluate(&curve->beyond, strain[l], &stress[l], &slope[l], &energy[l]);
+            evaluate_beyond(curve, strain[l], &stress[l], &slope[l], &energy[l]);
 }

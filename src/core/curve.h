@@ -6,7 +6,13 @@
  * resampled to a uniform table of cubic Hermite pieces, monotone too, whose integral is exact, so that stress
  * is the derivative of energy to rounding. Beyond the densification start eps_e: sigma = A + B / (eps_L -
  * eps)^m, continuous with its slope there ("Du Bois extrapolation"; theory, section "Densification"). Rule H1
- * is eps_L = 1; without an exponent m is the one that makes A vanish. */
+ * is eps_L = 1; without an exponent m is the one that makes A vanish.
+ *
+ * Near the pole the curve goes on straight, so that stress, slope and energy are finite at any strain, that
+ * of a point that a time step throws beyond the pole too: where SF_STRAIGHT_ROOM of the way from eps_e to
+ * eps_L is left or the slope is SF_STRAIGHT_SLOPE times that at eps_e, whichever comes first. With the pole
+ * at full compression no strain is left beyond it in which the line could stop a missile: there it begins
+ * later. */
 #ifndef SF_CORE_CURVE_H
 #define SF_CORE_CURVE_H
 
@@ -15,6 +21,12 @@
 #include "core/lanes.h"
 
 enum { SF_CURVE_INTERVALS = 1024 };
+
+#define SF_STRAIGHT_ROOM 0.05
+#define SF_STRAIGHT_SLOPE 1e3
+#define SF_STRAIGHT_ROOM_AT_1 0.01 /* the same for eps_L = 1 */
+#define SF_STRAIGHT_SLOPE_AT_1 1e6
+#define SF_FIRM_ROOM 0.025 /* -, strain */
 
 /* One piece: energy at its left end and the cubic's coefficients in t = strain - left end. */
 typedef struct sf_curve_piece {
@@ -32,12 +44,22 @@ typedef struct sf_densification {
     double start_energy; /* J m-3, energy at eps_e */
 } sf_densification;
 
+/* The straight line that ends the curve. */
+typedef struct sf_curve_line {
+    double start;  /* -, its first strain */
+    double stress; /* Pa, there */
+    double slope;  /* Pa */
+    double energy; /* J m-3, there */
+} sf_curve_line;
+
 typedef struct sf_curve {
     double step;           /* -, width of a piece */
     double start;          /* -, eps_e */
     double largest_slope;  /* Pa, of the table */
     sf_curve_piece *piece; /* [SF_CURVE_INTERVALS] owned */
     sf_densification beyond;
+    sf_curve_line straight;
+    double firm_slope; /* Pa, largest of the table and of the law up to SF_FIRM_ROOM before its pole */
 } sf_curve;
 
 /* The law from `start` to `limit` that continues stress (Pa), slope (Pa) and energy (J m-3) at the start. */
@@ -54,8 +76,7 @@ void sf_densification_evaluate(const sf_densification *law, double strain, doubl
 sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curve, sf_error *err);
 void sf_curve_free(sf_curve *curve);
 
-/* Stress (Pa), slope (Pa) and energy (J m-3) at a compressive strain 0 <= strain < limit. At or beyond the
- * limit all three are infinite. */
+/* Stress (Pa), slope (Pa) and energy (J m-3) at a compressive strain of at least 0; finite, beyond 1 too. */
 void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, double *slope, double *energy);
 
 /* The same at SF_LANES strains; one below 0 counts as 0, NaN too. */

@@ -99,13 +99,15 @@ static int columns_above(const sf_columns *c, double depth) {
     return n;
 }
 
-/* Force (N) at a depth `dt` after the points' last. */
+/* Force (N) at a depth `dt` after the points' last; infinite where a column has no height left. */
 static double force(flight *f, double dt, double depth) {
     const sf_columns *c = f->columns;
     double sum = 0;
     for (int k = columns_above(c, depth) - 1; k >= 0; k--) {
-        double stress =
-            f->law->law->uniaxial(f->law->numbers, dt, (depth - c->gap[k]) / c->thickness, &f->point[k]);
+        double strain = (depth - c->gap[k]) / c->thickness;
+        if (strain >= 1)
+            return INFINITY;
+        double stress = f->law->law->uniaxial(f->law->numbers, dt, strain, &f->point[k]);
         sum += c->area[k] * fmax(0, stress); /* the missile does not pull */
     }
     return sum;

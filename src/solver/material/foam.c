@@ -38,10 +38,13 @@ static double rest_stiffness(const sf_foam *foam) {
     return fmax(foam->modulus, foam->curve[0].piece[0].c[1]);
 }
 
+/* `slope`, which stabilisation and DAMP follow, stays that of the firm foam near the pole: their stiffness
+ * has no energy of its own, and one that grows a thousandfold and falls back in a few steps would feed the
+ * pad. */
 static SF_KERNEL void base_law(const void *numbers, double stretch[3][SF_LANES], sf_foam_loading *law) {
     const sf_foam *foam = numbers;
     double modulus = foam->modulus, cutoff = foam->cutoff, yield = cutoff / modulus;
-    double rest = rest_stiffness(foam);
+    double rest = rest_stiffness(foam), firm = foam->curve[0].firm_slope;
     memset(law->energy, 0, sizeof law->energy);
     for (int i = 0; i < 3; i++) {
         double strain[SF_LANES], stress[SF_LANES], slope[SF_LANES], energy[SF_LANES];
@@ -56,11 +59,27 @@ static SF_KERNEL void base_law(const void *numbers, double stretch[3][SF_LANES],
             double pull = -strain[l] * modulus, work = 0.5 * strain[l] * strain[l] * modulus;
             bool squeezed = strain[l] > 0, elastic = pull <= cutoff, still = fabs(strain[l]) < REST;
             t[l] = squeezed ? -stress[l] : elastic ? pull : cutoff;
-            tangent[l] = squeezed ? slope[l] : elastic ? modulus : 0;
-            steepest[l] = still ? rest : tangent[l];
+            double own = squeezed ? slope[l] : elastic ? modulus : 0;
+            tangent[l] = squeezed ? sf_smaller(own, firm) : own;
+            steepest[l] = still ? rest : own;
             law->energy[l] += squeezed ? energy[l] : elastic ? work : cutoff * (-strain[l] - 0.5 * yield);
         }
     }
+}
+
+/* Part of the strain at which the curve's densification starts, from which a step may reach it. */
+static const double NEAR_DENSE = 0.9;
+
+static void slopes_ahead(const void *numbers, double next[3][SF_LANES], double steepest[3][SF_LANES]) {
+    const sf_curve *curve = &((const sf_foam *)numbers)->curve[0];
+    for (int i = 0; i < 3; i++)
+        for (int l = 0; l < SF_LANES; l++) {
+            double stress, slope, energy;
+            if (1 - next[i][l] < curve->start)
+                continue;
+            sf_curve_evaluate(curve, 1 - next[i][l], &stress, &slope, &energy);
+            steepest[i][l] = fmax(steepest[i][l], slope);
+        }
 }
 
 double sf_foam_overstress(const sf_foam *foam, double strain, double rate, double *slope,
@@ -117,6 +136,8 @@ void sf_foam_update(const sf_foam *foam, double dt, sf_law_batch *b) {
                                .rest = rest_stiffness(foam),
                                .compression = true,
                                .loading = base_law,
+                               .dense = 1 - NEAR_DENSE * foam->curve[0].start,
+                               .ahead = slopes_ahead,
                                .overstress = foam->curve_count > 1 ? overstress : NULL};
     sf_foam_point_update(&foam->options, &kind, dt, b);
 }

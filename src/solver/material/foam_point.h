@@ -60,6 +60,10 @@ typedef struct sf_foam_kind {
     double rest;      /* Pa, the larger slope at rest */
     bool compression; /* the rate factor acts on compressed directions alone */
     void (*loading)(const void *numbers, double stretch[3][SF_LANES], sf_foam_loading *out);
+    /* For a law that stiffens within a step: raises `steepest` to the slopes at the stretches of the next
+     * step as the present rate has it; called where a stretch is below `dense`. NULL: none */
+    double dense;
+    void (*ahead)(const void *numbers, double next[3][SF_LANES], double steepest[3][SF_LANES]);
     /* Of a law's own, instead of the rate factor. NULL: none */
     void (*overstress)(const void *numbers, double dt, sf_law_batch *batch, const sf_foam_loading *law,
                        sf_foam_rate *rate);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/notes.h"
 
+#include "core/curve.h"
+#include "solver/material/foam.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,8 +20,37 @@ static void tell_depth(const sf_model *m, const sf_extremes *x, const sf_sink *s
                                         : "the foam collapsed, or the pad's base is not held");
 }
 
+/* Least strain at which the curve of a foam goes on straight before its pole; INFINITY: no material has one.
+ */
+static double straight_strain(const sf_model *m) {
+    double least = INFINITY;
+    for (int64_t k = 0; k < m->material_count; k++) {
+        sf_curve curve;
+        sf_error ignored = SF_ERROR_INIT;
+        if (m->material[k].law != &sf_low_density_foam)
+            continue;
+        const sf_foam_card *card = sf_foam_card_of(&m->material[k]);
+        for (int64_t c = 0; c < card->curve_count && sf_curve_build(card, c, &curve, &ignored) == SF_OK;
+             c++) {
+            least = fmin(least, curve.straight.start);
+            sf_curve_free(&curve);
+        }
+    }
+    return least;
+}
+
+static void tell_pole(const sf_model *m, const sf_extremes *x, const sf_sink *sink) {
+    double straight = straight_strain(m);
+    if (x->largest_compression > straight)
+        sf_sink_tell(sink, SF_WARNING,
+                     "the foam was compressed to a strain of %.4g; from %.4g on its curve, near the pole of "
+                     "its densification, is a straight line of the program and no property of the material",
+                     x->largest_compression, straight);
+}
+
 void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, const sf_sink *sink) {
     tell_depth(m, x, sink);
+    tell_pole(m, x, sink);
     if (s->contact_unsettled > 0)
         sf_sink_tell(sink, SF_WARNING, "the contact forces of %lld steps did not settle to the last digits",
                      (long long)s->contact_unsettled);
