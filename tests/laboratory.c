@@ -243,6 +243,7 @@ static void count(const laboratory *lab, const sf_drop_average *a, int which,
         if (t) {
             t->width[d][kind] += log(value[2] / value[0]);
             t->miss[d][kind] += fabs(log(value[1] / truth));
+            t->bias[d][kind] += log(value[1] / truth);
         }
     }
 }

@@ -28,6 +28,7 @@ typedef struct laboratory_tally {
     int inside[LAB_DROPS][LAB_KINDS];
     double width[LAB_DROPS][LAB_KINDS];    /* sum of ln(high / low) */
     double miss[LAB_DROPS][LAB_KINDS];     /* sum of |ln(median / truth)| */
+    double bias[LAB_DROPS][LAB_KINDS];     /* sum of ln(median / truth) */
     double weight[LAB_MODELS];             /* sum */
     int best_inside[LAB_DROPS][LAB_KINDS]; /* the same with the model of the largest weight alone */
 } laboratory_tally;

@@ -18,9 +18,10 @@ static laboratory_tally identify(int threads, unsigned long seed) {
     laboratory_tally tally = {.foams = 0};
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     sf_inference_options o = sf_inference_defaults(1);
-    o.chains.burn_in_rounds = o.without.burn_in_rounds = 1;
+    o.chains.burn_in_rounds = o.without.chains.burn_in_rounds = 1;
     o.chains.round = o.chains.most_steps = 60;
-    o.without.round = o.without.most_steps = 40;
+    o.without.draws = 0;
+    o.without.chains.round = o.without.chains.most_steps = 40;
     o.evidence_draws = 60;
     omp_set_num_threads(threads);
     gsl_rng_set(random, seed);

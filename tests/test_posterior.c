@@ -305,30 +305,31 @@ static double mean_density(const void *context, const double *u) {
 static void test_leave_one_out(void **state) {
     (void)state;
     const mean_of cases[] = {{{0.3, -0.4, 0.9, 0.1}}, {{0.3, -0.4, 6, 0.1}}};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 4; k++) { /* without and with draws of a wider mixture */
         const double start = 0, variance = 1;
         const sf_grouped grouped = {
-            .target = {.parameters = 1, .log_density = mean_density, .context = &cases[k]},
+            .target = {.parameters = 1, .log_density = mean_density, .context = &cases[k % 2]},
             .groups = GROUPS,
             .split = split_mean};
-        sf_chains_options options = sf_chains_defaults(1);
+        sf_leave_options leave = {
+            .draws = k < 2 ? 0 : 2000, .effective = 300, .chains = sf_chains_defaults(1)};
         sf_left_out out[GROUPS];
         sf_chains c;
         sf_error err = SF_ERROR_INIT;
         bool sampled = false;
-        assert_int_equal(sf_chains_run(&grouped.target, &start, &variance, &options, &c, &err), SF_OK);
-        assert_int_equal(sf_leave_one_out(&grouped, &c, &options, out, &err), SF_OK);
+        assert_int_equal(sf_chains_run(&grouped.target, &start, &variance, &leave.chains, &c, &err), SF_OK);
+        assert_int_equal(sf_leave_one_out(&grouped, &c, &leave, out, &err), SF_OK);
         for (int g = 0; g < GROUPS; g++) {
             double precision = 1. / 100 + GROUPS - 1, sum = 0;
             for (int h = 0; h < GROUPS; h++)
-                sum += h == g ? 0 : cases[k].y[h];
-            double spread = 1 + 1 / precision, away = cases[k].y[g] - sum / precision,
+                sum += h == g ? 0 : cases[k % 2].y[h];
+            double spread = 1 + 1 / precision, away = cases[k % 2].y[g] - sum / precision,
                    exact = -0.5 * (away * away / spread + log(2 * M_PI * spread));
             assert_true(out[g].converged);
             sampled = sampled || out[g].sampled;
-            assert_close(out[g].log_density, exact, k == 1 && g == 2 ? 0.5 : 0.1);
+            assert_close(out[g].log_density, exact, k % 2 == 1 && g == 2 ? 0.5 : 0.1);
         }
-        assert_int_equal(sampled, k == 1);
+        assert_true(k == 1 ? sampled : k == 3 || !sampled);
         sf_chains_free(&c);
     }
 }
@@ -375,33 +376,39 @@ static void test_discrepancy(void **state) {
     enum { DRAWS = 20000 };
     const double place[] = {0.1, 0.2, 0.5}, jacobian[] = {1, 0.5, 0, 0, 0.3, 0.2},
                  base[] = {0.04, 0.01, 0.01, 0.09}, r[] = {0.5, -0.2}, tau = 0.3;
-    double kernel[9], c[4], kj[6] = {0}, scratch[4], delta[3], sum[3] = {0};
+    const double effect[] = {0.1, 0, 0, 0.2}; /* of each datum its own error */
+    const sf_discrepancy_size size = {tau, 1.5};
+    double kernel[9], c[4], kj[6] = {0}, delta[3], x[2], sum[3] = {0}, sum_x[2] = {0};
     sf_discrepancy d;
     sf_error err = SF_ERROR_INIT;
     sf_kernel_fill(3, place, 0.12, kernel);
     assert_close(kernel[1], exp(-0.5 / 1.44), 1e-12);
-    assert_int_equal(sf_discrepancy_build(2, 3, jacobian, kernel, base, &d, &err), SF_OK);
+    assert_int_equal(sf_discrepancy_build(2, 3, jacobian, kernel, 2, effect, base, &d, &err), SF_OK);
     for (int b = 0; b < 3; b++)
         for (int i = 0; i < 2; i++)
             for (int k = 0; k < 3; k++)
                 kj[2 * b + i] += tau * tau * kernel[3 * b + k] * jacobian[3 * i + k];
     for (int i = 0; i < 4; i++) {
-        c[i] = base[i];
+        c[i] = base[i] + 2.25 * effect[i] * effect[i];
         for (int b = 0; b < 3; b++)
             c[i] += jacobian[3 * (i / 2) + b] * kj[2 * b + i % 2];
     }
     double det = c[0] * c[3] - c[1] * c[2],
            s[] = {(c[3] * r[0] - c[1] * r[1]) / det, (c[0] * r[1] - c[2] * r[0]) / det};
-    assert_close(sf_discrepancy_log_density(&d, r, tau),
+    assert_close(sf_discrepancy_log_density(&d, r, size),
                  -0.5 * (r[0] * s[0] + r[1] * s[1] + log(det)) - log(2 * M_PI), 1e-10);
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int k = 0; k < DRAWS; k++) {
-        sf_discrepancy_draw(&d, r, tau, random, scratch, delta);
+        sf_discrepancy_draw(&d, r, size, random, delta, x);
+        for (int i = 0; i < 2; i++)
+            sum_x[i] += x[i] / DRAWS;
         for (int b = 0; b < 3; b++)
             sum[b] += delta[b] / DRAWS;
     }
     for (int b = 0; b < 3; b++)
         assert_close(sum[b], kj[2 * b] * s[0] + kj[2 * b + 1] * s[1], 4 * tau / sqrt(DRAWS));
+    for (int i = 0; i < 2; i++)
+        assert_close(sum_x[i], 2.25 * effect[3 * i] * s[i], 4 * 1.5 / sqrt(DRAWS));
     gsl_rng_free(random);
     sf_discrepancy_free(&d);
     assert_close(sf_half_normal(0, 0.1), 0.067449, 1e-6);

@@ -3,6 +3,7 @@
 
 #include "campaign/run_folder.h"
 #include "io/process.h"
+#include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,18 +13,20 @@ enum { PLACES = SF_DISCREPANCY_PLACES };
 static const double PLACE_WIDTH = 0.05; /* of strain */
 static const double LENGTH = 0.12;      /* of strain, correlation of delta */
 static const double TAU_SCALE = 0.1;    /* of tau's half-normal prior */
+static const double KAPPA_SCALE = 1;    /* of kappa's */
 static const double RAISE = 0.02;       /* of ln stress, for J */
 
 sf_inference_options sf_inference_defaults(uint64_t seed) {
-    sf_inference_options o = {.chains = sf_chains_defaults(seed),
-                              .without = sf_chains_defaults(seed),
-                              .evidence_draws = 2000,
-                              .leave_one_out = true};
-    o.without.burn_in_rounds = 3; /* a mean is wanted of these, not the tails */
-    o.without.round = 150;
-    o.without.most_steps = 1500;
-    o.without.rhat = 1.05;
-    o.without.effective = 150;
+    sf_inference_options o = {
+        .chains = sf_chains_defaults(seed),
+        .without = {.draws = 3000, .effective = 200, .chains = sf_chains_defaults(seed)},
+        .evidence_draws = 2000,
+        .leave_one_out = true};
+    o.without.chains.burn_in_rounds = 3; /* a mean is wanted of these, not the tails */
+    o.without.chains.round = 150;
+    o.without.chains.most_steps = 1500;
+    o.without.chains.rhat = 1.05;
+    o.without.chains.effective = 150;
     return o;
 }
 
@@ -31,8 +34,21 @@ double sf_discrepancy_strain(int place) {
     return PLACE_WIDTH * place;
 }
 
-double sf_drop_inference_tau(const sf_drop_inference *inference, const double *u) {
-    return sf_half_normal(u[inference->parameters - 1], TAU_SCALE);
+sf_discrepancy_size sf_drop_inference_size(const sf_drop_inference *inference, const double *u) {
+    int n = inference->parameters;
+    return (sf_discrepancy_size){sf_half_normal(u[n - 2], TAU_SCALE), sf_half_normal(u[n - 1], KAPPA_SCALE)};
+}
+
+const char *sf_drop_inference_name(const sf_drop_inference *inference, int parameter) {
+    int beyond = parameter - inference->fit->input->unknown_count;
+    if (beyond >= 0)
+        return beyond == 0 ? "tau" : "kappa";
+    return sf_parameter_get(inference->fit->input->unknown[parameter])->name;
+}
+
+double sf_drop_inference_value(const sf_drop_inference *inference, int parameter, double u) {
+    int beyond = parameter - inference->fit->input->unknown_count;
+    return beyond < 0 ? exp(u) : sf_half_normal(u, beyond == 0 ? TAU_SCALE : KAPPA_SCALE);
 }
 
 static int responses_of(const sf_drop_fit *fit) {
@@ -93,12 +109,8 @@ static sf_status respond(const sf_drop_inference *in, const double *u, int first
         return err->status;
     sf_drop_fit_respond(fit, first, last, &card, NULL, y, err);
     sf_foam_card_free(&card);
-    int measured = fit->row[fit->measured_drops];
-    for (int k = fit->row[first]; k < fit->row[last] && err->status == SF_OK; k++) {
+    for (int k = fit->row[first]; k < fit->row[last] && err->status == SF_OK; k++)
         y[k] += in->offset[k];
-        for (int j = 0; j < fit->parameters && k < measured; j++)
-            y[k] += fit->result.matrix[k * fit->parameters + j] * (full[j] - fit->result.u[j]);
-    }
     return err->status;
 }
 
@@ -231,14 +243,30 @@ static int select_data(const sf_drop_inference *in, int left_out, int *which) {
     return count;
 }
 
+static int effects_of(const sf_drop_fit *fit) {
+    return (fit->measured_drops + 1) * SF_FIT_SAMPLES;
+}
+
+/* Derivatives of a datum by the errors x: first those that all drops share, by number, then each drop's. */
+static void fill_effects(const sf_drop_fit *fit, int row, double *effect) {
+    for (int d = 0; d < fit->measured_drops; d++) {
+        int kind = row - fit->row[d];
+        if (kind < 0 || kind >= SF_FIT_SAMPLES)
+            continue;
+        effect[kind] = effect[(d + 1) * SF_FIT_SAMPLES + kind] = sf_drop_kind_get(kind)->model_sd;
+    }
+}
+
 /* The discrepancy of the data that are not of one drop. */
 static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf_discrepancy *out,
                                    sf_error *err) {
     unsigned long n = (unsigned long)in->data;
     double place[PLACES], kernel[PLACES * PLACES];
     int *which = sf_alloc(err, n, sizeof *which, "data");
+    int effects = effects_of(in->fit);
     double *jacobian = sf_alloc(err, n * PLACES, sizeof *jacobian, "responses"),
-           *base = sf_alloc(err, n * n, sizeof *base, "covariances");
+           *base = sf_alloc(err, n * n, sizeof *base, "covariances"),
+           *effect = sf_alloc(err, n * (unsigned long)effects, sizeof *effect, "responses");
     for (int b = 0; b < PLACES; b++)
         place[b] = sf_discrepancy_strain(b);
     sf_kernel_fill(PLACES, place, LENGTH, kernel);
@@ -247,21 +275,23 @@ static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf
         for (int i = 0; i < count; i++) {
             memcpy(&jacobian[i * PLACES], &in->jacobian[in->data_row[which[i]] * PLACES],
                    PLACES * sizeof *jacobian);
+            fill_effects(in->fit, in->data_row[which[i]], &effect[i * effects]);
             for (int j = 0; j < count; j++)
                 base[i * count + j] = in->base[which[i] * in->data + which[j]];
         }
-        sf_discrepancy_build(count, PLACES, jacobian, kernel, base, out, err);
+        sf_discrepancy_build(count, PLACES, jacobian, kernel, effects, effect, base, out, err);
     }
     free(which);
     free(jacobian);
     free(base);
+    free(effect);
     return err->status;
 }
 
 static sf_status prepare(sf_drop_inference *in, bool leave_one_out, sf_error *err) {
     if (in->parameters > SF_POSTERIOR_MOST)
         return SF_FAIL(err, SF_ERR_INPUT, "%d unknown parameters: at most %d can be sampled",
-                       in->parameters - 1, SF_POSTERIOR_MOST - 1);
+                       in->fit->input->unknown_count, SF_POSTERIOR_MOST - 2);
     if (list_data(in, err) != SF_OK || find_offset(in, err) != SF_OK || find_jacobian(in, err) != SF_OK ||
         fill_base(in, err) != SF_OK || build_discrepancy(in, -1, &in->all, err) != SF_OK)
         return err->status;
@@ -274,7 +304,8 @@ static sf_status prepare(sf_drop_inference *in, bool leave_one_out, sf_error *er
 
 static double log_prior(const sf_drop_inference *in, const double *u) {
     const sf_fit_input *input = in->fit->input;
-    double z = u[in->parameters - 1], sum = -0.5 * (z * z + log(2 * M_PI));
+    const double *z = &u[input->unknown_count];
+    double sum = -0.5 * (z[0] * z[0] + z[1] * z[1]) - log(2 * M_PI);
     for (int k = 0; k < input->unknown_count; k++) {
         double away = (u[k] - log(input->prior[k])) / input->prior_sd[k];
         sum += -0.5 * (away * away + log(2 * M_PI)) - log(input->prior_sd[k]);
@@ -285,7 +316,8 @@ static double log_prior(const sf_drop_inference *in, const double *u) {
 /* The joint density; `conditional` [measured drops]: log p(data of a drop | those of the others), or NULL. */
 static double split(const void *context, const double *u, double *conditional) {
     const sf_drop_inference *in = context;
-    double few[256], *residual = few, tau = sf_drop_inference_tau(in, u), sum = -INFINITY;
+    double few[256], *residual = few, sum = -INFINITY;
+    sf_discrepancy_size size = sf_drop_inference_size(in, u);
     sf_error err = SF_ERROR_INIT;
     if (in->data > 128)
         residual = sf_alloc(&err, 2 * (unsigned long)in->data, sizeof *residual, "data");
@@ -293,13 +325,13 @@ static double split(const void *context, const double *u, double *conditional) {
         conditional[d] = 0;
     if (!sf_process_stopped() && residual &&
         find_residual(in, u, residual)) { /* else the chains rush to their end */
-        double *part = residual + in->data, likelihood = sf_discrepancy_log_density(&in->all, residual, tau);
+        double *part = residual + in->data, likelihood = sf_discrepancy_log_density(&in->all, residual, size);
         for (int d = 0; conditional && d < in->fit->measured_drops; d++) {
             int count = 0;
             for (int i = 0; i < in->data; i++)
                 if (!is_of(in->fit, in->data_row[i], d))
                     part[count++] = residual[i];
-            conditional[d] = likelihood - sf_discrepancy_log_density(&in->without[d], part, tau);
+            conditional[d] = likelihood - sf_discrepancy_log_density(&in->without[d], part, size);
         }
         sum = log_prior(in, u) + likelihood;
     }
@@ -312,15 +344,21 @@ static double log_density(const void *context, const double *u) {
     return split(context, u, NULL);
 }
 
-bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta) {
+/* delta, and the errors x of the drops to predict, [input drops][SF_FIT_SAMPLES]; NULL: not wanted. */
+static bool draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta, double *own) {
     sf_error err = SF_ERROR_INIT;
-    double *residual = sf_alloc(&err, 3 * (unsigned long)in->data, sizeof *residual, "data");
+    double x[SF_DISCREPANCY_MOST];
+    sf_discrepancy_size size = sf_drop_inference_size(in, u);
+    double *residual = sf_alloc(&err, (unsigned long)in->data, sizeof *residual, "data");
     gsl_rng *random = gsl_rng_alloc(gsl_rng_taus2);
     bool found = residual && random && find_residual(in, u, residual);
     if (found) {
         gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
-        sf_discrepancy_draw(&in->all, residual, sf_drop_inference_tau(in, u), random, residual + in->data,
-                            delta);
+        sf_discrepancy_draw(&in->all, residual, size, random, delta, x);
+        for (int d = in->fit->measured_drops; own && d < in->fit->input->drop_count; d++)
+            for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+                own[d * SF_FIT_SAMPLES + kind] =
+                    sf_drop_kind_get(kind)->model_sd * (x[kind] + size.kappa * gsl_ran_ugaussian(random));
     }
     if (random)
         gsl_rng_free(random);
@@ -328,18 +366,23 @@ bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64
     return found;
 }
 
+bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta) {
+    return draw(in, u, seed, delta, NULL);
+}
+
 /* Logarithms of what is predicted, of the foam of this state with a delta drawn. */
 static void observe(const void *context, const double *u, uint64_t seed, double *quantity) {
     const sf_drop_inference *in = context;
     const sf_drop_fit *fit = in->fit;
-    double delta[PLACES];
+    double delta[PLACES], own[SF_FIT_MAX_DROPS * SF_FIT_SAMPLES];
     sf_error err = SF_ERROR_INIT;
     double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
-    bool known = y && !sf_process_stopped() && sf_drop_inference_draw(in, u, seed, delta) &&
+    bool known = y && !sf_process_stopped() && draw(in, u, seed, delta, own) &&
                  respond(in, u, fit->measured_drops, fit->input->drop_count, y, &err) == SF_OK;
     for (int q = 0; q < in->quantities; q++) {
         int row = fit->row[in->quantity[q].drop] + in->quantity[q].kind;
-        quantity[q] = known ? y[row] : NAN;
+        quantity[q] =
+            known ? y[row] + own[in->quantity[q].drop * SF_FIT_SAMPLES + in->quantity[q].kind] : NAN;
         for (int b = 0; known && b < PLACES; b++)
             quantity[q] += in->jacobian[row * PLACES + b] * delta[b];
     }
@@ -348,17 +391,19 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
 
 /* ---- the whole ---- */
 
-/* Covariance of the fit's foam parameters, and that of z before the data. */
+/* Covariance of the fit's foam parameters, and that of the z before the data. */
 static void fill_start(const sf_drop_inference *in, double *start, double *covariance) {
-    int n = in->parameters, unknowns = n - 1;
+    int n = in->parameters, unknowns = in->fit->input->unknown_count;
     memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
     for (int i = 0; i < unknowns; i++) {
         start[i] = in->fit->result.u[i];
         for (int j = 0; j < unknowns; j++)
             covariance[i * n + j] = in->fit->result.covariance[i][j];
     }
-    start[unknowns] = 0;
-    covariance[n * n - 1] = 1;
+    for (int i = unknowns; i < n; i++) {
+        start[i] = 0;
+        covariance[i * n + i] = 1;
+    }
 }
 
 static sf_status estimate_evidence(sf_drop_inference *in, const sf_target *target,
@@ -375,7 +420,7 @@ static sf_status estimate_evidence(sf_drop_inference *in, const sf_target *targe
 static sf_status sample(const sf_drop_fit *fit, const sf_inference_options *options, sf_drop_inference *in,
                         sf_error *err) {
     double start[SF_POSTERIOR_MOST], covariance[SF_POSTERIOR_MOST * SF_POSTERIOR_MOST];
-    *in = (sf_drop_inference){.fit = fit, .parameters = fit->input->unknown_count + 1};
+    *in = (sf_drop_inference){.fit = fit, .parameters = fit->input->unknown_count + 2};
     bool left_out = options->leave_one_out && fit->measured_drops > 1;
     if (prepare(in, left_out, err) != SF_OK)
         return err->status;

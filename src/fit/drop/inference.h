@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The posterior of one fitted model by Markov chain Monte Carlo (docs/theory.md, section "Inference"): of its
- * unknown parameters and of the size tau of the discrepancy, on the corrected surrogate.
+ * unknown parameters and of the sizes tau and kappa of two discrepancies, on the corrected surrogate.
  *
- * The data's logarithms are y = s(u) + offset + M (u - u*) + J delta + e. delta is the logarithm of the true
- * loading curve over the form's at SF_DISCREPANCY_PLACES strains, a Gaussian process of standard deviation
- * tau and correlation length 0.12; J are the columns' derivatives at the maximum; e are the measurements'
- * errors and those of the speeds, whose effect is taken as linear. So delta and the speeds are integrated in
- * closed form, and drawn where predictions need them. */
+ * The data's logarithms are y = s(u) + offset + J delta + G x + e. delta is the logarithm of the true loading
+ * curve over the form's at SF_DISCREPANCY_PLACES strains, a Gaussian process of standard deviation tau and
+ * correlation length 0.12; J are the columns' derivatives at the maximum. x are the model's other errors
+ * (rate, unloading, surrogate): of every drop and number, and one of each number that all drops share, with
+ * standard deviations of kappa times model_sd (kinds.h). e are the measurements' errors and those of the
+ * speeds, whose effect is taken as linear. So delta, x and the speeds are integrated in closed form, and
+ * drawn where predictions need them. */
 #ifndef SF_FIT_DROP_INFERENCE_H
 #define SF_FIT_DROP_INFERENCE_H
 
@@ -26,12 +28,12 @@ typedef struct sf_drop_quantity {
 
 typedef struct sf_drop_inference {
     const sf_drop_fit *fit; /* borrowed */
-    int parameters;         /* unknowns of the foam, then z of tau (sf_half_normal) */
+    int parameters;         /* unknowns of the foam, then z of tau and z of kappa (sf_half_normal) */
     int data;
-    int *data_row;    /* [data] response that was measured; owned */
-    double *offset;   /* [responses] of all drops, at u = 0 speeds: y = s(u) + offset + M (u - u*); owned */
-    double *jacobian; /* [responses][SF_DISCREPANCY_PLACES] J; owned */
-    double *base;     /* [data][data] covariance of e; owned */
+    int *data_row;                                 /* [data] response that was measured; owned */
+    double *offset;                                /* [responses] of all drops, at u = 0 speeds; owned */
+    double *jacobian;                              /* [responses][SF_DISCREPANCY_PLACES] J; owned */
+    double *base;                                  /* [data][data] covariance of e; owned */
     sf_discrepancy all, without[SF_FIT_MAX_DROPS]; /* of all data; without those of one measured drop */
     int quantities;
     sf_drop_quantity quantity[3 * SF_FIT_MAX_DROPS];
@@ -43,7 +45,7 @@ typedef struct sf_drop_inference {
 
 typedef struct sf_inference_options {
     sf_chains_options chains;
-    sf_chains_options without; /* chains of the posteriors without a drop */
+    sf_leave_options without; /* posteriors without a drop */
     int evidence_draws;
     bool leave_one_out;
 } sf_inference_options;
@@ -57,8 +59,11 @@ sf_status sf_drop_infer(const sf_drop_fit *fit, const sf_inference_options *opti
                         sf_drop_inference *inference, sf_error *err);
 void sf_drop_inference_free(sf_drop_inference *inference);
 
-/* tau of a state of the chains. */
-double sf_drop_inference_tau(const sf_drop_inference *inference, const double *u);
+/* The sizes of the discrepancies of a state of the chains. */
+sf_discrepancy_size sf_drop_inference_size(const sf_drop_inference *inference, const double *u);
+/* Name and value of an element of a state: an unknown in SI units, tau, kappa. */
+const char *sf_drop_inference_name(const sf_drop_inference *inference, int parameter);
+double sf_drop_inference_value(const sf_drop_inference *inference, int parameter, double u);
 /* Strain of a place of delta. */
 double sf_discrepancy_strain(int place);
 /* delta [SF_DISCREPANCY_PLACES] given a state of the chains and the data. False: the columns fail there. */

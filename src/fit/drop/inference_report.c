@@ -59,7 +59,7 @@ static void put_models(FILE *f, const sf_drop_average *a) {
         sf_html_number(&table, 2, in->evidence.log_value);
         sf_html_number(&table, 2, in->evidence.error);
         sf_html_number(&table, 3, a->evidence_weight[m]);
-        sf_html_cell(&table, "%d", in->parameters - 1);
+        sf_html_cell(&table, "%d", in->fit->input->unknown_count);
         sf_html_number(&table, 2, in->fit->result.misfit);
     }
     for (int m = 0; m < a->failed; m++) {
@@ -85,9 +85,10 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
     if (in->quantities == 0)
         return SF_OK;
     sf_html_heading(f, "Predictions, averaged over the models");
-    sf_html_note(f, "Medians and 95 %% intervals of the posterior predictive distribution. They hold the "
-                    "uncertainty of the parameters, of the form (by the weights) and of a loading curve that "
-                    "differs from every form. Not in them: the discretisation.");
+    sf_html_note(
+        f, "Medians and 95 %% intervals of the posterior predictive distribution. They hold the "
+           "uncertainty of the parameters, of the form (by the weights), of a loading curve that "
+           "differs from every form, and of the model's other errors. Not in them: the discretisation.");
     sf_html_table table = sf_html_table_begin(
         f, "dense", "drop|quantity|>median|>95 %|>95 % of the model with the largest weight alone");
     for (int q = 0; q < in->quantities; q++) {
@@ -116,27 +117,27 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
 static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err) {
     char text[LABEL];
     sf_html_heading(f, "Posterior of the parameters");
-    sf_html_note(f,
-                 "Medians and 95 %% intervals by Markov chains. tau: standard deviation of the logarithm of "
-                 "the true loading curve over the form's; a large one says that the form does not fit.");
+    sf_html_note(
+        f,
+        "Medians and 95 %% intervals by Markov chains. tau: standard deviation of the logarithm of "
+        "the true loading curve over the form's; a large one says that the form does not fit. kappa: the model's other "
+        "errors, as a multiple of 1 %% of a_max and 2 %% of the other numbers.");
     sf_html_table table =
         sf_html_table_begin(f, "dense", "model|parameter|>median|>95 %|>R-hat|>effective sample size");
     for (int m = 0; m < a->models; m++) {
         const sf_drop_inference *in = a->model[m];
         for (int k = 0; k < in->parameters; k++) {
-            bool tau = k == in->parameters - 1;
-            const sf_parameter_info *about = tau ? NULL : sf_parameter_get(in->fit->input->unknown[k]);
-            double value[3], u[SF_POSTERIOR_MOST] = {0};
+            bool size = k >= in->fit->input->unknown_count;
+            const sf_parameter_info *about = size ? NULL : sf_parameter_get(in->fit->input->unknown[k]);
+            double value[3];
             if (sf_drop_parameter_quantiles(in, k, 3, THREE, value, err) != SF_OK)
                 return err->status;
-            for (int q = 0; q < 3; q++) {
-                u[k] = value[q];
-                value[q] = tau ? sf_drop_inference_tau(in, u) : exp(value[q]) / about->per_unit;
-            }
+            for (int q = 0; q < 3; q++)
+                value[q] = sf_drop_inference_value(in, k, value[q]) / (size ? 1 : about->per_unit);
             sf_html_row(&table);
             sf_html_cell(&table, "%s", k == 0 ? label_of(a, m, text) : "");
-            sf_html_cell(&table, "%s%s%s", tau ? "tau" : about->name, !tau && *about->unit ? ", " : "",
-                         tau ? "" : about->unit);
+            sf_html_cell(&table, "%s%s%s", sf_drop_inference_name(in, k), !size && *about->unit ? ", " : "",
+                         size ? "" : about->unit);
             sf_html_cell(&table, "%.4g", value[1]);
             sf_html_cell(&table, "%.4g to %.4g", value[0], value[2]);
             sf_html_number(&table, 3, in->chains.rhat[k]);
@@ -153,8 +154,9 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
         return;
     sf_html_heading(f, "Drops left out one by one");
     sf_html_note(
-        f, "log p of a drop's data given the others'. By importance weights of the whole posterior where "
-           "their Pareto k is below 0.5; else by chains without the drop.");
+        f,
+        "log p of a drop's data given the others'. By importance weights of the whole posterior where "
+        "their Pareto k is below 0.5; else by draws of a wider distribution if enough of them count; else by chains without the drop.");
     sf_html_table table = sf_html_table_begin(f, "dense", "model|drop|>log density|>Pareto k|by");
     for (int m = 0; m < a->models; m++)
         for (int d = 0; d < a->model[m]->fit->measured_drops; d++) {
@@ -164,7 +166,10 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
             sf_html_cell(&table, "%s", a->model[m]->fit->input->drop[d].name);
             sf_html_number(&table, 2, out->log_density);
             sf_html_number(&table, 2, out->pareto_k);
-            sf_html_cell(&table, "%s%s", out->sampled ? "chains" : "weights",
+            sf_html_cell(&table, "%s%s",
+                         out->sampled ? "chains"
+                         : out->drawn ? "draws"
+                                      : "weights",
                          out->converged ? "" : " (criteria not reached)");
         }
     sf_html_table_end(&table);
@@ -242,16 +247,13 @@ static void json_quantiles(sf_json *j, const double *value) {
 static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_error *err) {
     sf_json_open(j, "parameters", '[');
     for (int k = 0; k < in->parameters; k++) {
-        bool tau = k == in->parameters - 1;
-        double value[3], u[SF_POSTERIOR_MOST] = {0};
+        double value[3];
         if (sf_drop_parameter_quantiles(in, k, 3, THREE, value, err) != SF_OK)
             return err->status;
-        for (int q = 0; q < 3; q++) {
-            u[k] = value[q];
-            value[q] = tau ? sf_drop_inference_tau(in, u) : exp(value[q]);
-        }
+        for (int q = 0; q < 3; q++)
+            value[q] = sf_drop_inference_value(in, k, value[q]);
         sf_json_open(j, NULL, '{');
-        sf_json_text(j, "name", tau ? "tau" : sf_parameter_get(in->fit->input->unknown[k])->name);
+        sf_json_text(j, "name", sf_drop_inference_name(in, k));
         sf_json_text(j, "unit", "SI");
         json_quantiles(j, value);
         sf_json_number(j, "rhat", in->chains.rhat[k]);
@@ -300,6 +302,7 @@ static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_erro
         sf_json_number(j, "log_density", in->left_out[d].log_density);
         sf_json_number(j, "pareto_k", in->left_out[d].pareto_k);
         sf_json_bool(j, "by_chains", in->left_out[d].sampled);
+        sf_json_bool(j, "by_draws", in->left_out[d].drawn);
         sf_json_bool(j, "reached", in->left_out[d].converged);
         sf_json_close(j, '}');
     }
@@ -371,7 +374,7 @@ sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, s
     FILE *f = sf_staging_open(output, "posterior.csv", err);
     if (!f)
         return err->status;
-    fprintf(f, "draw,model,tau");
+    fprintf(f, "draw,model,tau,kappa");
     for (int p = 0; p < SF_PARAMETER_COUNT; p++) {
         const sf_parameter_info *about = sf_parameter_get((sf_foam_parameter)p);
         if (is_unknown(a, p))
@@ -382,7 +385,8 @@ sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, s
     for (int k = 0; k < SF_POSTERIOR_DRAWS; k++) {
         const sf_drop_inference *in = a->model[draw[k].model];
         const double *u = &in->chains.sample[draw[k].state * in->parameters];
-        fprintf(f, "%d,\"%s\",%.9g", k + 1, label_of(a, draw[k].model, text), sf_drop_inference_tau(in, u));
+        sf_discrepancy_size size = sf_drop_inference_size(in, u);
+        fprintf(f, "%d,\"%s\",%.9g,%.9g", k + 1, label_of(a, draw[k].model, text), size.tau, size.kappa);
         for (int p = 0; p < SF_PARAMETER_COUNT; p++) {
             int at = find_unknown(in->fit->input, p);
             if (at >= 0)

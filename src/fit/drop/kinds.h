@@ -9,15 +9,16 @@
 
 #include "surrogate/column.h"
 
-/* X(name, key in the fit file, key of its standard deviation, default of that, stem and unit in fit.json,
- * name and unit in reports, digits there, always shown, what it needs of a drop) */
+/* X(name, key in the fit file, key of its standard deviation, default of that, standard deviation of the
+ * model's error at kappa = 1, stem and unit in fit.json, name and unit in reports, digits there, always
+ * shown, what it needs of a drop) */
 /* clang-format off */
 #define SF_DROP_KINDS(X)                                                                                       \
-    X(A_MAX, "a_max_g", "a_max_sd", 0.02, "a_max", "_g", "a_max", "g", 1, true, "contact")                     \
-    X(HIC, "HIC", "HIC_sd", 0.04, "hic", "", "HIC", "", 0, true, "contact")                                    \
-    X(WINDOW, "HIC_window_ms", "HIC_window_sd", 0.03, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact") \
-    X(REBOUND, "v_rebound_m_s", "v_rebound_sd", 0.03, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound") \
-    X(CONTACT, "contact_time_ms", "contact_time_sd", 0.03, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound")
+    X(A_MAX, "a_max_g", "a_max_sd", 0.02, 0.01, "a_max", "_g", "a_max", "g", 1, true, "contact")                     \
+    X(HIC, "HIC", "HIC_sd", 0.04, 0.02, "hic", "", "HIC", "", 0, true, "contact")                                    \
+    X(WINDOW, "HIC_window_ms", "HIC_window_sd", 0.03, 0.02, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact") \
+    X(REBOUND, "v_rebound_m_s", "v_rebound_sd", 0.03, 0.02, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound") \
+    X(CONTACT, "contact_time_ms", "contact_time_sd", 0.03, 0.02, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound")
 /* clang-format on */
 
 /* Rows of a drop's responses; the samples of a measured curve from SF_FIT_SAMPLES on. */
@@ -26,7 +27,8 @@ typedef enum sf_drop_kind { SF_DROP_KINDS(SF_DROP_KIND_NAME) SF_FIT_SAMPLES } sf
 
 typedef struct sf_drop_kind_info {
     const char *key, *sd_key;
-    double sd; /* default, relative */
+    double sd;       /* default, relative */
+    double model_sd; /* of the logarithm, see inference.h */
     const char *stem, *suffix;
     const char *name, *unit;
     int digits;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/posterior/discrepancy.h"
 
-#include <gsl/gsl_blas.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
@@ -45,39 +44,6 @@ static sf_status find_root(const double *kernel, int n, double *root, sf_error *
     return err->status;
 }
 
-/* W and its values from L (D = L L^T) and G = J R: L^-1 G G^T L^-T = V diag(value) V^T, W = V^T L^-1. */
-static sf_status diagonalise(sf_discrepancy *d, sf_error *err) {
-    size_t n = (size_t)d->data, m = (size_t)d->bins;
-    gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(n);
-    gsl_matrix *g = gsl_matrix_alloc(n, m), *a = gsl_matrix_alloc(n, n), *v = gsl_matrix_alloc(n, n);
-    if (w && g && a && v) {
-        gsl_matrix_view j = matrix(d->jacobian, d->data, d->bins),
-                        r = matrix(d->kernel_root, d->bins, d->bins),
-                        l = matrix(d->base_root, d->data, d->data), out = matrix(d->whiten, d->data, d->data);
-        gsl_vector_view value = gsl_vector_view_array(d->value, n);
-        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &j.matrix, &r.matrix, 0, g);
-        gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1, &l.matrix, g);
-        gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, g, g, 0, a);
-        gsl_eigen_symmv(a, &value.vector, v, w);
-        gsl_matrix_transpose_memcpy(&out.matrix, v);
-        gsl_blas_dtrsm(CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, 1, &l.matrix, &out.matrix);
-    } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the covariance of %d data", d->data);
-    }
-    gsl_eigen_symmv_free(w);
-    gsl_matrix_free(g);
-    gsl_matrix_free(a);
-    gsl_matrix_free(v);
-    return err->status;
-}
-
-static void *duplicate(const double *from, int count, sf_error *err) {
-    double *to = sf_alloc(err, (unsigned long)count, sizeof *to, "a discrepancy");
-    if (to)
-        memcpy(to, from, (size_t)count * sizeof *to);
-    return to;
-}
-
 /* D's factor; above the diagonal zero. */
 static sf_status factorise(sf_discrepancy *d, sf_error *err) {
     gsl_matrix_view l = matrix(d->base_root, d->data, d->data);
@@ -91,94 +57,134 @@ static sf_status factorise(sf_discrepancy *d, sf_error *err) {
     return SF_OK;
 }
 
-sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const double *kernel,
-                               const double *base, sf_discrepancy *d, sf_error *err) {
-    *d = (sf_discrepancy){.data = data, .bins = bins};
-    d->kernel = duplicate(kernel, bins * bins, err);
-    d->kernel_root = sf_alloc(err, (unsigned long)(bins * bins), sizeof(double), "a discrepancy");
-    if (err->status != SF_OK || find_root(d->kernel, bins, d->kernel_root, err) != SF_OK || data == 0)
+/* H and H^T H. */
+static sf_status whiten(sf_discrepancy *d, const double *jacobian, const double *effect, sf_error *err) {
+    int p = d->latent;
+    d->white = sf_alloc(err, (unsigned long)(d->data * p), sizeof(double), "a discrepancy");
+    if (!d->white)
         return err->status;
-    d->jacobian = duplicate(jacobian, data * bins, err);
-    d->base_root = duplicate(base, data * data, err);
-    d->whiten = sf_alloc(err, (unsigned long)(data * data), sizeof(double), "a discrepancy");
-    d->value = sf_alloc(err, (unsigned long)data, sizeof(double), "a discrepancy");
-    if (err->status != SF_OK || factorise(d, err) != SF_OK)
+    for (int i = 0; i < d->data; i++) {
+        double *row = &d->white[i * p];
+        for (int k = 0; k < d->bins; k++)
+            for (int b = 0; b < d->bins; b++)
+                row[k] += jacobian[i * d->bins + b] * d->root[b * d->bins + k];
+        memcpy(row + d->bins, &effect[i * d->effects], (size_t)d->effects * sizeof *row);
+        for (int j = 0; j < i; j++)
+            for (int k = 0; k < p; k++)
+                row[k] -= d->base_root[i * d->data + j] * d->white[j * p + k];
+        for (int k = 0; k < p; k++)
+            row[k] /= d->base_root[i * d->data + i];
+    }
+    for (int i = 0; i < d->data; i++)
+        for (int k = 0; k < p; k++)
+            for (int l = 0; l < p; l++)
+                d->gram[k * p + l] += d->white[i * p + k] * d->white[i * p + l];
+    return SF_OK;
+}
+
+sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const double *kernel, int effects,
+                               const double *effect, const double *base, sf_discrepancy *d, sf_error *err) {
+    *d = (sf_discrepancy){.data = data, .bins = bins, .effects = effects, .latent = bins + effects};
+    if (d->latent > SF_DISCREPANCY_MOST)
+        return SF_FAIL(err, SF_ERR_INPUT, "%d errors of the responses: at most %d", effects,
+                       SF_DISCREPANCY_MOST - bins);
+    d->root = sf_alloc(err, (unsigned long)(bins * bins), sizeof(double), "a discrepancy");
+    d->gram = sf_alloc(err, (unsigned long)(d->latent * d->latent), sizeof(double), "a discrepancy");
+    d->base_root = sf_alloc(err, (unsigned long)(data * data), sizeof(double), "a discrepancy");
+    if (err->status != SF_OK || find_root(kernel, bins, d->root, err) != SF_OK || data == 0)
         return err->status;
-    return diagonalise(d, err);
+    memcpy(d->base_root, base, (size_t)(data * data) * sizeof *base);
+    return factorise(d, err) == SF_OK ? whiten(d, jacobian, effect, err) : err->status;
 }
 
 void sf_discrepancy_free(sf_discrepancy *d) {
-    free(d->jacobian);
-    free(d->kernel);
-    free(d->kernel_root);
+    free(d->root);
     free(d->base_root);
-    free(d->whiten);
-    free(d->value);
+    free(d->white);
+    free(d->gram);
     *d = (sf_discrepancy){0};
 }
 
-double sf_discrepancy_log_density(const sf_discrepancy *d, const double *residual, double tau) {
-    double sum = d->log_determinant + d->data * log(2 * M_PI);
+static double size_of(const sf_discrepancy *d, int latent, sf_discrepancy_size size) {
+    return latent < d->bins ? size.tau : size.kappa;
+}
+
+/* The Cholesky factor C of 1 + S H^T H S, in the lower triangle; log of its determinant's square. */
+static double factor(const sf_discrepancy *d, sf_discrepancy_size size, double *c) {
+    int p = d->latent;
+    double sum = 0;
+    for (int i = 0; i < p; i++)
+        for (int j = 0; j <= i; j++) {
+            double a = (i == j) + size_of(d, i, size) * size_of(d, j, size) * d->gram[i * p + j];
+            for (int k = 0; k < j; k++)
+                a -= c[i * p + k] * c[j * p + k];
+            c[i * p + j] = i == j ? sqrt(a) : a / c[j * p + j];
+        }
+    for (int i = 0; i < p; i++)
+        sum += 2 * log(c[i * p + i]);
+    return sum;
+}
+
+/* q = C^-1 S H^T L^-1 r; |L^-1 r|^2. */
+static double project(const sf_discrepancy *d, const double *r, sf_discrepancy_size size, const double *c,
+                      double *q) {
+    int p = d->latent;
+    double few[64], *w = d->data <= 64 ? few : malloc((size_t)d->data * sizeof *w), sum = 0;
+    if (!w)
+        return INFINITY;
+    memset(q, 0, (size_t)p * sizeof *q);
     for (int i = 0; i < d->data; i++) {
-        double white = 0, variance = 1 + tau * tau * fmax(0, d->value[i]);
-        for (int j = 0; j < d->data; j++)
-            white += d->whiten[i * d->data + j] * residual[j];
-        sum += white * white / variance + log(variance);
+        w[i] = r[i];
+        for (int j = 0; j < i; j++)
+            w[i] -= d->base_root[i * d->data + j] * w[j];
+        w[i] /= d->base_root[i * d->data + i];
+        sum += w[i] * w[i];
+        for (int k = 0; k < p; k++)
+            q[k] += d->white[i * p + k] * w[i];
     }
+    for (int k = 0; k < p; k++) {
+        q[k] *= size_of(d, k, size);
+        for (int l = 0; l < k; l++)
+            q[k] -= c[k * p + l] * q[l];
+        q[k] /= c[k * p + k];
+    }
+    if (w != few)
+        free(w);
+    return sum;
+}
+
+double sf_discrepancy_log_density(const sf_discrepancy *d, const double *residual, sf_discrepancy_size size) {
+    double c[SF_DISCREPANCY_MOST * SF_DISCREPANCY_MOST], q[SF_DISCREPANCY_MOST];
+    double sum = d->data * log(2 * M_PI) + d->log_determinant;
+    if (d->data == 0)
+        return 0;
+    sum += factor(d, size, c);
+    sum += project(d, residual, size, c, q);
+    for (int k = 0; k < d->latent; k++)
+        sum -= q[k] * q[k];
     return -0.5 * sum;
 }
 
-/* c = (D + tau^2 J K J^T)^-1 r = W^T (1 + tau^2 value)^-1 W r. */
-static void solve(const sf_discrepancy *d, const double *r, double tau, double *c) {
-    memset(c, 0, (size_t)d->data * sizeof *c);
-    for (int i = 0; i < d->data; i++) {
-        const double *row = &d->whiten[i * d->data];
-        double white = 0;
-        for (int j = 0; j < d->data; j++)
-            white += row[j] * r[j];
-        white /= 1 + tau * tau * fmax(0, d->value[i]);
-        for (int j = 0; j < d->data; j++)
-            c[j] += row[j] * white;
+/* z ~ N(C^-T q, (C C^T)^-1), then delta = tau R z and x = kappa z. */
+void sf_discrepancy_draw(const sf_discrepancy *d, const double *residual, sf_discrepancy_size size,
+                         gsl_rng *random, double *delta, double *x) {
+    double c[SF_DISCREPANCY_MOST * SF_DISCREPANCY_MOST], z[SF_DISCREPANCY_MOST] = {0};
+    int p = d->latent;
+    factor(d, size, c);
+    if (d->data > 0)
+        project(d, residual, size, c, z);
+    for (int k = 0; k < p; k++)
+        z[k] += gsl_ran_ugaussian(random);
+    for (int k = p - 1; k >= 0; k--) {
+        for (int l = k + 1; l < p; l++)
+            z[k] -= c[l * p + k] * z[l];
+        z[k] /= c[k * p + k];
     }
-}
-
-/* delta0 ~ N(0, tau^2 K). */
-static void draw_prior(const sf_discrepancy *d, double tau, gsl_rng *random, double *delta) {
-    memset(delta, 0, (size_t)d->bins * sizeof *delta);
-    for (int j = 0; j < d->bins; j++) {
-        double z = tau * gsl_ran_ugaussian(random);
-        for (int i = 0; i < d->bins; i++)
-            delta[i] += d->kernel_root[i * d->bins + j] * z;
+    for (int b = 0; b < d->bins; b++) {
+        delta[b] = 0;
+        for (int k = 0; k < d->bins; k++)
+            delta[b] += size.tau * d->root[b * d->bins + k] * z[k];
     }
-}
-
-/* r - J delta0 - e0, e0 ~ N(0, D). */
-static void draw_rest(const sf_discrepancy *d, const double *r, const double *delta, gsl_rng *random,
-                      double *rest) {
-    memcpy(rest, r, (size_t)d->data * sizeof *rest);
-    for (int j = 0; j < d->data; j++) {
-        double z = gsl_ran_ugaussian(random);
-        for (int i = j; i < d->data; i++)
-            rest[i] -= d->base_root[i * d->data + j] * z;
-    }
-    for (int i = 0; i < d->data; i++)
-        for (int b = 0; b < d->bins; b++)
-            rest[i] -= d->jacobian[i * d->bins + b] * delta[b];
-}
-
-void sf_discrepancy_draw(const sf_discrepancy *d, const double *residual, double tau, gsl_rng *random,
-                         double *scratch, double *delta) {
-    int n = d->data;
-    double *rest = scratch, *c = scratch + n;
-    draw_prior(d, tau, random, delta);
-    if (n == 0)
-        return;
-    draw_rest(d, residual, delta, random, rest);
-    solve(d, rest, tau, c);
-    for (int i = 0; i < n; i++) /* conditioning by kriging: delta0 + tau^2 K J^T c */
-        for (int k = 0; k < d->bins; k++) {
-            double raise = tau * tau * d->jacobian[i * d->bins + k] * c[i];
-            for (int b = 0; b < d->bins && raise != 0; b++)
-                delta[b] += d->kernel[b * d->bins + k] * raise;
-        }
+    for (int k = 0; k < d->effects; k++)
+        x[k] = size.kappa * z[d->bins + k];
 }

@@ -90,9 +90,76 @@ static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
     return err->status;
 }
 
-sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const sf_chains_options *options,
+/* ---- draws of a wider mixture ---- */
+
+static const double STRETCH = 1.4; /* of the posterior's scale */
+
+/* Draws with their weights: log density of the target over that of the mixture, and the conditionals. */
+typedef struct wide {
+    int count;
+    double *weight, *conditional; /* [count], [count][groups] */
+} wide;
+
+static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const sf_leave_options *options,
+                           wide *w, sf_error *err) {
+    static const double FREEDOM = 5;
+    int n = chains->parameters, draws = options->draws;
+    sf_mixture m;
+    *w = (wide){.weight = sf_alloc(err, (unsigned long)draws, sizeof(double), "draws"),
+                .conditional = sf_alloc(err, (unsigned long)(draws * g->groups), sizeof(double), "draws")};
+    double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws");
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    if (!random)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
+    if (err->status == SF_OK &&
+        sf_mixture_fit(n, chains->chains * chains->kept, chains->sample, FREEDOM, &m, err) == SF_OK) {
+        gsl_rng_set(random, (unsigned long)sf_seed_of(options->chains.seed, 700) & 0xffffffffu);
+        for (int p = 0; p < m.parts; p++) {
+            for (int i = 0; i < n; i++)
+                for (int j = 0; j <= i; j++)
+                    m.part[p].factor[i][j] *= STRETCH;
+            m.part[p].log_norm -= n * log(STRETCH);
+        }
+        for (int k = 0; k < draws; k++)
+            sf_mixture_draw(&m, random, &u[k * n]);
+#pragma omp parallel for schedule(dynamic, 8)
+        for (int k = 0; k < draws; k++)
+            w->weight[k] = g->split(g->target.context, &u[k * n], &w->conditional[k * g->groups]) -
+                           sf_mixture_log_density(&m, &u[k * n]);
+        w->count = draws;
+    }
+    if (random)
+        gsl_rng_free(random);
+    free(u);
+    return err->status;
+}
+
+/* log p(group | others) by the weights; true if enough draws count. */
+static bool take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out) {
+    double most = -INFINITY, most_all = -INFINITY, sum = 0, squares = 0, all = 0;
+    for (int k = 0; k < w->count; k++)
+        if (isfinite(w->weight[k])) {
+            most = fmax(most, w->weight[k] - w->conditional[k * groups + group]);
+            most_all = fmax(most_all, w->weight[k]);
+        }
+    for (int k = 0; k < w->count && isfinite(most); k++)
+        if (isfinite(w->weight[k])) {
+            double weight = exp(w->weight[k] - w->conditional[k * groups + group] - most);
+            sum += weight;
+            squares += weight * weight;
+            all += exp(w->weight[k] - most_all);
+        }
+    if (!(squares > 0) || sum * sum / squares < effective)
+        return false;
+    out->log_density = log(all) + most_all - log(sum) - most;
+    out->drawn = out->converged = true;
+    return true;
+}
+
+sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const sf_leave_options *options,
                            sf_left_out *out, sf_error *err) {
     int count = chains->chains * chains->kept;
+    wide w = {0};
     if (g->groups > MOST_GROUPS)
         return SF_FAIL(err, SF_ERR_INPUT, "%d groups of data: at most %d are left out one by one", g->groups,
                        MOST_GROUPS);
@@ -100,9 +167,15 @@ sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const s
            *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");
     for (int k = 0; k < g->groups && err->status == SF_OK; k++) {
         out[k] = (sf_left_out){.converged = false};
-        if (weigh(all, g->groups, k, count, scratch, &out[k], err) == SF_OK && !out[k].converged)
-            sample(g, k, chains, options, &out[k], err);
+        if (weigh(all, g->groups, k, count, scratch, &out[k], err) != SF_OK || out[k].converged)
+            continue;
+        if (options->draws > 0 && w.count == 0 && draw_wide(g, chains, options, &w, err) != SF_OK)
+            break;
+        if (!take_wide(&w, g->groups, k, options->effective, &out[k]))
+            sample(g, k, chains, &options->chains, &out[k], err);
     }
+    free(w.weight);
+    free(w.conditional);
     free(all);
     free(scratch);
     return err->status;
