@@ -3,7 +3,6 @@
  * noise, identified by space mapping, and the intervals counted. The "simulation" is a stiffer and thinner
  * set of columns than the surrogate, so that the correction has to work; hundreds of drops then cost seconds.
  * The whole chain with three-dimensional drops is in tests/test_fit_drop.c. */
-#include "extreme.h"
 #include "solver/material/foam.h"
 #include "study.h"
 
@@ -11,7 +10,6 @@
 #include "fit/drop/parameters.h"
 #include "fit/space_mapping.h"
 #include "point_fixture.h"
-#include "post/hic.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -58,16 +56,10 @@ static sf_status respond(const laboratory *lab, const double *u, int first, int 
     if (sf_foam_build(&card, &foam, err) == SF_OK)
         for (int d = first; d < last && err->status == SF_OK; d++) {
             sf_columns c = columns_of(speed[d], (d < DROPS ? 0.07 : 0.05) * thickness, area);
-            sf_series curve = {0};
-            sf_hic hic = {0};
-            double peak = 0;
-            if (sf_columns_drop(&c, &law, &curve, err) == SF_OK)
-                sf_hic_evaluate(&curve, INFINITY, &hic, err);
-            for (int64_t k = 0; k < curve.count; k++)
-                peak = larger(peak, curve.value[k]);
-            y[2 * (d - first)] = log(peak);
-            y[2 * (d - first) + 1] = log(hic.value);
-            sf_series_free(&curve);
+            sf_columns_figures figures = {.a_max_g = 0};
+            sf_columns_respond(&c, &law, &figures, NULL, err);
+            y[2 * (d - first)] = log(figures.a_max_g);
+            y[2 * (d - first) + 1] = log(figures.hic);
         }
     sf_foam_free(&foam);
     sf_foam_card_free(&card);
