@@ -74,6 +74,8 @@ static void base_law(const sf_foam *foam, principal *p) {
             energy = foam->cutoff * (-strain - 0.5 * yield);
         }
         p->steepest[i] = fabs(strain) < 1e-6 ? rest : p->slope[i];
+        if (strain > 0)
+            p->slope[i] = smaller(p->slope[i], foam->curve[0].firm_slope);
         p->energy += energy;
     }
 }
@@ -98,6 +100,21 @@ static double quadratic(const principal *p, int i, const double e[6]) {
         for (int c = 0; c < 3; c++)
             sum += p->n[3 * r + i] * e[SYM[r][c]] * p->n[3 * c + i];
     return sum;
+}
+
+/* Where the present rate may lead into densification within a step, the slope there. */
+static void look_ahead(const sf_foam *foam, double dt, const double e[6], principal *p) {
+    const sf_curve *curve = &foam->curve[0];
+    double square = 0;
+    for (int k = 0; k < 6; k++)
+        square += (k < 3 ? 1 : 2) * e[k] * e[k];
+    for (int i = 0; i < 3; i++) {
+        double strain = 1 - p->stretch[i] + dt * sqrt(square) / p->stretch[i], stress, slope, energy;
+        if (strain < curve->start)
+            continue;
+        sf_curve_evaluate(curve, strain, &stress, &slope, &energy);
+        p->steepest[i] = larger(p->steepest[i], slope);
+    }
 }
 
 /* Rate overstress (theory eq. 22): changes the principal stresses s, returns its bound. */
@@ -224,6 +241,8 @@ void foam_reference_update(const sf_foam *foam, double dt, sf_law_batch *b, int 
     b->jacobian[l] = determinant(b->f, l);
     eigen(c, p.stretch, p.n);
     base_law(foam, &p);
+    if (dt > 0)
+        look_ahead(foam, dt, e, &p);
     hysteresis(foam, &b->history[SF_FOAM_PEAK][l], &p);
     b->energy[l] = p.energy;
     b->factor[l] = p.factor;

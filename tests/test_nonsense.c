@@ -258,7 +258,7 @@ static void campaigns(void **state) {
         {"--material files/none.cfg", {"files/none.cfg", "No such file"}},
     };
     static const nonsense fit[] = {
-        {"files/minus.cfg", {"minus.cfg:1", "a_max_g is -3", "0.001 to 100000"}},
+        {"files/minus.cfg", {"minus.cfg:1", "a_max_g is -3", "0.001 to 1e+07"}},
         {"files/nomaterial.cfg", {"nomaterial.cfg:1", "none.cfg", "No such file"}},
         {"files/nothing.cfg", {"nothing.cfg:1", "no a_max_g, no HIC and no curve"}},
         {"files/outside.cfg",

@@ -140,20 +140,25 @@ static void rate_stress(const sf_foam_options *foam, const sf_foam_kind *kind, d
             b->work[l] += (rate->part[i][l] - before[i][l]) * rate->green[i][l] * dt;
 }
 
-/* The bounds of a step that ends where the curve is steeper than where it begins. */
-static void look_ahead(const sf_foam_kind *kind, double dt, const sf_law_batch *b, double v[9][SF_LANES],
+/* The bounds of a step that ends where the curve is steeper than where it begins. No direction shortens
+ * faster than by the norm of the rate, which, unlike the rates of the directions, is certain where stretches
+ * are equal. */
+static void look_ahead(const sf_foam_kind *kind, double dt, const sf_law_batch *b,
                        double rate_of_e[6][SF_LANES], sf_foam_loading *law) {
-    double rate[3][SF_LANES], next[3][SF_LANES];
+    double next[3][SF_LANES];
     int dense = 0;
     for (int i = 0; i < 3; i++)
         for (int l = 0; l < SF_LANES; l++)
             dense |= b->stretch[i][l] < kind->dense;
     if (!dense)
         return;
-    green_rates(v, rate_of_e, rate);
-    for (int i = 0; i < 3; i++)
-        for (int l = 0; l < SF_LANES; l++)
-            next[i][l] = b->stretch[i][l] + dt * sf_smaller(rate[i][l] / b->stretch[i][l], 0);
+    for (int l = 0; l < SF_LANES; l++) {
+        double square = 0;
+        for (int k = 0; k < 6; k++)
+            square += (k < 3 ? 1 : 2) * rate_of_e[k][l] * rate_of_e[k][l];
+        for (int i = 0; i < 3; i++)
+            next[i][l] = b->stretch[i][l] - dt * sqrt(square) / b->stretch[i][l];
+    }
     kind->ahead(kind->numbers, next, law->steepest);
 }
 
@@ -183,7 +188,7 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
             b->stretch[i][l] = sqrt(eigen[i][l]);
     kind->loading(kind->numbers, b->stretch, &law);
     if (kind->ahead && dt > 0)
-        look_ahead(kind, dt, b, rate.v, rate_of_e, &law);
+        look_ahead(kind, dt, b, rate_of_e, &law);
     memcpy(b->energy, law.energy, sizeof b->energy);
     sf_unloading_lanes(&foam->unloading, b->energy, b->history[SF_FOAM_PEAK], b->factor, softening, b->stored,
                        b->lost);
