@@ -260,7 +260,7 @@ static void campaigns(void **state) {
     static const nonsense fit[] = {
         {"files/minus.cfg", {"minus.cfg:1", "a_max_g is -3", "0.001 to 1e+07"}},
         {"files/nomaterial.cfg", {"nomaterial.cfg:1", "none.cfg", "No such file"}},
-        {"files/nothing.cfg", {"nothing.cfg:1", "no a_max_g, no HIC and no curve"}},
+        {"files/nothing.cfg", {"nothing.cfg:1", "no a_max_g, no HIC, nothing else measured"}},
         {"files/outside.cfg",
          {"outside.cfg:1", "\"../f\"", "no slashes"}}, /* would leave the output directory */
         {"files/absent.cfg", {"absent.cfg", "No such file"}},

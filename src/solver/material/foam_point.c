@@ -113,7 +113,7 @@ static SF_KERNEL void rate_factor(const sf_foam_options *foam, bool compression,
     for (int i = 0; i < 3; i++)
 #pragma omp simd
         for (int l = 0; l < SF_LANES; l++) {
-            double t = law->t[i][l], acting = compression & (t > 0) ? 0 : t;
+            double t = law->t[i][l], acting = (compression & (t > 0)) ? 0 : t;
             rate->part[i][l] += gain[l] * acting / b->stretch[i][l];
             sum[l] += acting * acting;
         }
