@@ -107,17 +107,49 @@ static void through_a_hole_it_ends_on_the_anvil(void **state) {
     }
 }
 
-/* One of 160 mm is 27 mm deep when it would touch. */
-static void a_missile_that_meets_the_anvil_first_is_refused_or_ends_there(void **state) {
+static double fall_time(double way) {
+    const double g = SF_STANDARD_GRAVITY;
+    return (sqrt(SPEED * SPEED + 2 * g * way) - SPEED) / g;
+}
+
+/* One of 160 mm would be 27 mm deep when it touches the rim: it meets the anvil before, and starts at the
+ * height of the pad's top. */
+static void a_missile_that_meets_the_anvil_first_ends_there(void **state) {
     const program_place *p = *state;
-    static const char small[] = "--set geometry.missile_parameters.diameter=160.0";
-    program_result pre = program_run(p, "pre", "case.cfg -o m.h5 --force %s", small);
-    assert_int_equal(pre.code, 2);
-    assert_non_null(strstr(pre.err, "the missile reaches the anvil before it touches the pad"));
-    drop d = run(p, "--set geometry.missile_parameters.diameter=160.0 --set missile.gap='20 mm'");
+    static const struct {
+        const char *options;
+        double way;
+    } rows[] = {{"", 0.02},
+                {"--set missile.shape=surface --set pad.base=resting", 0.02},
+                {"--set missile.gap='20 mm'", 0.04}};
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+        char options[160];
+        snprintf(options, sizeof options, "--set geometry.missile_parameters.diameter=160.0 %s",
+                 rows[k].options);
+        drop d = run(p, options);
+        assert_stopped(p, &d);
+        assert_close(d.time, fall_time(rows[k].way), 2.1e-5);                 /* a step */
+        assert_close(d.velocity, SPEED + SF_STANDARD_GRAVITY * d.time, 1e-3); /* it touches nothing else */
+    }
+}
+
+/* Rim and anvil at nearly the same time: a start at the touch would be a run of two rows, and no report. */
+static void a_touch_just_above_the_anvil_has_a_report(void **state) {
+    const program_place *p = *state;
+    /* the sagitta of the hole is 20 mm at R = (60^2 + 20^2) / 40 = 100 mm */
+    drop d = run(p, "--set geometry.missile_parameters.diameter=200.2");
     assert_stopped(p, &d);
-    double way = 0.02 - (0.08 - sqrt(0.08 * 0.08 - 0.06 * 0.06) - 0.02);
-    assert_close(d.time, way / SPEED, 4e-5); /* a step, and gravity */
+    assert_close(d.time, fall_time(0.02), 2.1e-5);
+}
+
+/* No key places it below the anvil. */
+static void a_start_below_the_anvil_is_refused(void **state) {
+    const program_place *p = *state;
+    program_result pre = program_run(p, "pre",
+                                     "case.cfg -o m.h5 --force --set missile.gap='-30 mm' --set "
+                                     "geometry.missile_parameters.diameter=160.0");
+    assert_int_equal(pre.code, 2);
+    assert_non_null(strstr(pre.err, "missile.gap"));
 }
 
 static void a_resumed_run_ends_there_again(void **state) {
@@ -152,7 +184,9 @@ static void a_pad_that_hangs_has_no_anvil(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(through_a_hole_it_ends_on_the_anvil),
-        cmocka_unit_test(a_missile_that_meets_the_anvil_first_is_refused_or_ends_there),
+        cmocka_unit_test(a_missile_that_meets_the_anvil_first_ends_there),
+        cmocka_unit_test(a_touch_just_above_the_anvil_has_a_report),
+        cmocka_unit_test(a_start_below_the_anvil_is_refused),
         cmocka_unit_test(a_resumed_run_ends_there_again),
         cmocka_unit_test(a_resting_pad_resumes_with_the_same_bits),
         cmocka_unit_test(a_pad_that_hangs_has_no_anvil),

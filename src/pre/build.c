@@ -24,6 +24,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double CLEAR =
+    0.05; /* of the anvil's depth: way from the first touch to the anvil that is a drop */
+
 /* Cloud arrays that come straight from the mesh. */
 static void take_mesh(sf_mesh *mesh, sf_model *m, sf_build_report *report) {
     for (int64_t k = 0; k < mesh->cell_count; k++)
@@ -391,11 +394,9 @@ static double find_clearance(const sf_model *m) {
                                 .position = m->surface_position,
                                 .triangle_count = m->surface_triangle_count,
                                 .triangle = m->surface_triangle};
-    double lowest[3], high = -INFINITY;
+    double lowest[3];
     sf_impact_lowest(&missile, &m->missile, lowest);
-    for (int64_t i = 0; i < m->node_count; i++)
-        high = fmax(high, m->position[3 * i + 2]);
-    return lowest[2] - high;
+    return lowest[2] - sf_impact_top(m);
 }
 
 /* A half or quarter of a missile would be held by its planes. */
@@ -438,7 +439,18 @@ static sf_status tell_miss(const sf_model *m, const sf_surface *surface, const s
     return SF_FAIL(err, miss->status, "%s", miss->text);
 }
 
-/* Places the missile `gap` away from first contact and moves its surface into the model. */
+/* The missile's way, along its direction, to where it starts with gap 0: to the first touch of a contact
+ * node, `touch`. Where it meets the anvil before, or at once after that, through a hole, it starts at the
+ * height of the pad's top: a start on the anvil would be a run without a curve. */
+static double way_to_start(const sf_model *m, const sf_surface *surface, double touch) {
+    double lowest[3], down = -m->missile.direction[2], fall = m->anvil.depth / down;
+    sf_impact_lowest(surface, &m->missile, lowest);
+    double to_top = (lowest[2] - sf_impact_top(m)) / down;
+    bool through = m->anvil.depth > 0 && touch > to_top + (1 - CLEAR) * fall;
+    return through ? to_top : touch;
+}
+
+/* Places the missile `gap` away from there and moves its surface into the model. */
 static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
     double distance = 0, impact[3];
     sf_error miss = SF_ERROR_INIT;
@@ -451,7 +463,7 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     if (sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
                             &miss) != SF_OK)
         return tell_miss(m, surface, &miss, err);
-    double travel = distance - m->missile.gap;
+    double travel = way_to_start(m, surface, distance) - m->missile.gap;
     for (int64_t k = 0; k < 3 * surface->node_count; k++)
         surface->position[k] += travel * m->missile.direction[k % 3];
     for (int k = 0; k < 3; k++) {
@@ -473,16 +485,11 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     return SF_OK;
 }
 
-/* Over a wide hole a thin pad is not what the missile meets first. */
-static sf_status check_start(const sf_case *c, const sf_model *m, sf_error *err) {
-    double depth = sf_missile_card_depth(&m->missile, 0);
-    if (m->anvil.depth == 0 || depth < m->anvil.depth)
-        return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "the missile reaches the anvil before it touches the pad: at its gap from the group \"%s\" it "
-        "is %.6g mm below the top of the pad, and the anvil %.6g mm",
-        c->contact_group, 1e3 * depth, 1e3 * m->anvil.depth);
+/* The anvil first: the missile may meet it before the pad. */
+static sf_status place(const sf_case *c, const sf_hold *hold, sf_surface *surface, sf_model *m,
+                       sf_error *err) {
+    sf_base_place_anvil(c, hold, m);
+    return build_missile(c, surface, m, err);
 }
 
 /* A prescribed motion stays above the plane of the pad's underside: where the anvil is there, it would end
@@ -627,12 +634,11 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     int64_t critical = 0;
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
-        sf_hold_find(m, &report->hold, err) == SF_OK && build_missile(c, surface, m, err) == SF_OK &&
+        sf_hold_find(m, &report->hold, err) == SF_OK && place(c, &report->hold, surface, m, err) == SF_OK &&
         take_cards(c, m, err) == SF_OK) {
-        sf_base_place_anvil(c, &report->hold, m);
         estimate_mesh_error(m, report);
-        if (check_start(c, m, err) == SF_OK && sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK &&
-            sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&
+        if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
+            measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
             sf_hold_warn(&report->hold, m, sink);

@@ -130,8 +130,7 @@ static sf_status check_inside(const sf_case *c, const sf_model *m, sf_error *err
                    1e3 * at[1], c->contact_group);
 }
 
-/* Height (m) of the pad's highest point. */
-static double top_of(const sf_model *m) {
+double sf_impact_top(const sf_model *m) {
     double top = -INFINITY;
     for (int64_t i = 0; i < m->node_count; i++)
         top = fmax(top, m->position[3 * i + 2]);
@@ -153,7 +152,7 @@ sf_status sf_impact_place(const sf_case *c, const sf_model *m, sf_surface *surfa
     if (check_planes(m, c->missile_position, err) != SF_OK || check_inside(c, m, err) != SF_OK)
         return err->status;
     sf_impact_lowest(surface, card, point);
-    follow(card, top_of(m), point);
+    follow(card, sf_impact_top(m), point);
     for (int axis = 0; axis < 2; axis++) {
         double shift = c->missile_position[axis] - point[axis];
         if (sf_symmetry_plane(m, axis, &place))
@@ -172,7 +171,7 @@ void sf_impact_point(const sf_model *m, double point[3]) {
                                 .triangle = m->surface_triangle};
     double place;
     sf_impact_lowest(&missile, &m->missile, point);
-    follow(&m->missile, top_of(m), point);
+    follow(&m->missile, sf_impact_top(m), point);
     for (int axis = 0; axis < 2; axis++)
         if (sf_symmetry_plane(m, axis, &place))
             point[axis] = place;

@@ -12,6 +12,9 @@
  * centroid of the flat faces there, or, without such faces, the middle of the box around these nodes. */
 void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, double point[3]);
 
+/* Height (m) of the pad's highest point. */
+double sf_impact_top(const sf_model *model);
+
 /* Moves the surface, and the card's sphere, in x and y so that the lowest point, on its way along
  * the direction, comes to missile.position at the height of the pad's highest point. Normal to a symmetry
  * plane nothing moves. Does nothing without missile.position. The card's shape is set, its body not yet;
