@@ -246,6 +246,61 @@ static void set_replaces_a_group_by_a_file(void **state) {
     assert_refused(GOOD, set, "broken.cfg:1: syntax error", NULL);
 }
 
+/* A draw of a posterior states errors of the responses: read from the file, of no effect on the foam. */
+static void response_errors_of_a_material_are_read(void **state) {
+    (void)state;
+    sf_case c;
+    char set[600];
+    read_good(GOOD, NULL, &c);
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+        assert_false(c.response_error.given[kind]);
+    sf_case_free(&c);
+    write_file("materials/draw.cfg",
+               "density = \"35 kg/m3\";\nE = \"0.4 MPa\";\ncurve = \"inner.csv\";\n"
+               "response_error = { HIC = -0.0125; HIC_sd = 0.02; a_max = 1e-3; a_max_sd = 0; };\n");
+    snprintf(set, sizeof set, "material=@%s", in_folder("materials/draw.cfg"));
+    read_good(GOOD, set, &c);
+    assert_true(c.response_error.given[SF_FIT_HIC] && c.response_error.given[SF_FIT_A_MAX]);
+    assert_false(c.response_error.given[SF_FIT_WINDOW]);
+    assert_true(c.response_error.shared[SF_FIT_HIC] == -0.0125 &&
+                c.response_error.own_sd[SF_FIT_HIC] == 0.02);
+    assert_true(c.response_error.shared[SF_FIT_A_MAX] == 1e-3 && c.response_error.own_sd[SF_FIT_A_MAX] == 0);
+    sf_case_free(&c);
+    snprintf(set, sizeof set, "materials.core=@%s", in_folder("materials/draw.cfg"));
+    read_good(GEOMETRY MISSILE SOLVER "materials: { core: {}; };\n", set, &c);
+    assert_int_equal(c.layer_count, 1);
+    assert_false(c.response_error.given[SF_FIT_HIC]); /* of a pad of one material */
+    sf_case_free(&c);
+}
+
+static void response_errors_that_cannot_be_meant_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *group, *part;
+    } cases[] = {
+        {"3", "material.response_error must be a group: response_error = { "},
+        {"{ HIC = 0.01; }", "material.response_error.HIC is given without HIC_sd"},
+        {"{ HIC_sd = 0.01; }", "material.response_error.HIC_sd is given without HIC"},
+        {"{ hic = 0.01; }",
+         "unknown key \"hic\" in group material.response_error; its keys are a_max, a_max_sd, HIC, "
+         "HIC_sd, HIC_window, HIC_window_sd, v_rebound, v_rebound_sd, contact_time, contact_time_sd"},
+        {"{ HIC = \"1 %\"; HIC_sd = 0.1; }", "material.response_error.HIC: the value is "},
+        {"{ HIC = 0.1; HIC_sd = -0.1; }", "material.response_error.HIC_sd: -0.1 is out of bounds"},
+        {"{ HIC = 2.0; HIC_sd = 0.1; }", "material.response_error.HIC: 2 is out of bounds"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 GEOMETRY MISSILE SOLVER
+                 "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curve = \"foam.csv\";\n"
+                 "response_error = %s; };\n",
+                 cases[k].group);
+        assert_refused(text, NULL, "case.cfg:5: ", cases[k].part, NULL);
+    }
+    assert_refused(GOOD, "material.response_eror=3", "unknown key \"response_eror\"", ", response_error",
+                   NULL);
+}
+
 static void include_brings_its_own_folder_for_the_curve(void **state) {
     (void)state;
     sf_case c;
@@ -902,6 +957,8 @@ int main(void) {
         cmocka_unit_test(listing_has_value_si_value_and_origin),
         cmocka_unit_test(set_overrides_every_kind_of_value),
         cmocka_unit_test(set_replaces_a_group_by_a_file),
+        cmocka_unit_test(response_errors_of_a_material_are_read),
+        cmocka_unit_test(response_errors_that_cannot_be_meant_are_refused),
         cmocka_unit_test(include_brings_its_own_folder_for_the_curve),
         cmocka_unit_test(include_may_be_absolute),
         cmocka_unit_test(curves_at_several_rates_ascend),

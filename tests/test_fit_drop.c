@@ -550,6 +550,41 @@ static double number_in(const char *json, const char *key) {
     return value;
 }
 
+/* The number after `before`, in text that begins there. */
+static double number_after(const char *text, const char *before) {
+    const char *at = strstr(text, before);
+    if (!at)
+        fail_msg("no \"%s\" in: %s", before, text);
+    return strtod(at + strlen(before), NULL);
+}
+
+/* Each draw of out/posterior has the errors of the responses of its row in out/posterior.csv, and the size
+ * that kappa says; they are not the same in all. */
+static void assert_response_errors(const program_place *place) {
+    double kappa[200], hic[200], hic_sd[200], a_max_sd[200], least = INFINITY, greatest = -INFINITY;
+    program_result r = program_shell(
+        place,
+        "sed 's/\"[^\"]*\"/model/' out/posterior.csv | awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) at[$k] = k; next } { print $at[\"kappa\"], "
+        "$at[\"HIC_error\"], $at[\"HIC_error_sd\"], $at[\"a_max_error_sd\"] }'");
+    assert_int_equal(r.code, 0);
+    char *at = r.out;
+    for (int k = 0; k < 200; k++) {
+        char name[64];
+        double *const row[] = {&kappa[k], &hic[k], &hic_sd[k], &a_max_sd[k]};
+        for (int c = 0; c < 4; c++)
+            *row[c] = strtod(at, &at);
+        snprintf(name, sizeof name, "out/posterior/draw-%03d.cfg", k + 1);
+        program_bytes file = program_read_file(program_path(place, name));
+        assert_true(fabs(number_after(file.data, "; HIC_sd = ") - hic_sd[k]) < 1e-8);
+        assert_true(fabs(number_after(file.data, " HIC = ") - hic[k]) < 1e-8);
+        assert_true(fabs(hic_sd[k] - 0.02 * kappa[k]) < 1e-8 && fabs(a_max_sd[k] - 0.01 * kappa[k]) < 1e-8);
+        least = fmin(least, hic[k]);
+        greatest = fmax(greatest, hic[k]);
+        free(file.data);
+    }
+    assert_true(least < greatest && kappa[0] > 0);
+}
+
 /* Coarse drops with a hidden foam are identified: the responses are met, the second run simulates nothing. */
 static void hidden_foam_is_found(void **state) {
     (void)state;
@@ -634,6 +669,7 @@ static void hidden_foam_is_found(void **state) {
                          .code,
                      0);
     program_succeed(&place, "pre", "case.cfg --set material=@out/posterior/draw-100.cfg -o m.h5 --force");
+    assert_response_errors(&place);
     program_result again = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
     assert_true(again.code == 2 && strstr(again.err, "--force"));
     again = program_succeed(&place, "fit", "drop fit.cfg -o out -t 2 --force");

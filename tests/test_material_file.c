@@ -14,7 +14,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-static const sf_material_text TEXT = {"A test", "from nothing\n"};
+static const sf_material_text TEXT = {.title = "A test", .provenance = "from nothing\n"};
 
 static void good_material_is_written_and_read(void **state) {
     const program_place *p = *state;
@@ -23,6 +23,33 @@ static void good_material_is_written_and_read(void **state) {
     fixture_case(&c, NULL);
     assert_int_equal(sf_material_write_checked(p->folder, "good", &c.material, &TEXT, &err), SF_OK);
     assert_int_equal(sf_case_check_material(program_path(p, "good.cfg"), &err), SF_OK);
+    sf_case_free(&c);
+}
+
+/* A draw of a posterior: what is written of the errors of the responses is read, of every number. */
+static void response_errors_are_written_and_read(void **state) {
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    sf_case c, again;
+    sf_response_error error = {0};
+    char set[600];
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
+        error.given[kind] = true;
+        error.shared[kind] = -0.0123456789 * (kind + 1);
+        error.own_sd[kind] = 0.1 / 3 * kind;
+    }
+    const sf_material_text text = {.title = "A draw", .provenance = "", .response_error = &error};
+    fixture_case(&c, NULL);
+    assert_int_equal(sf_material_write_checked(p->folder, "draw", &c.material, &text, &err), SF_OK);
+    snprintf(set, sizeof set, "material=@%s", program_path(p, "draw.cfg"));
+    fixture_case(&again, (const char *const[]){set, NULL});
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
+        assert_true(again.response_error.given[kind]);
+        assert_true(fabs(again.response_error.shared[kind] - error.shared[kind]) < 1e-12);
+        assert_true(fabs(again.response_error.own_sd[kind] - error.own_sd[kind]) < 1e-12);
+    }
+    assert_true(sf_material_hash(1, &again.material) == sf_material_hash(1, &c.material));
+    sf_case_free(&again);
     sf_case_free(&c);
 }
 
@@ -63,6 +90,7 @@ static void flat_curve_is_not_written(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(good_material_is_written_and_read),
+        cmocka_unit_test(response_errors_are_written_and_read),
         cmocka_unit_test(modulus_out_of_bounds_is_not_written),
         cmocka_unit_test(flat_curve_is_not_written),
     };

@@ -113,6 +113,19 @@ static void put_card(FILE *file, const char *name, const sf_material *m) {
     fputs(strchr(open, '.') ? "};\n" : "", file);
 }
 
+/* The numbers that are given, a line each. */
+static void put_response_error(FILE *file, const sf_response_error *error) {
+    fputs(
+        "# Errors of ln(number) of a drop beside the foam: one that all drops share, and the standard deviation of "
+        "each drop's own.\nresponse_error = {\n",
+        file);
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+        if (error->given[kind])
+            fprintf(file, "    %s = %.12g; %s = %.12g;\n", sf_drop_kind_get(kind)->error_key,
+                    error->shared[kind], sf_drop_kind_get(kind)->sd_key, error->own_sd[kind]);
+    fputs("};\n", file);
+}
+
 sf_status sf_material_write(const char *folder, const char *name, const sf_material *material,
                             const sf_material_text *text, sf_error *err) {
     char file_name[PATH_SIZE];
@@ -133,6 +146,8 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
         "material=@%s.cfg\n",
         name, name);
     put_card(file, name, material);
+    if (text->response_error)
+        put_response_error(file, text->response_error);
     return sf_replace_close(&out, err);
 }
 

@@ -6,11 +6,13 @@
 #ifndef SF_CAMPAIGN_MATERIAL_FILE_H
 #define SF_CAMPAIGN_MATERIAL_FILE_H
 
+#include "core/drop_kinds.h"
 #include "core/material.h"
 
 typedef struct sf_material_text {
     const char *title;      /* first line of both files: a description of the material */
     const char *provenance; /* lines, each ended by '\n': where the numbers come from, their intervals */
+    const sf_response_error *response_error; /* of a draw of a posterior; NULL: none */
 } sf_material_text;
 
 /* Writes <folder>/<name>.cfg, and <name>.csv or, for several curves, <name>-1.csv and so on; files that are

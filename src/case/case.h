@@ -5,6 +5,7 @@
 #ifndef SF_CASE_CASE_H
 #define SF_CASE_CASE_H
 
+#include "core/drop_kinds.h"
 #include "core/error.h"
 #include "core/model.h"
 #include "core/sink.h"
@@ -63,9 +64,10 @@ typedef struct sf_case {
     double support_ratio;   /* R/h */
     double condition_limit; /* of the moment matrix */
     sf_material material;   /* owned by the case until moved into a model; none in a case of layers */
-    int layer_count;        /* groups of `materials`; 0: one material */
-    sf_material *layer;     /* [layer_count] with the names of their volume groups; owned likewise */
-    int interface_count;    /* pairs of layers that slide on each other; all others are tied */
+    sf_response_error response_error; /* of the material's file; none in a case of layers */
+    int layer_count;                  /* groups of `materials`; 0: one material */
+    sf_material *layer;  /* [layer_count] with the names of their volume groups; owned likewise */
+    int interface_count; /* pairs of layers that slide on each other; all others are tied */
     char interface_name[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE]; /* "NAME/NAME" */
     int interface_layer[SF_CASE_MAX_GROUPS][2];                 /* their places in `layer` */
     bool position_given;

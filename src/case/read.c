@@ -8,6 +8,7 @@
 #include "case/override.h"
 #include "case/print.h"
 #include "case/reader.h"
+#include "case/response_error.h"
 #include "case/value.h"
 
 #include "core/mat3.h"
@@ -51,6 +52,8 @@ static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, 
     sf_case_where(reader, u->first, where);
     if (strcmp(u->group, "") == 0)
         strncat(names, ", materials", sizeof names - strlen(names) - 1);
+    else if (strcmp(u->group, reader->material_group) == 0)
+        strncat(names, ", " SF_RESPONSE_ERROR, sizeof names - strlen(names) - 1);
     if (*u->group)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown key \"%.80s\" in group %s%s%s; its keys are %s", where,
                        name, u->group, meant, more, names);
@@ -66,7 +69,8 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
         const char *name = config_setting_name(item);
         char inner[SF_CASE_GROUP_SIZE], where[SF_CASE_WHERE_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
-        if (sf_case_find_key(&reader->keys, group, name) || item == reader->layers)
+        if (sf_case_find_key(&reader->keys, group, name) || item == reader->layers ||
+            sf_case_is_response_error(reader, group, name))
             continue;
         if (length >= (int)sizeof inner || !sf_case_is_group(&reader->keys, inner))
             add_unknown(u, item, group);
@@ -136,6 +140,8 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
             continue;
         if (reader->layers && key->kind == SF_KEY_LAW)
             SF_TRY(read_layers(reader, err));
+        if (!reader->layers && key->kind == SF_KEY_LAW)
+            SF_TRY(sf_case_read_response_error(reader, err));
         if (reader->layers && of_material)
             continue;
         reader->given[k] = setting != NULL;

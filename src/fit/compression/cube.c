@@ -124,7 +124,7 @@ static sf_status simulate(const sf_compression_fit *fit, const sf_foam_card *car
                           const sf_cube_options *options, const char *folder, int index, sf_cube_test *test,
                           sf_error *err) {
     static const sf_material_text text = {
-        "The fitted foam in a time that runs faster: for the simulated test only", ""};
+        .title = "The fitted foam in a time that runs faster: for the simulated test only", .provenance = ""};
     const sf_compression_config *c = fit->data.config;
     const sf_compression_test *lab = &c->test[index];
     double rates[SF_COMPRESSION_TESTS], turn_time = lab->largest_strain / SIMULATED_RATE;

@@ -89,7 +89,7 @@ static sf_status write_material(const sf_staging *output, const sf_form_fit *fit
     fprintf(out, "Beyond the strain %.4g and outside these rates it is extrapolation. +-: standard errors.\n",
             fit->card.informed_strain);
     fclose(out);
-    const sf_material_text comments = {fit->config->name, text};
+    const sf_material_text comments = {.title = fit->config->name, .provenance = text};
     const sf_material material = sf_foam_material(&fit->card);
     sf_material_write_checked(output->aside, "material", &material, &comments, err);
     free(text);

@@ -220,7 +220,7 @@ static sf_status write_material(const sf_staging *output, const input *in, const
     put_terms(out, in, fit);
     fprintf(out, "Beyond that strain and at other rates it is extrapolation. +-: standard errors.\n");
     fclose(out);
-    const sf_material_text comments = {in->name, text};
+    const sf_material_text comments = {.title = in->name, .provenance = text};
     const sf_material material = sf_hyperfoam_material(&fit->card);
     sf_material_write_checked(output->aside, "material", &material, &comments, err);
     free(text);

@@ -70,7 +70,7 @@ static sf_status write_material(const sf_staging *output, const sf_compression_f
     char *text = provenance(fit, err);
     if (!text)
         return err->status;
-    const sf_material_text comments = {fit->data.config->name, text};
+    const sf_material_text comments = {.title = fit->data.config->name, .provenance = text};
     sf_foam_card informed = *card; /* its curves stay the card's */
     informed.informed_strain = fit->data.end;
     const sf_material material = sf_foam_material(&informed);

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { FIRST_SEED = 5000 }; /* of the draws: the number of its stream is this and its own */
+
 static int states_of(const sf_drop_inference *in) {
     return in->chains.chains * in->chains.kept;
 }
@@ -169,6 +171,16 @@ void sf_drop_average_draw(const sf_drop_average *a, sf_posterior_draw draw[SF_PO
     }
 }
 
+sf_status sf_drop_average_discrepancy(const sf_drop_average *a, int k, const sf_posterior_draw *draw,
+                                      double *delta, sf_response_error *error, sf_error *err) {
+    const sf_drop_inference *in = a->model[draw->model];
+    const double *u = &in->chains.sample[draw->state * in->parameters];
+    if (!sf_drop_inference_draw(in, u, sf_seed_of(a->seed, (uint64_t)(FIRST_SEED + k)), delta, error))
+        return SF_FAIL(err, SF_ERR_NUMERIC, "draw %d of the posterior: the foam of the columns collapsed",
+                       k + 1);
+    return SF_OK;
+}
+
 static sf_status write_draw(const sf_drop_average *a, int k, const sf_posterior_draw *draw,
                             const char *folder, sf_error *err) {
     const sf_drop_inference *in = a->model[draw->model];
@@ -176,17 +188,18 @@ static sf_status write_draw(const sf_drop_average *a, int k, const sf_posterior_
     double delta[SF_DISCREPANCY_PLACES];
     char name[32], title[160];
     sf_foam_card card;
-    if (!sf_drop_inference_draw(in, u, sf_seed_of(a->seed, (uint64_t)(5000 + k)), delta))
-        return SF_FAIL(err, SF_ERR_NUMERIC, "draw %d of the posterior: the foam of the columns collapsed",
-                       k + 1);
-    if (sf_drop_inference_card(in, u, delta, &card, err) != SF_OK)
+    sf_response_error error;
+    if (sf_drop_average_discrepancy(a, k, draw, delta, &error, err) != SF_OK ||
+        sf_drop_inference_card(in, u, delta, &card, err) != SF_OK)
         return err->status;
     card.informed_strain = 0; /* that of the start says nothing about a draw */
     snprintf(name, sizeof name, "draw-%03d", k + 1);
     snprintf(title, sizeof title, "Draw %d of %d of a posterior of softfall-fit drop, equally likely.", k + 1,
              SF_POSTERIOR_DRAWS);
     const sf_material material = sf_foam_material(&card);
-    const sf_material_text text = {title, "With the discrepancy from the form of the curve.\n"};
+    const sf_material_text text = {.title = title,
+                                   .provenance = "With the discrepancy from the form of the curve.\n",
+                                   .response_error = &error};
     sf_material_write(folder, name, &material, &text, err);
     sf_foam_card_free(&card);
     return err->status;

@@ -48,9 +48,13 @@ typedef struct sf_posterior_draw {
     int model, state;
 } sf_posterior_draw;
 void sf_drop_average_draw(const sf_drop_average *average, sf_posterior_draw draw[SF_POSTERIOR_DRAWS]);
+/* What is drawn for draw `k` (from 0) beside its state: delta [SF_DISCREPANCY_PLACES] and the errors of the
+ * responses; the same in every call. SF_ERR_NUMERIC: the foam of the columns collapses. */
+sf_status sf_drop_average_discrepancy(const sf_drop_average *average, int k, const sf_posterior_draw *draw,
+                                      double *delta, sf_response_error *error, sf_error *err);
 
-/* Writes draw-001.cfg ... with their curves into a folder that is softfall's own; a file of an earlier run is
- * replaced. A delta is drawn for each. */
+/* Writes draw-001.cfg ... with their curves, delta in them, and response_error into a folder that is
+ * softfall's own; a file of an earlier run is replaced. */
 sf_status sf_drop_average_write(const sf_drop_average *average, const char *folder, sf_error *err);
 
 #endif

@@ -325,7 +325,7 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
                                 double *y, sf_error *err) {
     sf_foam_card card;
     char path[PATH_MAX];
-    const sf_material_text text = {"An iterate of softfall-fit drop.", ""};
+    const sf_material_text text = {.title = "An iterate of softfall-fit drop.", .provenance = ""};
     snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
     if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
         return err->status;

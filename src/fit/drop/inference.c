@@ -344,8 +344,19 @@ static double log_density(const void *context, const double *u) {
     return split(context, u, NULL);
 }
 
-/* delta, and the errors x of the drops to predict, [input drops][SF_FIT_SAMPLES]; NULL: not wanted. */
-static bool draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta, double *own) {
+/* The shared errors are the first of x. */
+static void fill_error(sf_discrepancy_size size, const double *x, sf_response_error *error) {
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
+        error->given[kind] = true;
+        error->shared[kind] = sf_drop_kind_get(kind)->model_sd * x[kind];
+        error->own_sd[kind] = sf_drop_kind_get(kind)->model_sd * size.kappa;
+    }
+}
+
+/* delta, the errors x that all drops share and, if `own` is not NULL, those of the drops to predict,
+ * [input drops][SF_FIT_SAMPLES], the shared ones in them. */
+static bool draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta,
+                 sf_response_error *error, double *own) {
     sf_error err = SF_ERROR_INIT;
     double x[SF_DISCREPANCY_MOST];
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
@@ -355,6 +366,7 @@ static bool draw(const sf_drop_inference *in, const double *u, uint64_t seed, do
     if (found) {
         gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
         sf_discrepancy_draw(&in->all, residual, size, random, delta, x);
+        fill_error(size, x, error);
         for (int d = in->fit->measured_drops; own && d < in->fit->input->drop_count; d++)
             for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
                 own[d * SF_FIT_SAMPLES + kind] =
@@ -366,8 +378,9 @@ static bool draw(const sf_drop_inference *in, const double *u, uint64_t seed, do
     return found;
 }
 
-bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta) {
-    return draw(in, u, seed, delta, NULL);
+bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta,
+                            sf_response_error *error) {
+    return draw(in, u, seed, delta, error, NULL);
 }
 
 /* Logarithms of what is predicted, of the foam of this state with a delta drawn. */
@@ -375,9 +388,10 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
     const sf_drop_inference *in = context;
     const sf_drop_fit *fit = in->fit;
     double delta[PLACES], own[SF_FIT_MAX_DROPS * SF_FIT_SAMPLES];
+    sf_response_error error;
     sf_error err = SF_ERROR_INIT;
     double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
-    bool known = y && !sf_process_stopped() && draw(in, u, seed, delta, own) &&
+    bool known = y && !sf_process_stopped() && draw(in, u, seed, delta, &error, own) &&
                  respond(in, u, fit->measured_drops, fit->input->drop_count, y, &err) == SF_OK;
     for (int q = 0; q < in->quantities; q++) {
         int row = fit->row[in->quantity[q].drop] + in->quantity[q].kind;

@@ -147,7 +147,7 @@ static sf_status read_measurement(const sf_config *config, const config_setting_
     return err->status;
 }
 
-#define KIND_KEYS(name, key, sd_key, ...) key "|" sd_key "|"
+#define KIND_KEYS(name, key, error_key, ...) key "|" SF_DROP_SD(error_key) "|"
 
 static sf_status read_drop(const sf_config *config, const config_setting_t *group, bool predicted,
                            sf_fit_input *in, sf_error *err) {

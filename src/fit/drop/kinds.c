@@ -3,12 +3,6 @@
 
 #include <math.h>
 
-const sf_drop_kind_info *sf_drop_kind_get(int kind) {
-#define SF_DROP_KIND_INFO(name, ...) {__VA_ARGS__},
-    static const sf_drop_kind_info info[] = {SF_DROP_KINDS(SF_DROP_KIND_INFO)};
-    return &info[kind];
-}
-
 void sf_drop_values_scale(const sf_columns_figures *v, double y[SF_FIT_SAMPLES]) {
     y[SF_FIT_A_MAX] = log(v->a_max_g);
     y[SF_FIT_HIC] = log(v->hic);

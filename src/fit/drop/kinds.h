@@ -1,42 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers that may be measured of a drop, as the accelerometer in the missile reads it (F/m), filtered
- * with CFC 1000: the same of the simulation and of the columns.
- *
- * To add one: a line in the list and its value in sf_drop_values_scale. Keys of the fit file, responses,
- * report.html, fit.json, fit-drops.csv, the material file's comments and leave-one-out follow. */
+/* The numbers of core/drop_kinds.h as the columns give them: the same of the simulation and of the columns.
+ */
 #ifndef SF_FIT_DROP_KINDS_H
 #define SF_FIT_DROP_KINDS_H
 
+#include "core/drop_kinds.h"
 #include "surrogate/column.h"
-
-/* X(name, key in the fit file, key of its standard deviation, default of that, standard deviation of the
- * model's error at kappa = 1, stem and unit in fit.json, name and unit in reports, digits there, always
- * shown, what it needs of a drop) */
-/* clang-format off */
-#define SF_DROP_KINDS(X)                                                                                       \
-    X(A_MAX, "a_max_g", "a_max_sd", 0.02, 0.01, "a_max", "_g", "a_max", "g", 1, true, "contact")                     \
-    X(HIC, "HIC", "HIC_sd", 0.04, 0.02, "hic", "", "HIC", "", 0, true, "contact")                                    \
-    X(WINDOW, "HIC_window_ms", "HIC_window_sd", 0.03, 0.02, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact") \
-    X(REBOUND, "v_rebound_m_s", "v_rebound_sd", 0.03, 0.02, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound") \
-    X(CONTACT, "contact_time_ms", "contact_time_sd", 0.03, 0.02, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound")
-/* clang-format on */
-
-/* Rows of a drop's responses; the samples of a measured curve from SF_FIT_SAMPLES on. */
-#define SF_DROP_KIND_NAME(name, ...) SF_FIT_##name,
-typedef enum sf_drop_kind { SF_DROP_KINDS(SF_DROP_KIND_NAME) SF_FIT_SAMPLES } sf_drop_kind;
-
-typedef struct sf_drop_kind_info {
-    const char *key, *sd_key;
-    double sd;       /* default, relative */
-    double model_sd; /* of the logarithm, see inference.h */
-    const char *stem, *suffix;
-    const char *name, *unit;
-    int digits;
-    bool always; /* in reports, measured or not */
-    const char *needs;
-} sf_drop_kind_info;
-
-const sf_drop_kind_info *sf_drop_kind_get(int kind);
 
 /* Logarithms of the values in the units of the keys; NaN where a value is not defined. */
 void sf_drop_values_scale(const sf_columns_figures *values, double y[SF_FIT_SAMPLES]);

@@ -572,7 +572,7 @@ static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *a
     fprintf(f, "Curve: %s.\n", fit->input->form.curve->formula);
     if (fclose(f) != 0)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
-    const sf_material_text text = {fit->input->title, provenance};
+    const sf_material_text text = {.title = fit->input->title, .provenance = provenance};
     if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
         card.informed_strain = high;
         const sf_material material = sf_foam_material(&card);
