@@ -146,7 +146,7 @@ static void draws_of_the_foam_give_the_interval(void **state) {
     assert_int_equal(strncmp(band, "height_m,a_max_low_g,", 21), 0);
     assert_int_equal(count_of(draws, "\n"), 101);
     program_assert_page(p, "out/report.html", "Interval of the critical height");
-    program_assert_page(p, "out/report.html", "foam alone (the draws)");
+    program_assert_page(p, "out/report.html", "foam alone (the draws: parameters and curve)");
     program_assert_page(p, "out/report.html", "with these uncertainties and that of g_eff: 95 % interval");
     program_bytes before = program_read_file(program_path(p, "out/cfh_band.csv"));
     r = program_succeed(p, "cfh", "%s --rig '%s' --posterior posterior --check-drops 2 -t 2", words,
@@ -160,6 +160,52 @@ static void draws_of_the_foam_give_the_interval(void **state) {
     free(json);
     free(band);
     free(draws);
+}
+
+/* Draws that state errors of the responses: the interval of the foam alone stays, the whole is wider by the
+ * errors, on any number of threads; and the report says what it comes from. */
+static void errors_of_the_responses_widen_the_interval(void **state) {
+    const program_place *p = *state;
+    char words[1200];
+    double before[2], after[2];
+    snprintf(words, sizeof words,
+             "'%s' -o out -t 1 --force --limit-hic 1e6 %s --posterior %%s --check-drops 0",
+             fixture_source(EXAMPLE), program_coarse(SPACING));
+    program_result r = program_succeed(p, "cfh", words, "posterior");
+    char *json = read_text(p, "out/cfh.json");
+    before[0] = number_of(json, "critical_fall_height", "height_low_m");
+    before[1] = number_of(json, "critical_fall_height", "height_high_m");
+    double foam_low = number_of(json, "\"posterior\"", "foam_low_m");
+    assert_non_null(strstr(json, "\"response_errors\": false"));
+    assert_true(number_of(json, "\"shares\"", "response") == 0);
+    assert_non_null(strstr(r.err, "warning: The draws have no response_error: "));
+    program_assert_page(p, "out/report.html", "and the errors of the responses: not known, not in it");
+    free(json);
+    program_shell(
+        p, "cp -r posterior errors && for k in errors/draw-*.cfg; do printf 'response_error = { a_max = 0.0; "
+           "a_max_sd = 0.1; HIC = 0.0; HIC_sd = 0.2; };\n' >> $k; done");
+    r = program_succeed(p, "cfh", words, "errors");
+    json = read_text(p, "out/cfh.json");
+    after[0] = number_of(json, "critical_fall_height", "height_low_m");
+    after[1] = number_of(json, "critical_fall_height", "height_high_m");
+    assert_true(number_of(json, "\"posterior\"", "foam_low_m") == foam_low);
+    assert_non_null(strstr(json, "\"response_errors\": true"));
+    assert_true(number_of(json, "\"shares\"", "response") > 0.3);
+    assert_true(after[1] / after[0] > 1.05 * before[1] / before[0]);
+    assert_null(strstr(r.err, "response_error"));
+    assert_non_null(strstr(r.out, "With the uncertainty of foam, responses and mesh: "));
+    assert_non_null(strstr(r.out, "errors of the responses "));
+    program_bytes same = program_read_file(program_path(p, "out/cfh_draws.csv"));
+    snprintf(words, sizeof words,
+             "'%s' -o out -t 2 --force --limit-hic 1e6 %s --posterior errors --check-drops 0",
+             fixture_source(EXAMPLE), program_coarse(SPACING));
+    program_succeed(p, "cfh", "%s", words);
+    program_assert_unchanged(program_path(p, "out/cfh_draws.csv"), &same);
+    char *again = read_text(p, "out/cfh.json");
+    assert_true(number_of(again, "critical_fall_height", "height_low_m") == after[0]);
+    assert_true(number_of(again, "critical_fall_height", "height_high_m") == after[1]);
+    free(again);
+    free(json);
 }
 
 /* Each in one sentence, before anything is simulated. */
@@ -183,6 +229,12 @@ static void posteriors_that_cannot_be_meant_are_refused(void **state) {
          "> bad/draw-007.cfg",
          "--posterior bad",
          "the law of bad/draw-007.cfg is hyperfoam, that of the case's material low_density_foam"},
+        {"echo 'response_error = { a_max = 0.0; a_max_sd = 0.1; HIC = 0.0; HIC_sd = 0.2; };' >> bad/draw-001.cfg",
+         "--posterior bad", "bad/draw-002.cfg has no response_error, but bad/draw-001.cfg has one"},
+        {"echo 'response_error = { HIC = 0.0; HIC_sd = 0.2; };' >> bad/draw-001.cfg", "--posterior bad",
+         "response_error of bad/draw-001.cfg has no a_max"},
+        {"echo 'response_error = { HIC = 0.0; HIC_sd = -1; };' >> bad/draw-050.cfg", "--posterior bad",
+         "HIC_sd: -1 is out of bounds"},
         {"true", "--check-drops 2", "without --posterior"},
         {"true", "--posterior bad --check-drops 10", "not a number from 0 to 9"},
         {"true", "--posterior bad --check-drops two", "not a number from 0 to 9"},
@@ -319,6 +371,7 @@ int main(void) {
         cmocka_unit_test(the_height_found_gives_the_limit_when_it_is_simulated),
         cmocka_unit_test(a_second_run_uses_every_drop_again),
         cmocka_unit_test(draws_of_the_foam_give_the_interval),
+        cmocka_unit_test(errors_of_the_responses_widen_the_interval),
         cmocka_unit_test(posteriors_that_cannot_be_meant_are_refused),
         cmocka_unit_test(bounds_and_extrapolation_are_said),
         cmocka_unit_test(a_limit_exceeded_from_the_lowest_height_on_is_a_bound),

@@ -203,6 +203,98 @@ static sf_cfh_spread build_with_checks(const sf_cfh_pad *pad, const sf_cfh_draws
     return s;
 }
 
+/* Errors of the responses: those of HIC that all drops share are stratified normal numbers of this size. */
+static void give_responses(sf_cfh_draws *draws, double shared_sd, double own_sd) {
+    draws->with_response = true;
+    for (int d = 0; d < draws->count; d++) {
+        sf_response_error *e = &draws->draw[d].response;
+        *e = (sf_response_error){.given[SF_FIT_HIC] = true, .given[SF_FIT_A_MAX] = true};
+        e->shared[SF_FIT_HIC] = shared_sd * gsl_cdf_ugaussian_Pinv((d + 0.5) / draws->count);
+        e->own_sd[SF_FIT_HIC] = own_sd;
+        e->own_sd[SF_FIT_A_MAX] = 0.5 * own_sd;
+    }
+}
+
+/* d ln HIC / d ln h of the corrected columns at the height where HIC reaches its limit. */
+static double slope_of_hic(const sf_cfh_pad *pad, const sf_material_law *law, double h) {
+    double value[2][SF_CFH_CRITERIA];
+    simulate(pad, law, 0.97 * h, value[0]);
+    simulate(pad, law, 1.03 * h, value[1]);
+    return log(value[1][SF_CFH_HIC] / value[0][SF_CFH_HIC]) / log(1.03 / 0.97);
+}
+
+/* Of foams that are all the same and errors of the responses of known size the interval is that of the errors
+ * over d ln HIC / d ln h; a share of it is that of the mesh, if there is an error of that. */
+static void response_errors_give_the_interval(void **state) {
+    (void)state;
+    sf_cfh_pad pad = test_pad();
+    sf_cfh_draws draws = make_draws(FEW, 0);
+    const double shared = 0.03, own = 0.04;
+    double h = direct_height(&pad, &draws.draw[0].law), slope = slope_of_hic(&pad, &draws.draw[0].law, h);
+    pad.mesh_error = 0;
+    give_responses(&draws, shared, 0); /* fixed in a draw: the outermost draws are the ends */
+    sf_cfh_spread s = build(&pad, &draws, &draws.draw[0].law, limit);
+    evaluate(&s);
+    const sf_cfh_interval *whole = sf_cfh_spread_whole(&s, SF_CFH_FIRST),
+                          *foam = &s.part[SF_CFH_PART_FOAM][SF_CFH_FIRST];
+    double outermost = shared * gsl_cdf_ugaussian_Pinv(0.5 / FEW) / slope;
+    assert_relative(whole->low, h * exp(outermost), 3e-3);
+    assert_relative(whole->high, h * exp(-outermost), 3e-3);
+    assert_relative(foam->high, h, 1e-3);
+    assert_relative(foam->low, h, 1e-3);
+    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_RESPONSE, SF_CFH_FIRST), 1, 1e-9);
+    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_FOAM, SF_CFH_FIRST), 0, 1e-9);
+    sf_cfh_spread_free(&s);
+
+    give_responses(&draws, 0, own);
+    s = build(&pad, &draws, &draws.draw[0].law, limit);
+    evaluate(&s);
+    whole = sf_cfh_spread_whole(&s, SF_CFH_FIRST);
+    assert_relative(whole->median, h, 3e-3);
+    assert_close(log(whole->high / whole->low), 2 * 1.96 * own / slope, 0.1 * 2 * 1.96 * own / slope);
+    sf_cfh_spread_free(&s);
+
+    give_responses(&draws, shared, own);
+    pad.mesh_error = 0.03;
+    s = build(&pad, &draws, &draws.draw[0].law, limit);
+    evaluate(&s);
+    const sf_cfh_interval *both = &s.part[SF_CFH_PART_RESPONSE][SF_CFH_FIRST];
+    double response = hypot(shared, own), mesh = SF_CFH_MESH_HIC * SF_CFH_MESH_SIZE * pad.mesh_error,
+           share = response * response / (response * response + mesh * mesh), sum = 0;
+    assert_close(log(both->high / both->low), 2 * 1.96 * response / slope, 0.1 * 2 * 1.96 * response / slope);
+    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_RESPONSE, SF_CFH_FIRST), share, 0.12);
+    for (int part = 0; part < SF_CFH_PARTS; part++)
+        sum += sf_cfh_spread_share(&s, (sf_cfh_part)part, SF_CFH_FIRST);
+    assert_close(sum, 1, 1e-12);
+    sf_cfh_spread_free(&s);
+    sf_cfh_draws_free(&draws);
+}
+
+/* Errors of size zero give the bits of draws that state none. */
+static void no_response_errors_change_no_bit(void **state) {
+    (void)state;
+    sf_cfh_pad pad = test_pad();
+    sf_cfh_draws draws = make_draws(FEW, 0.1);
+    pad.mesh_error = 0.02;
+    sf_cfh_spread without = build_with_checks(&pad, &draws, 4);
+    without.fit_scatter[SF_CFH_HIC] = 0.01;
+    evaluate(&without);
+    give_responses(&draws, 0, 0);
+    sf_cfh_spread with = build_with_checks(&pad, &draws, 4);
+    with.fit_scatter[SF_CFH_HIC] = 0.01;
+    evaluate(&with);
+    assert_true(with.with_response && !without.with_response);
+    assert_memory_equal(with.part, without.part, sizeof with.part);
+    assert_memory_equal(with.part[SF_CFH_PART_FOAM], with.part[SF_CFH_PART_RESPONSE],
+                        sizeof with.part[SF_CFH_PART_FOAM]);
+    assert_non_null(
+        strstr(sf_cfh_response_text(&without), "errors of the responses are not in the interval"));
+    assert_string_equal(sf_cfh_response_text(&with), "");
+    sf_cfh_spread_free(&with);
+    sf_cfh_spread_free(&without);
+    sf_cfh_draws_free(&draws);
+}
+
 /* The checks' shifts of HIC become centre + slope (ln h - middle) + remainder[k]; those of a_max stay. */
 static void shift_checks(sf_cfh_spread *s, double centre, double slope, const double *remainder) {
     double middle = 0;
@@ -391,6 +483,7 @@ static void threads_change_no_bit(void **state) {
     sf_cfh_draws draws = make_draws(FEW, 0.1);
     sf_cfh_interval whole[2];
     int before = omp_get_max_threads();
+    give_responses(&draws, 0.02, 0.03);
     for (int run = 0; run < 2; run++) {
         omp_set_num_threads(run ? 3 : 1);
         pad.mesh_error = 0.01;
@@ -408,6 +501,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_interval_is_that_of_direct_drops),
         cmocka_unit_test(without_a_spread_of_the_foam_the_other_errors_are_left),
+        cmocka_unit_test(response_errors_give_the_interval),
+        cmocka_unit_test(no_response_errors_change_no_bit),
         cmocka_unit_test(few_checks_widen_the_interval),
         cmocka_unit_test(the_trend_of_the_checks_corrects_the_heights),
         cmocka_unit_test(without_a_check_the_columns_error_is_not_known),

@@ -118,6 +118,8 @@ static sf_status write_output(sf_staging *output, const sf_cfh_report *report, s
         sf_cfh_draws_text(report->spread, draws, sizeof draws);
     if (draws[0])
         sf_sink_tell(&sink, SF_WARNING, "%s", draws);
+    if (report->spread && !report->spread->with_response)
+        sf_sink_tell(&sink, SF_WARNING, "%s", sf_cfh_response_text(report->spread));
     if (report->no_interval[0])
         sf_sink_tell(&sink, SF_WARNING, "no interval: %s", report->no_interval);
     if (warning[0])

@@ -87,6 +87,24 @@ static sf_status check_difference(const sf_cfh_draws *draws, sf_error *err) {
                    draws->count);
 }
 
+/* Both numbers of every draw, or none of any. */
+static sf_status check_responses(sf_cfh_draws *draws, sf_error *err) {
+    for (int k = 0; k < draws->count; k++) {
+        const bool *given = draws->draw[k].response.given;
+        bool stated = given[SF_FIT_A_MAX] || given[SF_FIT_HIC];
+        if (stated && !(given[SF_FIT_A_MAX] && given[SF_FIT_HIC]))
+            return SF_FAIL(err, SF_ERR_INPUT, "--posterior: response_error of %s has no %s",
+                           draws->draw[k].path,
+                           sf_drop_kind_get(given[SF_FIT_HIC] ? SF_FIT_A_MAX : SF_FIT_HIC)->error_key);
+        if (k > 0 && stated != draws->with_response)
+            return SF_FAIL(err, SF_ERR_INPUT, "--posterior: %s has %s response_error, but %s has %s",
+                           draws->draw[k].path, stated ? "a" : "no", draws->draw[0].path,
+                           stated ? "none" : "one");
+        draws->with_response = stated;
+    }
+    return SF_OK;
+}
+
 /* list[0] is the place of the material. */
 static sf_status read_draw(const char *case_path, int count, const char **list, const sf_material *own,
                            sf_cfh_draw *draw, sf_error *err) {
@@ -98,6 +116,7 @@ static sf_status read_draw(const char *case_path, int count, const char **list, 
     list[0] = material;
     if (sf_case_read(case_path, count, list, NULL, &c, &reason) == SF_OK) {
         draw->material = c.material;
+        draw->response = c.response_error;
         c.material = (sf_material){0};
         sf_case_free(&c);
         if (check_draw(draw, own, err) == SF_OK)
@@ -126,7 +145,9 @@ sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int overr
         if (draw->path)
             read_draw(case_path, override_count + 1, list, own, draw, err);
     }
-    return err->status == SF_OK ? check_difference(out, err) : err->status;
+    if (err->status == SF_OK && check_responses(out, err) == SF_OK)
+        check_difference(out, err);
+    return err->status;
 }
 
 void sf_cfh_draws_free(sf_cfh_draws *draws) {

@@ -4,6 +4,7 @@
 #ifndef SF_CFH_POSTERIOR_H
 #define SF_CFH_POSTERIOR_H
 
+#include "core/drop_kinds.h"
 #include "solver/material/law.h"
 
 enum { SF_CFH_LEAST_DRAWS = 100, SF_CFH_MOST_DRAWS = 2000 };
@@ -12,18 +13,21 @@ typedef struct sf_cfh_draw {
     char *path;           /* owned, as the next two */
     sf_material material; /* of the case with that file */
     sf_material_law law;
+    sf_response_error response; /* of its file; of other numbers than a_max and HIC none is used */
 } sf_cfh_draw;
 
 typedef struct sf_cfh_draws {
     const char *folder; /* borrowed */
     int count;
-    sf_cfh_draw *draw; /* [count] owned */
+    bool with_response; /* every draw states the errors of a_max and HIC; else none of them does */
+    sf_cfh_draw *draw;  /* [count] owned */
 } sf_cfh_draws;
 
 /* Reads every draw as the material of the case, with the case's overrides; `own` is the case's own material.
  * SF_ERR_INPUT: an override of the material, which would be the same in every draw; no draw, a gap in their
- * numbers, fewer than SF_CFH_LEAST_DRAWS, one that the case refuses, one with another law or density; draws
- * that are all the same. Release with sf_cfh_draws_free, also on failure. */
+ * numbers, fewer than SF_CFH_LEAST_DRAWS, one that the case refuses, one with another law or density, one
+ * with errors of the responses where another has none, or of a_max or HIC only; draws that are all the same.
+ * Release with sf_cfh_draws_free, also on failure. */
 sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int override_count,
                             const char *const *overrides, const sf_material *own, sf_cfh_draws *draws,
                             sf_error *err);

@@ -29,12 +29,13 @@ static void uncertainty_text(const sf_cfh_report *r, char *text, size_t size) {
         return;
     }
     const sf_cfh_interval *whole = sf_cfh_spread_whole(r->spread, SF_CFH_FIRST);
+    const char *of = r->spread->with_response ? "foam, responses and mesh" : "foam and mesh";
     sf_cfh_interval_text(whole, interval, sizeof interval);
     if (whole->median > 0 && isfinite(whole->median))
-        snprintf(text, size, " With the uncertainty of foam and mesh: %#.3g m (95 %% interval %s).",
-                 whole->median, interval);
+        snprintf(text, size, " With the uncertainty of %s: %#.3g m (95 %% interval %s).", of, whole->median,
+                 interval);
     else
-        snprintf(text, size, " 95 %% interval with the uncertainty of foam and mesh: %s.", interval);
+        snprintf(text, size, " 95 %% interval with the uncertainty of %s: %s.", of, interval);
 }
 
 /* The height as simulated; plain text that ends in a full stop. */
@@ -326,7 +327,7 @@ static const char *banner_kind(const sf_cfh_report *r) {
         return "bad";
     if (r->spread)
         sf_cfh_draws_text(r->spread, text, sizeof text);
-    if (text[0] || r->no_interval[0])
+    if (text[0] || r->no_interval[0] || (r->spread && !r->spread->with_response))
         return "fair";
     for (int k = 0; k < r->points->count; k++)
         if (r->points->point[k].note[0])
@@ -592,6 +593,20 @@ static void put_checks(FILE *out, const sf_cfh_report *r) {
     }
 }
 
+/* What the interval comes from, where it is closed. */
+static void put_shares(FILE *out, const sf_cfh_report *r) {
+    double share[SF_CFH_PARTS];
+    for (int part = 0; part < SF_CFH_PARTS && r->spread; part++)
+        share[part] = 100 * sf_cfh_spread_share(r->spread, (sf_cfh_part)part, SF_CFH_FIRST);
+    if (!r->spread || isnan(share[SF_CFH_PART_FOAM]))
+        return;
+    fprintf(out, "  of the interval (its squared length): foam %.0f %%, ", share[SF_CFH_PART_FOAM]);
+    if (r->spread->with_response)
+        fprintf(out, "errors of the responses %.0f %%, ", share[SF_CFH_PART_RESPONSE]);
+    fprintf(out, "mesh %.0f %%, fit and columns %.0f %%\n", share[SF_CFH_PART_MESH],
+            share[SF_CFH_PART_FIT] + share[SF_CFH_PART_COLUMNS]);
+}
+
 void sf_cfh_print(FILE *out, const sf_cfh_report *r) {
     char text[SF_CFH_VERDICT_SIZE];
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
@@ -604,6 +619,7 @@ void sf_cfh_print(FILE *out, const sf_cfh_report *r) {
             fprintf(out, "%s\n", side_word(crossing));
     }
     put_checks(out, r);
+    put_shares(out, r);
     sf_cfh_verdict_text(r, text, sizeof text);
     fprintf(out, "%s\n", text);
     rig_text(r, text, sizeof text);

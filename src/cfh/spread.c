@@ -11,13 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double STEP = 0.035;      /* of ln(height) on the grid */
-static const double OUTSIDE = 1.5;     /* factor by which it reaches beyond the simulated heights */
-static const double TAIL = 0.025;      /* on each side of the interval */
-static const double OUTERMOST = 0.05;  /* share of the outermost draws that are simulated */
-static const double MOST_SHIFT = 50;   /* of ln(height), for Student's t of one degree of freedom */
-static const double TREND_SPAN = 0.02; /* of ln(height): checks closer together show no trend */
-enum { SEED = 1 };
+static const double STEP = 0.035;        /* of ln(height) on the grid */
+static const double OUTSIDE = 1.5;       /* factor by which it reaches beyond the simulated heights */
+static const double TAIL = 0.025;        /* on each side of the interval */
+static const double OUTERMOST = 0.05;    /* share of the outermost draws that are simulated */
+static const double MOST_SHIFT = 50;     /* of ln(height), for Student's t of one degree of freedom */
+static const double TREND_SPAN = 0.02;   /* of ln(height): checks closer together show no trend */
+enum { SEED = 1, RESPONSE_SEED = 1000 }; /* draw d (from 0) has RESPONSE_SEED + d for the responses */
 
 /* ---- columns ---- */
 
@@ -224,6 +224,18 @@ static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
     return SF_OK;
 }
 
+/* ---- errors of the responses ---- */
+
+static void take_responses(sf_cfh_spread *s, const sf_cfh_draws *draws) {
+    static const int kind[SF_CFH_CRITERIA] = {[SF_CFH_A_MAX] = SF_FIT_A_MAX, [SF_CFH_HIC] = SF_FIT_HIC};
+    s->with_response = draws->with_response;
+    for (int d = 0; d < s->draws && s->with_response; d++)
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            s->response[d].shared[c] = draws->draw[d].response.shared[kind[c]];
+            s->response[d].own_sd[c] = draws->draw[d].response.own_sd[kind[c]];
+        }
+}
+
 /* ---- build ---- */
 
 sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, const sf_material_law *own,
@@ -240,8 +252,10 @@ sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, 
     s->value = sf_alloc(err, n * SF_CFH_CRITERIA * SF_CFH_GRID, sizeof *s->value, "draws");
     s->reach = sf_alloc(err, n, sizeof *s->reach, "draws");
     s->crossing = sf_alloc(err, n * (SF_CFH_FIRST + 1), sizeof *s->crossing, "draws");
+    s->response = sf_alloc(err, n, sizeof *s->response, "draws");
     if (err->status == SF_OK && find_correction(s, &pad->columns, own, points, err) == SF_OK &&
         drop_draws(s, &pad->columns, draws, err) == SF_OK) {
+        take_responses(s, draws);
         correct_draws(s);
         find_crossings(s);
         find_bands(s, err);
@@ -253,6 +267,7 @@ void sf_cfh_spread_free(sf_cfh_spread *s) {
     free(s->value);
     free(s->reach);
     free(s->crossing);
+    free(s->response);
     *s = (sf_cfh_spread){0};
 }
 
@@ -365,6 +380,7 @@ static sf_cfh_trend find_trend(const sf_cfh_spread *s, int criterion) {
 
 /* Of one repeat of a draw. */
 typedef struct errors {
+    double response[SF_CFH_CRITERIA];
     double mesh, fit[SF_CFH_CRITERIA];
     double columns[SF_CFH_CRITERIA]; /* Student's t, the same quantile of both */
     double rig;
@@ -387,8 +403,19 @@ static errors random_errors(const sf_cfh_spread *s, const sf_cfh_rig *rig, gsl_r
     return e;
 }
 
+/* Of the repeat `at`, from a generator of the draw. */
+static void respond(const sf_cfh_spread *s, int at, gsl_rng *random, errors *e) {
+    const sf_cfh_response *r = &s->response[at / SF_CFH_REPEATS];
+    if (at % SF_CFH_REPEATS == 0)
+        gsl_rng_set(random, (unsigned long)(RESPONSE_SEED + at / SF_CFH_REPEATS));
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        e->response[c] = r->shared[c] + r->own_sd[c] * gsl_ran_ugaussian(random);
+}
+
 static double raise_of(const errors *e, sf_cfh_part part, int criterion) {
     double raise = 0;
+    if (part >= SF_CFH_PART_RESPONSE)
+        raise += e->response[criterion];
     if (part >= SF_CFH_PART_MESH)
         raise += criterion == SF_CFH_HIC ? SF_CFH_MESH_HIC * e->mesh : e->mesh;
     if (part >= SF_CFH_PART_FIT)
@@ -428,32 +455,54 @@ static sf_cfh_interval height_interval(const sf_cfh_spread *s, double *values, i
     return i;
 }
 
+/* The intervals of one part. values [SF_CFH_FIRST + 2][count], the last of them on the rig. */
+static void evaluate_part(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_cfh_part part, int count,
+                          double *values, gsl_rng *random, gsl_rng *of_draw) {
+    double *on_rig = &values[(size_t)count * (SF_CFH_FIRST + 1)];
+    gsl_rng_set(random, SEED);
+    for (int at = 0; at < count; at++) {
+        errors e = random_errors(s, rig, random);
+        respond(s, at, of_draw, &e);
+        repeat(s, at / SF_CFH_REPEATS, &e, rig, part, count, at, values, on_rig);
+    }
+    for (int c = 0; c <= SF_CFH_FIRST; c++)
+        s->part[part][c] = height_interval(s, &values[(size_t)c * (size_t)count], count, 1);
+}
+
 sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_error *err) {
     int count = s->draws * SF_CFH_REPEATS;
     double *values =
         sf_alloc(err, (unsigned long)count * (SF_CFH_FIRST + 2), sizeof *values, "repeats of the draws");
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937), *of_draw = gsl_rng_alloc(gsl_rng_mt19937);
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         s->trend[c] = find_trend(s, c);
-    if (values && random) {
-        double *on_rig = &values[(size_t)count * (SF_CFH_FIRST + 1)];
-        for (int part = 0; part < SF_CFH_PARTS; part++) {
-            gsl_rng_set(random, SEED);
-            for (int at = 0; at < count; at++) {
-                const errors e = random_errors(s, rig, random);
-                repeat(s, at / SF_CFH_REPEATS, &e, rig, (sf_cfh_part)part, count, at, values, on_rig);
-            }
-            for (int c = 0; c <= SF_CFH_FIRST; c++)
-                s->part[part][c] = height_interval(s, &values[(size_t)c * (size_t)count], count, 1);
-        }
-        s->rig = rig->pairs ? height_interval(s, on_rig, count, sf_cfh_rig_height(rig, 1))
+    if (values && random && of_draw) {
+        for (int part = 0; part < SF_CFH_PARTS; part++)
+            evaluate_part(s, rig, (sf_cfh_part)part, count, values, random, of_draw);
+        s->rig = rig->pairs ? height_interval(s, &values[(size_t)count * (SF_CFH_FIRST + 1)], count,
+                                              sf_cfh_rig_height(rig, 1))
                             : (sf_cfh_interval){NAN, NAN, NAN, {NAN, NAN}};
-    } else if (!random) {
+    } else if (values) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
     }
-    gsl_rng_free(random);
+    if (random)
+        gsl_rng_free(random);
+    if (of_draw)
+        gsl_rng_free(of_draw);
     free(values);
     return err->status;
+}
+
+/* Squared length of ln(height). */
+static double square_of(const sf_cfh_interval *i) {
+    double length = log(i->high / i->low);
+    return i->low > 0 && isfinite(length) ? length * length : NAN;
+}
+
+double sf_cfh_spread_share(const sf_cfh_spread *s, sf_cfh_part part, int criterion) {
+    double whole = square_of(sf_cfh_spread_whole(s, criterion));
+    double before = part > 0 ? square_of(&s->part[part - 1][criterion]) : 0;
+    return whole > 0 ? (square_of(&s->part[part][criterion]) - before) / whole : NAN;
 }
 
 const sf_cfh_interval *sf_cfh_spread_whole(const sf_cfh_spread *s, int criterion) {

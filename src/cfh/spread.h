@@ -6,7 +6,8 @@
  *     ln y_draw(h) = ln columns_draw(h) + [ln y_simulated(h) - ln columns_case(h)],
  *
  * the bracket linear in ln h between the simulated heights and constant beyond them. Each draw is repeated
- * with random errors of the mesh, of the points about their fit, of the corrected columns and of the rig.
+ * with random errors of the responses (fit/drop/inference.h), of the mesh, of the points about their fit, of
+ * the corrected columns and of the rig.
  * Heights are those of free fall (m) unless a name says "rig". The same bits for any number of threads. */
 #ifndef SF_CFH_SPREAD_H
 #define SF_CFH_SPREAD_H
@@ -31,6 +32,7 @@ enum {
 /* What an interval holds, one after another. */
 typedef enum sf_cfh_part {
     SF_CFH_PART_FOAM,
+    SF_CFH_PART_RESPONSE,
     SF_CFH_PART_MESH,
     SF_CFH_PART_FIT,
     SF_CFH_PART_COLUMNS,
@@ -76,6 +78,11 @@ typedef struct sf_cfh_band {
     double low, median, high; /* g, -; INFINITY: of draws whose columns collapse */
 } sf_cfh_band;
 
+/* Errors of ln(value) of a draw: the one that all drops share, the standard deviation of a drop's own. */
+typedef struct sf_cfh_response {
+    double shared[SF_CFH_CRITERIA], own_sd[SF_CFH_CRITERIA];
+} sf_cfh_response;
+
 typedef struct sf_cfh_spread {
     int draws, grid;
     double height[SF_CFH_GRID];
@@ -84,7 +91,9 @@ typedef struct sf_cfh_spread {
     sf_cfh_band band[SF_CFH_CRITERIA][SF_CFH_GRID];  /* of the draws, foam alone */
     double *value;                                   /* [draws][SF_CFH_CRITERIA][SF_CFH_GRID] ln; owned */
     int *reach;                                      /* [draws] heights before the columns collapse; owned */
-    double *crossing; /* [draws][SF_CFH_FIRST + 1] m, foam alone; 0 or INFINITY: beyond the grid; owned */
+    double *crossing;   /* [draws][SF_CFH_FIRST + 1] m, foam alone; 0 or INFINITY: beyond the grid; owned */
+    bool with_response; /* the draws state errors of the responses */
+    sf_cfh_response *response; /* [draws] zeros if they do not; owned */
     double limit[SF_CFH_CRITERIA];
     double own_height;                   /* m, of the case's own material; NaN: none was found */
     double mesh_error;                   /* -, expected of a_max; NaN: not known */
@@ -115,6 +124,10 @@ void sf_cfh_check_compare(const sf_cfh_spread *spread, sf_cfh_check *check);
 
 /* The intervals, with the trend and the scatter that the checks show. */
 sf_status sf_cfh_spread_evaluate(sf_cfh_spread *spread, const sf_cfh_rig *rig, sf_error *err);
+
+/* The share of a part in the squared length of the whole interval of ln(height); the shares sum to 1. NaN: an
+ * end is open, or the interval has no length. */
+double sf_cfh_spread_share(const sf_cfh_spread *spread, sf_cfh_part part, int criterion);
 
 /* The whole interval of a criterion, or of SF_CFH_FIRST. */
 const sf_cfh_interval *sf_cfh_spread_whole(const sf_cfh_spread *spread, int criterion);

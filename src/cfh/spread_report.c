@@ -61,20 +61,36 @@ void sf_cfh_draws_text(const sf_cfh_spread *s, char *text, size_t size) {
             used ? " " : "", s->own_height);
 }
 
+const char *sf_cfh_response_text(const sf_cfh_spread *s) {
+    return s->with_response
+               ? ""
+               : "The draws have no response_error: errors of the responses are not in the interval, "
+                 "which is too narrow where the law misses more than the curve.";
+}
+
 /* ---- report.html ---- */
 
+static void put_share(sf_html_table *table, double share) {
+    if (isnan(share))
+        sf_html_cell(table, "–");
+    else
+        sf_html_cell(table, "%.0f", 100 * share);
+}
+
 static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
-    static const char *const words[SF_CFH_PARTS] = {"foam alone (the draws)", "and the error of the mesh",
-                                                    "and the points about their fit",
-                                                    "and the columns' own error"};
+    static const char *const words[SF_CFH_PARTS] = {
+        "foam alone (the draws: parameters and curve)", "and the errors of the responses",
+        "and the error of the mesh", "and the points about their fit", "and the columns' own error"};
     char text[64];
-    sf_html_table table =
-        sf_html_table_begin(page, "dense", "95 % interval with|>median (m)|>critical height|>a_max|>HIC");
+    sf_html_table table = sf_html_table_begin(
+        page, "dense", "95 % interval with|>median (m)|>critical height|>share (%)|>a_max|>HIC");
     for (int part = 0; part < SF_CFH_PARTS; part++) {
         sf_html_row(&table);
-        sf_html_cell(&table, "%s", words[part]);
+        sf_html_cell(&table, "%s%s", words[part],
+                     part == SF_CFH_PART_RESPONSE && !s->with_response ? ": not known, not in it" : "");
         sf_html_number(&table, 3, s->part[part][SF_CFH_FIRST].median);
         sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][SF_CFH_FIRST], text, sizeof text));
+        put_share(&table, sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
             sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][c], text, sizeof text));
     }
@@ -83,10 +99,13 @@ static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig)
         sf_html_cell(&table, "and g_eff: on the rig");
         sf_html_number(&table, 3, s->rig.median);
         sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->rig, text, sizeof text));
-        sf_html_cell(&table, "–");
-        sf_html_cell(&table, "–");
+        for (int k = 0; k < 1 + SF_CFH_CRITERIA; k++)
+            sf_html_cell(&table, "–");
     }
     sf_html_table_end(&table);
+    sf_html_note(page,
+                 "Share: what the line adds to the squared length of the interval of ln(height). Below 0, "
+                 "the trend of the simulated draws makes it narrower.");
 }
 
 /* What the checks say of a criterion's height. */
@@ -128,10 +147,12 @@ static void put_errors(FILE *page, const sf_cfh_spread *s) {
         "case's own material between %.3f and %.3f m. Error of the mesh (expected of a_max: %s): assumed is that the "
         "draws were identified by drops of the same spacing, whose error of the mesh is in them. How much it differs at this "
         "height is not known: a scatter of %.2g times that of a_max, and %.1f times as much of HIC, to both sides. Points about "
-        "their fit: %s of a_max, %s of HIC. The columns' own error of the height at a_max: %s; at HIC: %s. What is not known "
+        "their fit: %s of a_max, %s of HIC. Errors of the responses: one of each draw, and one drawn for each of its %d repeats "
+        "(response_error). The columns' own error of the height at a_max: %s; at HIC: %s. What is not known "
         "is not in the interval.",
         s->draws, s->simulated[0], s->simulated[1], percent_text(s->mesh_error, mesh), SF_CFH_MESH_SIZE,
-        SF_CFH_MESH_HIC, fit[SF_CFH_A_MAX], fit[SF_CFH_HIC], columns[SF_CFH_A_MAX], columns[SF_CFH_HIC]);
+        SF_CFH_MESH_HIC, fit[SF_CFH_A_MAX], fit[SF_CFH_HIC], SF_CFH_REPEATS, columns[SF_CFH_A_MAX],
+        columns[SF_CFH_HIC]);
 }
 
 static void put_checks(FILE *page, const sf_cfh_spread *s) {
@@ -171,6 +192,8 @@ void sf_cfh_put_spread(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig
     sf_cfh_draws_text(s, text, sizeof text);
     if (text[0])
         sf_html_paragraph(page, "%s", text);
+    if (!s->with_response)
+        sf_html_paragraph(page, "%s", sf_cfh_response_text(s));
     put_checks(page, s);
     put_errors(page, s);
 }
@@ -241,8 +264,10 @@ static void put_checks_json(sf_json *json, const sf_cfh_spread *s) {
 }
 
 void sf_cfh_put_spread_json(sf_json *json, const sf_cfh_spread *s) {
-    static const char *const names[SF_CFH_PARTS] = {"foam", "foam_mesh", "foam_mesh_fit",
-                                                    "foam_mesh_fit_columns"};
+    static const char *const names[SF_CFH_PARTS] = {"foam", "foam_response", "foam_response_mesh",
+                                                    "foam_response_mesh_fit",
+                                                    "foam_response_mesh_fit_columns"};
+    static const char *const shares[SF_CFH_PARTS] = {"foam", "response", "mesh", "fit", "columns"};
     sf_json_integer(json, "draws", s->draws);
     sf_json_integer(json, "draws_above", s->above);
     sf_json_integer(json, "draws_below", s->below);
@@ -254,6 +279,11 @@ void sf_cfh_put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     sf_json_number(json, "fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]);
     for (int part = 0; part < SF_CFH_PARTS; part++)
         sf_cfh_put_interval_json(json, names[part], &s->part[part][SF_CFH_FIRST]);
+    sf_json_bool(json, "response_errors", s->with_response);
+    sf_json_open(json, "shares", '{');
+    for (int part = 0; part < SF_CFH_PARTS; part++)
+        sf_json_number(json, shares[part], sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
+    sf_json_close(json, '}');
     put_trends_json(json, s);
     put_checks_json(json, s);
 }

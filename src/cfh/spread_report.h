@@ -12,6 +12,8 @@ const char *sf_cfh_interval_text(const sf_cfh_interval *interval, char *text, si
 /* What is worth a warning: draws that have no crossing of their own or one beyond the simulated heights,
  * checks that failed, a material of the case that is none of the draws'. Sentences, or "". */
 void sf_cfh_draws_text(const sf_cfh_spread *spread, char *text, size_t size);
+/* That the draws state no errors of the responses: a sentence, or "". Static storage. */
+const char *sf_cfh_response_text(const sf_cfh_spread *spread);
 
 /* The section of report.html. */
 void sf_cfh_put_spread(FILE *page, const sf_cfh_spread *spread, const sf_cfh_rig *rig);
