@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Compression tests and cushion curves as data of softfall-fit drop: a synthetic foam, whose test is that of
- * the solver's law and whose cushion curve is that of a block, from each and from both; refusals. */
+ * the solver's law and whose cushion curve is that of a block, from each, from both, and with drops;
+ * refusals. */
+#include "fit/drop/average.h"
 #include "fit/drop/input.h"
 #include "fit/material_point.h"
 #include "program_fixture.h"
 #include "solver/material/foam.h"
 #include "surrogate/column.h"
 
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_randist.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -123,6 +127,254 @@ static void both_tell_more_than_each(void **state) {
     program_tear_down(&place);
 }
 
+/* ---- with drops ---- */
+
+enum { DROPS = 3, MEASURED = 2, UNKNOWNS = 4, NOISES = 4, ROWS = 128 };
+static const sf_foam_parameter unknown[UNKNOWNS] = {SF_PARAMETER_P0, SF_PARAMETER_B, SF_PARAMETER_ED,
+                                                    SF_PARAMETER_HU};
+static const double truth[UNKNOWNS] = {110e3, 24e3, 1.5e6, 0.15};
+static const double speed[DROPS] = {4.5, 5.7, 5.7}, pad[DROPS] = {0.07, 0.07, 0.05};
+static const double NUMBER_SD[2] = {0.02, 0.04}, TEST_SD = 0.03, CUSHION_SD = 0.05;
+
+/* One synthetic foam in a laboratory: its simulation is a set of stiffer and thinner columns than the
+ * surrogate, and the last drop is held out. */
+typedef struct bench {
+    sf_fit_input in;
+    sf_drop_fit fit;
+    sf_columns real[DROPS];
+    double measured[ROWS], sd[ROWS], y[ROWS];
+} bench;
+
+/* Two compression tests to a strain of 0.6 and back, and a cushion curve, without what was measured. */
+static void plan_joint(sf_joint *joint) {
+    enum { POINTS = 12, LOADS = 6 };
+    static const double rate[2] = {0.01, 1};
+    for (joint->test_count = 0; joint->test_count < 2; joint->test_count++) {
+        sf_joint_test *t = &joint->test[joint->test_count];
+        *t = (sf_joint_test){.rate = rate[joint->test_count],
+                             .turn = 0.6,
+                             .count = 2 * POINTS - 2,
+                             .loading = POINTS - 1,
+                             .scale = 1,
+                             .sd = TEST_SD};
+        for (int k = 0; k < t->count; k++)
+            t->strain[k] = 0.05 * (k < t->loading ? k + 1 : t->count - k);
+        joint->rows += t->count;
+    }
+    sf_joint_cushion *c = &joint->cushion[joint->cushion_count++];
+    *c = (sf_joint_cushion){.thickness = 0.05, .height = 0.6, .count = LOADS, .sd = CUSHION_SD};
+    for (int k = 0; k < LOADS; k++)
+        c->static_stress[k] = 2e3 * (k + 1);
+    joint->rows += LOADS;
+}
+
+/* A hemisphere of 160 mm. */
+static sf_columns hemisphere(int d, double area, double thinner) {
+    sf_columns c = {.mass = 4.6, .speed = speed[d], .thickness = pad[d] * thinner, .count = 15};
+    double height = fmin(0.08, pad[d]);
+    for (int k = 0; k < c.count; k++) {
+        c.gap[k] = height * (k + 0.5) / c.count;
+        c.area[k] = area * 2 * M_PI * (0.08 - c.gap[k]) * height / c.count;
+    }
+    return c;
+}
+
+static sf_status respond(const bench *b, const sf_columns *columns, int last, const double *u, double *y,
+                         sf_error *err) {
+    sf_drop_fit other = b->fit;
+    sf_foam_card card;
+    memcpy(other.columns, columns, sizeof other.columns[0] * DROPS);
+    if (sf_drop_fit_card(&b->in, u, &card, err) != SF_OK)
+        return err->status;
+    sf_drop_fit_respond(&other, 0, last, &card, NULL, y, err);
+    sf_foam_card_free(&card);
+    return err->status;
+}
+
+static sf_status surrogate(void *context, const double *u, double *y, sf_error *err) {
+    const bench *b = context;
+    return respond(b, b->fit.columns, MEASURED, u, y, err);
+}
+
+static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
+    const bench *b = context;
+    return respond(b, b->real, MEASURED, u, y, err);
+}
+
+/* What the true foam gives, with errors of the stated size. */
+static void measure(bench *b, gsl_rng *random) {
+    double u[UNKNOWNS], y[ROWS];
+    sf_joint *joint = &b->in.joint;
+    sf_error err = SF_ERROR_INIT;
+    for (int k = 0; k < UNKNOWNS; k++)
+        u[k] = log(truth[k]);
+    assert_int_equal(respond(b, b->real, DROPS, u, y, &err), SF_OK);
+    const double *at = y;
+    for (int t = 0; t < joint->test_count; at += joint->test[t++].count) {
+        sf_joint_test *test = &joint->test[t];
+        test->scale = at[test->loading - 1];
+        for (int k = 0; k < test->count; k++)
+            test->stress[k] = at[k] + TEST_SD * hypot(at[k], 0.02 * test->scale) * gsl_ran_ugaussian(random);
+    }
+    for (int k = 0; k < joint->cushion[0].count && joint->cushion_count > 0; k++)
+        joint->cushion[0].peak_g[k] = exp(*at++ + CUSHION_SD * gsl_ran_ugaussian(random));
+    sf_joint_data(joint, b->measured, b->sd);
+    for (int k = b->fit.row[0]; k < b->fit.row[DROPS]; k++)
+        b->sd[k] = INFINITY;
+    for (int d = 0; d < DROPS; d++)
+        for (int kind = 0; kind < 2; kind++) {
+            int row = b->fit.row[d] + kind;
+            b->measured[row] = y[row] + NUMBER_SD[kind] * gsl_ran_ugaussian(random);
+            if (d < MEASURED)
+                b->sd[row] = NUMBER_SD[kind];
+            b->in.drop[d].value[kind] = d < MEASURED ? exp(b->measured[row]) : NAN;
+            b->in.drop[d].sd[kind] = NUMBER_SD[kind];
+        }
+}
+
+static void begin(const program_place *place, bool joint, bench *b) {
+    sf_error err = SF_ERROR_INIT;
+    *b = (bench){.in = {.drop_count = 0}};
+    assert_int_equal(
+        sf_fit_input_read(program_write_text(place, "joint.cfg",
+                                             "material = \"start.cfg\"; start: { m = 2.8; s0 = "
+                                             "\"8 kPa\"; ED = \"1 MPa\"; BETA1 = \"3000 "
+                                             "1/s\"; HU = 0.1; };\n"
+                                             "unknown = ( { name = \"p0\"; }, { name = \"B\"; }, "
+                                             "{ name = \"ED\"; }, { name = \"HU\"; } );\n"
+                                             "cushions = ( { " CUSHION "points = ( [2.0, 60.0] ); } );\n"),
+                          0, &b->in, &err),
+        SF_OK);
+    b->in.joint = (sf_joint){.rows = 0};
+    if (joint)
+        plan_joint(&b->in.joint);
+    b->in.drop_count = DROPS;
+    b->fit = (sf_drop_fit){.input = &b->in,
+                           .measured_drops = MEASURED,
+                           .parameters = UNKNOWNS,
+                           .measured = b->measured,
+                           .sd = b->sd,
+                           .y = b->y,
+                           .row = {b->in.joint.rows}};
+    for (int d = 0; d < DROPS; d++) {
+        b->fit.row[d + 1] = b->fit.row[d] + SF_FIT_SAMPLES;
+        b->fit.speed[d] = -1;
+        b->fit.columns[d] = hemisphere(d, 1, 1);
+        b->real[d] = hemisphere(d, 1.1, 0.97);
+        b->in.drop[d].predicted = d >= MEASURED;
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            b->in.drop[d].value[kind] = NAN;
+    }
+    assert_true(b->fit.row[DROPS] <= ROWS);
+}
+
+static void map(bench *b) {
+    double prior[UNKNOWNS];
+    sf_error err = SF_ERROR_INIT;
+    for (int k = 0; k < UNKNOWNS; k++)
+        prior[k] = log(b->in.prior[k]);
+    const sf_mapping_problem p = {.parameters = UNKNOWNS,
+                                  .responses = b->fit.row[MEASURED],
+                                  .start = prior,
+                                  .prior = prior,
+                                  .prior_sd = b->in.prior_sd,
+                                  .measured = b->measured,
+                                  .sd = b->sd,
+                                  .surrogate = surrogate,
+                                  .simulate = simulate,
+                                  .context = b,
+                                  .max_iterations = 8,
+                                  .tolerance = 0.1};
+    if (sf_mapping_solve(&p, &b->fit.result, &err) != SF_OK ||
+        respond(b, b->real, DROPS, b->fit.result.u, b->y, &err) != SF_OK)
+        fail_msg("%s", err.text);
+}
+
+/* Of the maximum's linearised intervals over several sets of errors, and of the chains for the first one. */
+typedef struct finding {
+    int inside;             /* parameters whose interval holds the truth */
+    double sd[UNKNOWNS];    /* root mean square */
+    double chain[UNKNOWNS]; /* width of the chains' 95 % interval of the logarithm */
+    int chain_inside;
+    double predicted; /* the same of a_max of the drop that was held out */
+    bool predicted_inside;
+} finding;
+
+static void sample(bench *b, finding *out) {
+    static const double ends[2] = {0.025, 0.975};
+    sf_drop_inference inference;
+    sf_drop_average average;
+    const sf_drop_inference *list = &inference;
+    sf_inference_options o = sf_inference_defaults(1);
+    sf_error err = SF_ERROR_INIT;
+    double value[2], u[UNKNOWNS], y[ROWS];
+    o.chains.burn_in_rounds = 2;
+    o.chains.round = o.chains.most_steps = 80;
+    o.evidence_draws = 50;
+    o.leave_one_out = false;
+    if (sf_drop_infer(&b->fit, &o, &inference, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    for (int k = 0; k < UNKNOWNS; k++) {
+        u[k] = log(truth[k]);
+        sf_drop_parameter_quantiles(&inference, k, 2, ends, value, &err);
+        out->chain_inside += value[0] < u[k] && u[k] < value[1]; /* logarithms, as the chains have them */
+        out->chain[k] = value[1] - value[0];
+    }
+    assert_int_equal(respond(b, b->real, DROPS, u, y, &err), SF_OK);
+    assert_int_equal(sf_drop_average_build(1, &list, 1, &average, &err), SF_OK);
+    assert_int_equal(inference.quantity[0].kind, SF_FIT_A_MAX);
+    assert_int_equal(sf_drop_average_quantiles(&average, -1, 0, 2, ends, value, &err), SF_OK);
+    double held = exp(y[b->fit.row[MEASURED]]);
+    out->predicted = log(value[1] / value[0]);
+    out->predicted_inside = value[0] < held && held < value[1];
+    sf_drop_inference_free(&inference);
+}
+
+static finding find(const program_place *place, bool joint) {
+    bench *b = malloc(sizeof *b);
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    finding out = {.inside = 0};
+    assert_true(b && random);
+    for (int n = 0; n < NOISES; n++) {
+        begin(place, joint, b);
+        gsl_rng_set(random, 1 + (unsigned long)n);
+        measure(b, random);
+        map(b);
+        for (int k = 0; k < UNKNOWNS; k++) {
+            double sd = sqrt(b->fit.result.covariance[k][k]);
+            out.inside += fabs(b->fit.result.u[k] - log(truth[k])) < 1.96 * sd;
+            out.sd[k] = sqrt((out.sd[k] * out.sd[k] * n + sd * sd) / (n + 1));
+        }
+        if (n == 0)
+            sample(b, &out);
+        sf_mapping_free(&b->fit.result);
+        sf_fit_input_free(&b->in);
+    }
+    gsl_rng_free(random);
+    free(b);
+    return out;
+}
+
+static void all_three_find_more_than_drops(void **state) {
+    (void)state;
+    program_place place;
+    program_set_up(&place);
+    put_start(&place);
+    finding drops = find(&place, false), all = find(&place, true);
+    print_message("inside: %d of drops, %d of all three, of %d; chains %d and %d of %d\n", drops.inside,
+                  all.inside, NOISES * UNKNOWNS, drops.chain_inside, all.chain_inside, UNKNOWNS);
+    for (int k = 0; k < UNKNOWNS; k++)
+        print_message("%-4s sd %.3f to %.3f, chains' interval %.3f to %.3f\n",
+                      sf_parameter_get(unknown[k])->name, drops.sd[k], all.sd[k], drops.chain[k],
+                      all.chain[k]);
+    print_message("held out: %.3f to %.3f\n", drops.predicted, all.predicted);
+    for (int k = 0; k < UNKNOWNS; k++)
+        assert_true(all.sd[k] < 0.7 * drops.sd[k] && all.chain[k] < drops.chain[k]);
+    assert_true(all.inside >= NOISES * UNKNOWNS * 85 / 100 && drops.inside >= NOISES * UNKNOWNS * 85 / 100);
+    assert_true(all.chain_inside == UNKNOWNS && all.predicted_inside && all.predicted < drops.predicted);
+    program_tear_down(&place);
+}
+
 static void bad_data_get_one_sentence(void **state) {
     (void)state;
     static const struct {
@@ -165,7 +417,9 @@ static void bad_data_get_one_sentence(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_tell_more_than_each),
+        cmocka_unit_test(all_three_find_more_than_drops),
         cmocka_unit_test(bad_data_get_one_sentence),
     };
+    gsl_set_error_handler_off();
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
