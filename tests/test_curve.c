@@ -285,6 +285,50 @@ static void finite_at_any_strain_and_straight_near_the_pole(void **state) {
     }
 }
 
+/* A curve whose law takes little energy on the way to full compression ends in a stop: it takes 5 MJ/m3, that
+ * of a solid polymer, begins where the law has its value and slope, and rises ever more steeply. */
+static void a_weak_law_is_stopped_before_full_compression(void **state) {
+    (void)state;
+    static const struct {
+        double end, limit, exponent;
+    } weak[] = {{0.5, 1, 0.4}, {0.5, 1, 1}, {0.9, 1, 0.4}, {0.99, 1, 1}, {0.5, 0.999, 0.3}};
+    for (size_t k = 0; k < sizeof weak / sizeof weak[0]; k++) {
+        point_card card;
+        point_card_init(&card);
+        point_card_add_line(&card, 24e3, weak[k].end);
+        card.card.densification_rule = weak[k].limit < 1 ? SF_DENSIFICATION_H2 : SF_DENSIFICATION_H1;
+        card.card.densification_limit = weak[k].limit;
+        card.card.densification_exponent = weak[k].exponent;
+        sf_curve curve = built(&card);
+        double at = curve.straight.start, h = 1e-7, before = 0;
+        assert_true(at >= weak[k].end && at < 0.991 && curve.straight.stop > 0);
+        assert_relative(energy_at(&curve, 1), 5e6, 1e-9);
+        assert_relative(stress_at(&curve, at + h), stress_at(&curve, at - h), 1e-3);
+        assert_relative(slope_at(&curve, at + 1e-12), slope_at(&curve, at - 1e-12), 0.05);
+        for (double strain = at; strain < 1.1; strain += 0.001) {
+            assert_true(slope_at(&curve, strain) >= before);
+            before = slope_at(&curve, strain);
+            assert_relative(energy_at(&curve, strain + h) - energy_at(&curve, strain - h),
+                            2 * h * stress_at(&curve, strain), 1e-5);
+            if (strain > at)
+                assert_relative(stress_at(&curve, strain + h) - stress_at(&curve, strain - h), 2 * h * before,
+                                1e-5);
+        }
+        sf_curve_free(&curve);
+    }
+}
+
+/* That of the examples takes more by itself, and is left as it is. */
+static void a_strong_law_has_no_stop(void **state) {
+    (void)state;
+    point_card card;
+    point_card_init(&card);
+    point_card_add_eva(&card, 0, 120, 0.975, 1);
+    sf_curve curve = built(&card);
+    assert_true(curve.straight.stop == 0);
+    sf_curve_free(&curve);
+}
+
 /* All lanes as one by one, on all parts of the curve. */
 static void lanes_are_finite_beyond_the_pole(void **state) {
     (void)state;
@@ -377,6 +421,8 @@ int main(void) {
         cmocka_unit_test(energy_is_continuous_in_the_exponent_at_one),
         cmocka_unit_test(straight_line_has_its_modulus_and_energy),
         cmocka_unit_test(finite_at_any_strain_and_straight_near_the_pole),
+        cmocka_unit_test(a_weak_law_is_stopped_before_full_compression),
+        cmocka_unit_test(a_strong_law_has_no_stop),
         cmocka_unit_test(lanes_are_finite_beyond_the_pole),
         cmocka_unit_test(each_curve_of_a_family_is_built_from_its_own_points),
         cmocka_unit_test(bad_cards_are_refused_with_a_sentence),

@@ -297,6 +297,32 @@ static void a_run_survives_the_pole_of_the_curve(void **state) {
                               "material.densification.exponent=0.73", "missile.velocity=4.5 m/s", NULL});
 }
 
+/* A soft foam whose H1 takes next to nothing on its way to full compression, under a flat disc at 8 m/s: it
+ * is stopped short of it, with its balance of energy, and rebounds. */
+static void a_run_survives_a_curve_that_ends_softly(void **state) {
+    (void)state;
+    fixture f;
+    drop d;
+    build(ALL_LOSSES,
+          (const char *const[]){
+              FINE, OUTER, "geometry.missile_file=../../geo/missiles/disc.geo",
+              "geometry.missile_parameters.diameter=130.0", "geometry.missile_parameters.thickness=40.0",
+              "geometry.missile_parameters.edge_radius=6.0", "material.densification.start=0.3",
+              "material.densification.exponent=0.4", "missile.velocity=8 m/s", NULL},
+          &f);
+    sf_foam_card *card = sf_foam_card_of(&f.model.material[0]);
+    card->maxwell_modulus = 0;
+    for (int64_t k = 0; k < card->curve_points; k++)
+        card->curve_stress[k] *= 0.2;
+    run(&f, 0.04, &d);
+    print_message("largest strain %.4f, %lld steps, energy error %.2g\n", d.compression, (long long)d.steps,
+                  d.energy_error);
+    assert_true(d.compression > 0.9 && d.compression < 1);
+    assert_true(d.end < 0.04 && d.rebound > 0 && d.rebound < d.speed);
+    assert_close(d.energy_error, 0, 0.01);
+    fixture_free(&f);
+}
+
 /* The work of the rate factor is a loss of the ledger; the viscous share is its own, DAMP being small. */
 static void rate_factor_keeps_the_balance(void **state) {
     (void)state;
@@ -322,6 +348,7 @@ int main(void) {
         cmocka_unit_test(hysteresis_returns_the_fraction_of_the_closed_form),
         cmocka_unit_test(elastic_pad_is_a_little_stiffer_than_uncoupled_columns),
         cmocka_unit_test(a_run_survives_the_pole_of_the_curve),
+        cmocka_unit_test(a_run_survives_a_curve_that_ends_softly),
         cmocka_unit_test(rate_factor_keeps_the_balance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -19,15 +19,44 @@ sf_densification sf_densification_join(double start, double limit, double expone
                               .start_energy = energy};
 }
 
+/* At a strain beyond the line's start. */
+static void evaluate_line(const sf_curve_line *line, double strain, double *stress, double *slope,
+                          double *energy) {
+    double past = strain - line->start;
+    *stress = line->stress + past * (line->slope + line->stop * past);
+    *slope = line->slope + 2 * line->stop * past;
+    *energy = line->energy + past * (line->stress + past * (0.5 * line->slope + line->stop * past / 3));
+}
+
+/* J m-3 at full compression, the line's share included. */
+static double energy_to_the_end(const sf_curve_line *line) {
+    double energy, ignored[2];
+    evaluate_line(line, 1, &ignored[0], &ignored[1], &energy);
+    return energy;
+}
+
+static sf_curve_line line_from(const sf_densification *law, double start) {
+    sf_curve_line line = {.start = start};
+    sf_densification_evaluate(law, start, &line.stress, &line.slope, &line.energy);
+    return line;
+}
+
+/* A weak law ends earlier, with a stop. */
+static sf_curve_line stopped(const sf_densification *law, const sf_curve_line *line) {
+    double start = fmax(law->start, 1 - SF_STOP_ROOM);
+    sf_curve_line end = line_from(law, fmin(line->start, start));
+    end.stop = 3 * fmax(0, SF_STOP_ENERGY - energy_to_the_end(&end)) / pow(1 - end.start, 3);
+    return end;
+}
+
 /* Where the law beyond the data ends. */
 static sf_curve_line straight_end(const sf_densification *law) {
     bool full = law->limit >= 1;
     double least = full ? SF_STRAIGHT_ROOM_AT_1 : SF_STRAIGHT_ROOM,
            steep = full ? SF_STRAIGHT_SLOPE_AT_1 : SF_STRAIGHT_SLOPE;
     double left = (law->limit - law->start) * fmax(least, pow(steep, -1 / (law->exponent + 1)));
-    sf_curve_line line = {.start = law->limit - left};
-    sf_densification_evaluate(law, line.start, &line.stress, &line.slope, &line.energy);
-    return line;
+    sf_curve_line line = line_from(law, law->limit - left);
+    return line.start < 1 && energy_to_the_end(&line) < SF_STOP_ENERGY ? stopped(law, &line) : line;
 }
 
 /* The law beyond the data, C1 at (start, stress) with the given slope. */
@@ -184,10 +213,7 @@ static void evaluate_beyond(const sf_curve *curve, double strain, double *stress
         sf_densification_evaluate(&curve->beyond, strain, stress, slope, energy);
         return;
     }
-    double past = strain - line->start;
-    *stress = line->stress + line->slope * past;
-    *slope = line->slope;
-    *energy = line->energy + past * (line->stress + 0.5 * line->slope * past);
+    evaluate_line(line, strain, stress, slope, energy);
 }
 
 void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, double *slope, double *energy) {

@@ -12,7 +12,13 @@
  * of a point that a time step throws beyond the pole too: where SF_STRAIGHT_ROOM of the way from eps_e to
  * eps_L is left or the slope is SF_STRAIGHT_SLOPE times that at eps_e, whichever comes first. With the pole
  * at full compression no strain is left beyond it in which the line could stop a missile: there it begins
- * later. */
+ * later.
+ *
+ * A weak law (m near 1 or below) takes little energy on the whole way to full compression, which a missile
+ * would then reach: det F = 0. Where the curve with its line would take less than SF_STOP_ENERGY, the line
+ * begins SF_STOP_ROOM before 1 (not before eps_e), and a square of the strain beyond its start is added that
+ * takes the rest.
+ */
 #ifndef SF_CORE_CURVE_H
 #define SF_CORE_CURVE_H
 
@@ -27,6 +33,8 @@ enum { SF_CURVE_INTERVALS = 1024 };
 #define SF_STRAIGHT_ROOM_AT_1 0.01 /* the same for eps_L = 1 */
 #define SF_STRAIGHT_SLOPE_AT_1 1e6
 #define SF_FIRM_ROOM 0.025 /* -, strain */
+#define SF_STOP_ENERGY 5e6 /* J m-3 to full compression: that of a solid polymer (2 GPa) at 7 % */
+#define SF_STOP_ROOM 0.05  /* -, strain */
 
 /* One piece: energy at its left end and the cubic's coefficients in t = strain - left end. */
 typedef struct sf_curve_piece {
@@ -44,12 +52,13 @@ typedef struct sf_densification {
     double start_energy; /* J m-3, energy at eps_e */
 } sf_densification;
 
-/* The straight line that ends the curve. */
+/* The straight line that ends the curve, and the stop of a weak one. */
 typedef struct sf_curve_line {
     double start;  /* -, its first strain */
     double stress; /* Pa, there */
-    double slope;  /* Pa */
+    double slope;  /* Pa, there */
     double energy; /* J m-3, there */
+    double stop;   /* Pa, factor of the square of the strain beyond its start; 0: none is needed */
 } sf_curve_line;
 
 typedef struct sf_curve {

@@ -28,8 +28,10 @@ static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *e
             "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, %s: det F = %.3g. %s",
             s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2],
             finite ? "has collapsed" : "holds a NaN or infinity", p->jacobian,
-            finite ? "The curve is too soft for this impact there; check its densification"
-                   : "The step before was unstable; try a smaller solver.step_safety");
+            finite
+                ? "The curve is too soft for this impact there: give it data to larger strains, or check its "
+                  "densification (material.densification: a larger exponent, a limit below 1)"
+                : "The step before was unstable; try a smaller solver.step_safety");
     }
     return SF_OK;
 }

@@ -91,7 +91,11 @@ static sf_status check_table(const sf_curve_form *form, const double *strain, co
     return SF_OK;
 }
 
-/* The law beyond the table; with a pole before 1 its exponent is the one without additive constant. */
+double sf_curve_form_exponent(double start, double limit, double stress, double slope) {
+    return fmax(1, sf_densification_natural_exponent(start, limit, stress, slope));
+}
+
+/* The law beyond the table. */
 static void set_densification(const sf_curve_form *form, const double *value, double pole, double end,
                               sf_foam_card *card) {
     double h = 1e-4 * (pole - end), at[3] = {end - h, end, end + h}, stress[3];
@@ -100,8 +104,7 @@ static void set_densification(const sf_curve_form *form, const double *value, do
     card->densification_rule = pole < 1 ? SF_DENSIFICATION_H2 : SF_DENSIFICATION_H1;
     card->densification_limit = pole;
     card->densification_exponent =
-        pole < 1 ? sf_densification_natural_exponent(end, pole, stress[1], (stress[2] - stress[0]) / (2 * h))
-                 : 0;
+        pole < 1 ? sf_curve_form_exponent(end, pole, stress[1], (stress[2] - stress[0]) / (2 * h)) : 0;
 }
 
 static void replace_curves(sf_foam_card *card, double *strain, double *stress, double *rate, int64_t *ptr) {

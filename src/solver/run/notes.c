@@ -20,8 +20,7 @@ static void tell_depth(const sf_model *m, const sf_extremes *x, const sf_sink *s
                                         : "the foam collapsed, or the pad's base is not held");
 }
 
-/* Least strain at which the curve of a foam goes on straight before its pole; INFINITY: no material has one.
- */
+/* Least strain from which the curve of a foam is the line that ends it; INFINITY: no material has one. */
 static double straight_strain(const sf_model *m) {
     double least = INFINITY;
     for (int64_t k = 0; k < m->material_count; k++) {
@@ -42,10 +41,11 @@ static double straight_strain(const sf_model *m) {
 static void tell_pole(const sf_model *m, const sf_extremes *x, const sf_sink *sink) {
     double straight = straight_strain(m);
     if (x->largest_compression > straight)
-        sf_sink_tell(sink, SF_WARNING,
-                     "the foam was compressed to a strain of %.4g; from %.4g on its curve, near the pole of "
-                     "its densification, is a straight line of the program and no property of the material",
-                     x->largest_compression, straight);
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "the foam was compressed to a strain of %.4g; from %.4g on its curve, near the pole of "
+            "its densification, is a line of the program that keeps the stress finite, and no property of the material: give the curve data to larger strains, or take a stiffer foam",
+            x->largest_compression, straight);
 }
 
 void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, const sf_sink *sink) {
