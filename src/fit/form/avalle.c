@@ -2,6 +2,7 @@
 /* The form `avalle` (Avalle, Belingardi and Ibba 2007): a plateau that saturates, and a power of e/(1 - e).
  */
 #include "fit/form/form.h"
+#include "fit/form/gas.h"
 
 #include <math.h>
 
@@ -12,7 +13,7 @@ static const sf_form_entry entries[] = {{SF_PARAMETER_AVALLE_A, 0.7, true},
 
 /* Of a foam like that of the gas curve at its medians. */
 static void start(double *value) {
-    double size = fmin(101325, value[SF_PARAMETER_E] / 2);
+    double size = sf_form_pressure(value[SF_PARAMETER_E]);
     value[SF_PARAMETER_AVALLE_A] = 0.4 * size;
     value[SF_PARAMETER_AVALLE_M] = 1;
     value[SF_PARAMETER_AVALLE_B] = 0.75 * size;

@@ -10,8 +10,12 @@ static const double DENSE = 1.4;         /* e_D = 1 - DENSE Phi (Gibson and Ashb
 static const double MOST_SOLID = 0.6;    /* Phi, with which e_D is 0.16 */
 static const double LEAST_PART = 1e-3;   /* of E that the cell walls have at least */
 
-double sf_gas_curve_pole(const sf_gas_curve *curve) {
-    return 1 - DENSE * curve->solid;
+double sf_form_pressure(double modulus) {
+    return fmin(ATMOSPHERE, modulus / 2);
+}
+
+double sf_form_dense_strain(double solid) {
+    return 1 - DENSE * solid;
 }
 
 double sf_gas_curve_stress(const sf_gas_curve *curve, double strain) {
@@ -19,7 +23,12 @@ double sf_gas_curve_stress(const sf_gas_curve *curve, double strain) {
            slope = fmax(curve->modulus - gas, LEAST_PART * curve->modulus);
     return -curve->yield * expm1(-slope * strain / curve->yield) +
            curve->pressure * strain / (1 - strain - curve->solid) +
-           curve->factor * pow(strain / (sf_gas_curve_pole(curve) - strain), curve->exponent);
+           curve->factor * pow(strain / (sf_form_dense_strain(curve->solid) - strain), curve->exponent);
+}
+
+void sf_gas_curve_stresses(const sf_gas_curve *curve, int count, const double *strain, double *out) {
+    for (int k = 0; k < count; k++)
+        out[k] = sf_gas_curve_stress(curve, strain[k]);
 }
 
 sf_status sf_gas_curve_check(const sf_gas_curve *c, sf_error *err) {
@@ -44,7 +53,7 @@ sf_gas_curve sf_gas_curve_of(const double *value, double solid) {
 }
 
 void sf_gas_curve_start(double *value, double solid) {
-    double pressure = fmin(ATMOSPHERE, value[SF_PARAMETER_E] / 2);
+    double pressure = sf_form_pressure(value[SF_PARAMETER_E]);
     value[SF_PARAMETER_S0] = 0.02 * value[SF_PARAMETER_E];
     value[SF_PARAMETER_P0] = pressure;
     value[SF_PARAMETER_B] = solid > 0 ? pressure / 5 : pressure / 4;
@@ -74,8 +83,7 @@ static double pole(const double *value) {
 
 static void stress(const double *value, int count, const double *strain, double *out) {
     const sf_gas_curve curve = sf_gas_curve_of(value, 0);
-    for (int k = 0; k < count; k++)
-        out[k] = sf_gas_curve_stress(&curve, strain[k]);
+    sf_gas_curve_stresses(&curve, count, strain, out);
 }
 
 const sf_curve_form sf_form_gas = {

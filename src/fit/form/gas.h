@@ -11,6 +11,11 @@
 
 #include "core/error.h"
 
+/* Size of a foam's stresses, for medians: the atmosphere's pressure (Pa), at most half the modulus E (Pa). */
+double sf_form_pressure(double modulus);
+/* Strain at which a foam of this solid fraction is dense, 1 - 1.4 Phi (Gibson and Ashby). */
+double sf_form_dense_strain(double solid);
+
 typedef struct sf_gas_curve {
     double modulus;  /* Pa, E > p0/(1 - Phi) */
     double yield;    /* Pa, s0 > 0 */
@@ -20,11 +25,10 @@ typedef struct sf_gas_curve {
     double solid;    /* -, Phi >= 0 */
 } sf_gas_curve;
 
-/* e_D. */
-double sf_gas_curve_pole(const sf_gas_curve *curve);
-
-/* Nominal stress (Pa) at a compressive strain, 0 <= strain < e_D. */
+/* Nominal stress (Pa) at a compressive strain, 0 <= strain < e_D = sf_form_dense_strain(Phi). */
 double sf_gas_curve_stress(const sf_gas_curve *curve, double strain);
+/* The same at `count` strains. */
+void sf_gas_curve_stresses(const sf_gas_curve *curve, int count, const double *strain, double *out);
 
 /* SF_ERR_NUMERIC: no rising curve of initial slope E. */
 sf_status sf_gas_curve_check(const sf_gas_curve *curve, sf_error *err);

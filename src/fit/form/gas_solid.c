@@ -28,14 +28,12 @@ static sf_status check(const double *value, sf_error *err) {
 }
 
 static double pole(const double *value) {
-    const sf_gas_curve curve = curve_of(value);
-    return sf_gas_curve_pole(&curve);
+    return sf_form_dense_strain(value[SF_PARAMETER_SOLID_FRACTION]);
 }
 
 static void stress(const double *value, int count, const double *strain, double *out) {
     const sf_gas_curve curve = curve_of(value);
-    for (int k = 0; k < count; k++)
-        out[k] = sf_gas_curve_stress(&curve, strain[k]);
+    sf_gas_curve_stresses(&curve, count, strain, out);
 }
 
 const sf_curve_form sf_form_gas_solid = {

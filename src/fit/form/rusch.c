@@ -4,6 +4,7 @@
  * at full compression: from rusch_end on, the densification law with its pole continues them. */
 #include "core/curve.h"
 #include "fit/form/form.h"
+#include "fit/form/gas.h"
 
 #include <math.h>
 
@@ -14,7 +15,7 @@ static const sf_form_entry entries[] = {
 
 /* Of a foam like that of the gas curve at its medians. */
 static void start(double *value) {
-    double size = fmin(101325, value[SF_PARAMETER_E] / 2);
+    double size = sf_form_pressure(value[SF_PARAMETER_E]);
     value[SF_PARAMETER_RUSCH_A] = 0.6 * size;
     value[SF_PARAMETER_RUSCH_M] = 0.4;
     value[SF_PARAMETER_RUSCH_B] = 32 * size;
@@ -23,7 +24,7 @@ static void start(double *value) {
 }
 
 static double pole(const double *value) {
-    return 1 - 1.4 * fmax(0, value[SF_PARAMETER_SOLID_FRACTION]);
+    return sf_form_dense_strain(fmax(0, value[SF_PARAMETER_SOLID_FRACTION]));
 }
 
 static sf_status check(const double *value, sf_error *err) {

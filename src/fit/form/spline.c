@@ -62,8 +62,7 @@ static sf_status check(const double *value, sf_error *err) {
 }
 
 static double pole(const double *value) {
-    const sf_gas_curve curve = sf_gas_curve_of(value, fmax(0, value[SF_PARAMETER_SOLID_FRACTION]));
-    return sf_gas_curve_pole(&curve);
+    return sf_form_dense_strain(fmax(0, value[SF_PARAMETER_SOLID_FRACTION]));
 }
 
 static void stress(const double *value, int count, const double *strain, double *out) {
