@@ -8,6 +8,10 @@ double sf_densification_natural_exponent(double start, double limit, double stre
     return (limit - start) * slope / stress;
 }
 
+double sf_densification_steep_exponent(double start, double limit, double stress, double slope) {
+    return fmax(1, sf_densification_natural_exponent(start, limit, stress, slope));
+}
+
 sf_densification sf_densification_join(double start, double limit, double exponent, double stress,
                                        double slope, double energy) {
     double room = limit - start;

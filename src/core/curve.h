@@ -76,6 +76,8 @@ sf_densification sf_densification_join(double start, double limit, double expone
                                        double slope, double energy);
 /* m that makes A vanish. */
 double sf_densification_natural_exponent(double start, double limit, double stress, double slope);
+/* The same, but at least 1: with less the energy up to the pole is finite. */
+double sf_densification_steep_exponent(double start, double limit, double stress, double slope);
 /* Stress (Pa), slope (Pa) and energy (J m-3) at a strain from the start on; INFINITY from the limit on. */
 void sf_densification_evaluate(const sf_densification *law, double strain, double *stress, double *slope,
                                double *energy);

@@ -91,10 +91,6 @@ static sf_status check_table(const sf_curve_form *form, const double *strain, co
     return SF_OK;
 }
 
-double sf_curve_form_exponent(double start, double limit, double stress, double slope) {
-    return fmax(1, sf_densification_natural_exponent(start, limit, stress, slope));
-}
-
 /* The law beyond the table. */
 static void set_densification(const sf_curve_form *form, const double *value, double pole, double end,
                               sf_foam_card *card) {
@@ -104,7 +100,8 @@ static void set_densification(const sf_curve_form *form, const double *value, do
     card->densification_rule = pole < 1 ? SF_DENSIFICATION_H2 : SF_DENSIFICATION_H1;
     card->densification_limit = pole;
     card->densification_exponent =
-        pole < 1 ? sf_curve_form_exponent(end, pole, stress[1], (stress[2] - stress[0]) / (2 * h)) : 0;
+        pole < 1 ? sf_densification_steep_exponent(end, pole, stress[1], (stress[2] - stress[0]) / (2 * h))
+                 : 0;
 }
 
 static void replace_curves(sf_foam_card *card, double *strain, double *stress, double *rate, int64_t *ptr) {

@@ -59,10 +59,6 @@ bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter);
 /* Stress (Pa) at one strain. Not for the form `table`. */
 double sf_curve_form_stress(const sf_curve_form *form, const double *value, double strain);
 
-/* Exponent of the densification law that goes on from stress (Pa) and slope (Pa) at `start`: the one without
- * additive constant, but at least 1, since with less the energy up to the pole would be finite. */
-double sf_curve_form_exponent(double start, double limit, double stress, double slope);
-
 /* Puts the curve, as a table to 0.975 of its pole (or 1 GPa) with the densification law beyond, in place of
  * every curve of the card. On failure the card is unchanged: SF_ERR_NUMERIC if the values make no curve or
  * one that falls. Not for the form `table`. */

@@ -65,8 +65,9 @@ static void stress(const double *value, int count, const double *strain, double 
     const powers p = powers_of(value);
     double end = value[SF_PARAMETER_RUSCH_END], limit = pole(value), at_end = sum(&p, end),
            slope_at_end = slope(&p, end), ignored[2];
-    const sf_densification beyond = sf_densification_join(
-        end, limit, sf_curve_form_exponent(end, limit, at_end, slope_at_end), at_end, slope_at_end, 0);
+    const sf_densification beyond =
+        sf_densification_join(end, limit, sf_densification_steep_exponent(end, limit, at_end, slope_at_end),
+                              at_end, slope_at_end, 0);
     for (int k = 0; k < count; k++)
         if (strain[k] <= end)
             out[k] = sum(&p, strain[k]);
