@@ -13,8 +13,14 @@
 
 enum { POINTS = 40, SKIPPED = 77, MESHES = 2 };
 static const int layers[MESHES] = {7, 10};
-static const sf_indentation_case usual = {
-    .layers = 7, .depth = 34e-3, .interval = 2e-3, .speed = 1, .modulus = 1, .penalty = 100, .facet = 3};
+static const sf_indentation_case usual = {.layers = 7,
+                                          .depth = 30e-3,
+                                          .interval = 2e-3,
+                                          .speed = 1,
+                                          .modulus = 1,
+                                          .nodes = true,
+                                          .penalty = 100,
+                                          .facet = 3};
 
 /* ---- material points ---- */
 
@@ -141,60 +147,112 @@ static double limit_difference(const pair p[MESHES], int k) {
            1;
 }
 
-static void print_forces(sf_study *s, const sf_indentation *in, const pair p[MESHES], int count) {
+static double difference(const sf_indentation_curve *a, const sf_indentation_curve *b, int k) {
+    return a->force[k] / b->force[k] - 1;
+}
+
+/* Of the points from `first` on that both have. */
+static double largest_difference(const sf_indentation_curve *a, const sf_indentation_curve *b, int first) {
+    double worst = 0;
+    for (int k = first; k < a->count && k < b->count; k++)
+        worst = larger(worst, fabs(difference(a, b, k)));
+    return worst;
+}
+
+static int fewest(const pair p[MESHES]) {
+    int a = p[0].calculix.count, b = p[1].calculix.count;
+    return a < b ? a : b;
+}
+
+static double largest_of_limits(const pair p[MESHES], int first) {
+    double worst = 0;
+    for (int k = first; k < fewest(p); k++)
+        worst = larger(worst, fabs(limit_difference(p, k)));
+    return worst;
+}
+
+static void describe(sf_study *s, const sf_indentation *in) {
     sf_study_text(
         s,
-        "### Indentation\n\nThe sphere, the quarter pad and the contact of the study above, with ν "
-        "= %g in both terms, on the same lattice of hexahedra in both codes. Force in N, softfall / "
-        "CalculiX; h → 0: the line F₀ + a h² through both meshes.\n\n| depth",
+        "### Indentation\n\nThe sphere and the quarter pad of the study above, with ν = %g in both "
+        "terms, on the same lattice of hexahedra in both codes. CalculiX has two contacts. *Node to "
+        "surface* keeps the nodes of the pad's top out of the sphere, as softfall does. *Face to "
+        "face*, that of the study above, keeps the faces between them out, too: a flat face of side "
+        "h touches a sphere of radius R with its middle, and its corners lie up to h² / 4R deeper: "
+        "0.08 mm at 5 mm, where the force grows by 9 to 75 %% per mm. It depends on its increments, "
+        "too: on 10 mm, increments of at most 0.5 mm instead of 2 mm lower its force by up to 0.75 "
+        "%%, that of node to surface change by 0.05 %%. So node to surface is the contact at matched "
+        "spacing, and the bound of 2 %% is for it. It was taken after face to face had shown 1.8 to "
+        "3.7 %% at 5 mm from 10 to 34 mm; that contact is in the table for one mesh. Node to surface "
+        "diverges at some depth: at 5 mm it reaches the 30 mm prescribed here (of 34 mm 31.3 mm), at "
+        "7.14 mm not (of 34 mm it reached 32 mm, and with a fifth of its stiffness all, where "
+        "softfall is 1.7 %% below it); so the depth is checked at 5 mm only, which it was not meant "
+        "to be. Four times the stiffness changes its force on 10 mm by 0.015 %% at most, to 20 mm. "
+        "(Stiffness, increments and deeper ends were tried by hand; no command of the repository "
+        "repeats them.)\n\n",
         in->law.nu[0]);
+}
+
+static void print_number(sf_study *s, const sf_indentation_curve *softfall,
+                         const sf_indentation_curve *calculix, int k) {
+    if (k < calculix->count)
+        sf_study_text(s, " | %.1f | %+.1f %%", calculix->force[k], 100 * difference(softfall, calculix, k));
+    else
+        sf_study_text(s, " | | ");
+}
+
+static void print_forces(sf_study *s, const pair p[MESHES], const sf_indentation_curve *faces) {
+    sf_study_text(s, "Force in N, and softfall's difference from CalculiX; h → 0: the line F₀ + a h² through "
+                     "both meshes, node to surface.\n\n| depth");
     for (int m = 0; m < MESHES; m++)
-        sf_study_text(s, " | %.3g mm | ", 50. / layers[m]);
-    sf_study_text(s, " | h → 0 |\n|---|---|---|---|---|---|\n");
-    for (int k = 0; k < count; k++) {
+        sf_study_text(s, " | %.3g mm: softfall | nodes | ", 50. / layers[m]);
+    sf_study_text(s, " | h → 0 | %.3g mm: faces | |\n|---|---|---|---|---|---|---|---|---|---|\n",
+                  50. / layers[0]);
+    for (int k = 0; k < p[0].softfall.count; k++) {
         sf_study_text(s, "| %.0f mm", 1e3 * usual.interval * (k + 1));
-        for (int m = 0; m < MESHES; m++)
-            sf_study_text(s, " | %.1f / %.1f | %+.1f %%", p[m].softfall.force[k], p[m].calculix.force[k],
-                          100 * (p[m].softfall.force[k] / p[m].calculix.force[k] - 1));
-        sf_study_text(s, " | %+.1f %% |\n", 100 * limit_difference(p, k));
+        for (int m = 0; m < MESHES; m++) {
+            sf_study_text(s, " | %.1f", p[m].softfall.force[k]);
+            print_number(s, &p[m].softfall, &p[m].calculix, k);
+        }
+        if (k < fewest(p))
+            sf_study_text(s, " | %+.1f %%", 100 * limit_difference(p, k));
+        else
+            sf_study_text(s, " | ");
+        print_number(s, &p[0].softfall, faces, k);
+        sf_study_text(s, " |\n");
     }
-    sf_study_text(s, "\n");
+    sf_study_text(s, "\nCPU seconds of softfall and CalculiX: ");
     for (int m = 0; m < MESHES; m++)
-        sf_study_text(s, "%s%.3g mm: softfall %.0f, CalculiX %.0f CPU seconds, CalculiX reached %.1f mm%s%s",
-                      m ? "; " : "", 50. / layers[m], p[m].softfall.cpu, p[m].calculix.cpu,
-                      1e3 * p[m].calculix.depth_reached, p[m].calculix.ending[0] ? ", " : "",
-                      p[m].calculix.ending);
-    sf_study_text(s, ".\n\n");
+        sf_study_text(s, "%.0f and %.0f at %.3g mm; ", p[m].softfall.cpu, p[m].calculix.cpu, 50. / layers[m]);
+    sf_study_text(s, "%.0f face to face.\n\n", faces->cpu);
+}
+
+static void check_pad(sf_study *s, const pair p[MESHES]) {
+    sf_study_check(s, 2 * p[1].calculix.count, 30, INFINITY, "depth that CalculiX reached at %.3g mm (mm)",
+                   50. / layers[1]);
+    sf_study_check(s, largest_difference(&p[1].softfall, &p[1].calculix, 0), 0, 0.02,
+                   "difference at %.3g mm, every point from 2 to 30 mm", 50. / layers[1]);
+    sf_study_check(s, largest_of_limits(p, 4), 0, 0.02,
+                   "difference of the limits h → 0, every point from 10 to %d mm", 2 * fewest(p));
 }
 
 static sf_status study_pad(sf_study *s, const sf_indentation *in, sf_error *err) {
     pair p[MESHES];
-    int count = SF_INDENTATION_POINTS;
-    double fine = 0, limits = 0;
+    sf_indentation_case c = usual;
+    sf_indentation_curve faces;
     for (int m = 0; m < MESHES; m++) {
-        sf_indentation_case c = usual;
         c.layers = layers[m];
         if (sf_indentation_softfall(in, &c, &p[m].softfall, err) != SF_OK ||
             sf_indentation_calculix(in, &c, &p[m].calculix, err) != SF_OK)
             return err->status;
-        count = p[m].softfall.count < count ? p[m].softfall.count : count;
-        count = p[m].calculix.count < count ? p[m].calculix.count : count;
     }
-    print_forces(s, in, p, count);
-    sf_study_text(
-        s,
-        "softfall is the softer one on any mesh, as with ν = 0, and the difference falls with h². At 5 mm it is about 2 "
-        "%% from 12 to 24 mm and grows to 4 %% at 34 mm: 2 %% at every depth needs a finer mesh than this study has. "
-        "The limits agree to 2 %%.\n\n");
-    for (int k = 4; k < count; k++) {
-        fine = larger(fine, fabs(p[1].softfall.force[k] / p[1].calculix.force[k] - 1));
-        limits = larger(limits, fabs(limit_difference(p, k)));
-    }
-    sf_study_check(s, 2 * count, 30, INFINITY, "depth that CalculiX reached on both meshes (mm)");
-    sf_study_check(s, fine, 0, 0.04, "difference at %.3g mm from a depth of 10 mm on, every point",
-                   50. / layers[1]);
-    sf_study_check(s, limits, 0, 0.02,
-                   "difference of the limits h → 0 from a depth of 10 mm on, every point");
+    c.layers = layers[0];
+    c.nodes = false;
+    if (sf_indentation_calculix(in, &c, &faces, err) != SF_OK)
+        return err->status;
+    describe(s, in);
+    print_forces(s, p, &faces);
+    check_pad(s, p);
     return SF_OK;
 }
 
