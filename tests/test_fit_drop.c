@@ -734,13 +734,32 @@ static double time_of_all(pid_t process) {
     return sum;
 }
 
-/* A fit of `fit.cfg` in a process group of its own, killed with all its programs once they have had `life`
- * seconds of processor time. The wait status. */
-static int run_fit_for(const program_place *place, const char *jobs, double life, double *used) {
+/* Who is killed: the fit with all its programs, the fit alone, or one of its programs alone. */
+typedef enum victim { EVERYONE, THE_FIT, A_DROP, VICTIMS } victim;
+
+/* False: nobody of that kind is there now. */
+static bool kill_victim(pid_t fit, victim who) {
+    char path[64];
+    int child = 0;
+    if (who != A_DROP)
+        return kill(who == EVERYONE ? -fit : fit, SIGKILL) == 0;
+    snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)fit, (int)fit);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return false;
+    bool found = fscanf(file, "%d", &child) == 1;
+    fclose(file);
+    return found && kill(child, SIGKILL) == 0;
+}
+
+/* A fit of `fit.cfg` in a process group of its own, where `who` is killed once all have had `life` seconds of
+ * processor time. The wait status. */
+static int run_fit_for(const program_place *place, const char *jobs, double life, victim who, double *used) {
     const struct timespec pause = {0, 2000000};
     char program[1024];
     snprintf(program, sizeof program, "%s/softfall-fit", getenv("SF_BIN_DIR"));
     int status = 0;
+    bool killed = false;
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
@@ -754,16 +773,17 @@ static int run_fit_for(const program_place *place, const char *jobs, double life
     while (waitpid(child, &status, WNOHANG) == 0) {
         double now = time_of_all(child);
         *used = larger(*used, now);
-        if (now >= life)
-            kill(-child, SIGKILL);
+        if (now >= life && !killed)
+            killed = kill_victim(child, who);
         nanosleep(&pause, NULL);
     }
     return status;
 }
 
-/* A fit, with its drops side by side, that is killed over and over after a share of its processor time in
- * which it could not even repeat what it computes between the drops: it ends, and with the bits of a fit that
- * was left alone, drop by drop. */
+/* A fit, with its drops side by side, that is killed over and over (with its programs, alone, or one of its
+ * programs alone, which it survives with a sentence) after a share of its processor time in which it could
+ * not even repeat what it computes between the drops: it ends, and with the bits of a fit that was left
+ * alone, drop by drop. */
 static void killed_fit_ends_with_the_same_material(void **state) {
     (void)state;
     enum { SHARES = 5, MOST = 6 * SHARES };
@@ -780,11 +800,11 @@ static void killed_fit_ends_with_the_same_material(void **state) {
         "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = 50.0; HIC = 180.0; }, "
         "{ name = \"fast\"; case = \"fast.cfg\"; a_max_g = 66.0; } );\n");
     program_shell(&place, "sed 's/4.5 m/5.2 m/' case.cfg > fast.cfg");
-    assert_int_equal(run_fit_for(&place, "1", INFINITY, &whole), 0);
+    assert_int_equal(run_fit_for(&place, "1", INFINITY, EVERYONE, &whole), 0);
     assert_int_equal(program_shell(&place, "mv killed whole").code, 0);
     do
-        status = run_fit_for(&place, "2", whole / SHARES, &used);
-    while (++lives < MOST && WIFSIGNALED(status));
+        status = run_fit_for(&place, "2", whole / SHARES, (victim)(lives % VICTIMS), &used);
+    while (++lives < MOST && (WIFSIGNALED(status) || WEXITSTATUS(status) != 0));
     print_message("%d lives of %.2g s, %.2g s without kills\n", lives, whole / SHARES, whole);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         fail_msg("wait status %d in life %d: %s", status, lives, program_shell(&place, "cat log").out);
