@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -120,6 +121,20 @@ sf_status sf_folder_own(const char *path, sf_error *err) {
     else if (made)
         sf_replace_sync_name(path);
     return err->status;
+}
+
+/* The lock belongs to the open folder: a program that is started does not get it, and it ends with the
+ * process and its copies. */
+sf_status sf_folder_lock(const char *path, int *handle, sf_error *err) {
+    *handle = sf_folder_open(path);
+    if (*handle < 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s cannot be used as a folder: %s", path, strerror(errno));
+    if (flock(*handle, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+        return SF_OK; /* some file systems have no locks */
+    close(*handle);
+    *handle = -1;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "another campaign is at work in %s: wait for it, or give another directory", path);
 }
 
 void sf_folder_leave(const char *path) {

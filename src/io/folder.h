@@ -24,6 +24,10 @@ int sf_folder_open(const char *path);
 sf_status sf_folder_check(int handle, const char *path, bool (*known)(const char *name), sf_error *err);
 void sf_folder_remove_known(int handle, bool (*known)(const char *name), const char *kept);
 
+/* Locks an existing folder against a second program that does so, until this process ends. `*handle` is for
+ * the caller to close, -1 on failure. SF_ERR_INPUT: another program has it locked. */
+sf_status sf_folder_lock(const char *path, int *handle, sf_error *err);
+
 /* Removes the mark and the folder if nothing else is in it. */
 void sf_folder_leave(const char *path);
 

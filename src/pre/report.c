@@ -123,16 +123,27 @@ static void print_mesh_error(FILE *out, const sf_model *m, const sf_contact_zone
         fprintf(out, "%-26snot estimated\n", "expected mesh error");
 }
 
+static double first_step(const sf_model *m, const sf_build_report *r) {
+    return fmin(m->run.step_safety * r->first_step, m->run.step_limit);
+}
+
+static double expected_steps(const sf_model *m, const sf_build_report *r) {
+    return TYPICAL * r->slowdown * m->run.end_time / first_step(m, r);
+}
+
+double sf_report_seconds(const sf_model *m, const sf_build_report *r) {
+    return expected_steps(m, r) * (double)m->node_count / RATE;
+}
+
 static void print_cost(FILE *out, const sf_model *m, const sf_build_report *r) {
-    double step = fmin(m->run.step_safety * r->first_step, m->run.step_limit);
-    double steps = TYPICAL * r->slowdown * m->run.end_time / step, n = (double)m->node_count;
+    double step = first_step(m, r), steps = expected_steps(m, r), n = (double)m->node_count;
     double bytes = 26 * (double)m->domain_nnz + 12 * (double)m->phi_nnz + 7 * (double)m->edge_nnz + 541 * n +
                    720 * (double)(m->fixed_count + sf_model_points(m));
     fprintf(out, "%-26s%.2f us (bound %.2f us)\n", "first time step, at least", 1e6 * step,
             1e6 * r->first_step);
     fprintf(out, "%-26s%.0f MB (%.2f kB per node)\n", "memory of the solver", bytes / 1e6, bytes / n / 1e3);
     fprintf(out, "%-26s%.0f s on two cores, for about %.0f steps (to a factor of 2)\n", "typical run time",
-            steps * n / RATE, steps);
+            sf_report_seconds(m, r), steps);
 }
 
 void sf_report_print(FILE *out, const sf_model *m, const sf_build_report *r) {

@@ -8,4 +8,7 @@
 
 void sf_report_print(FILE *out, const sf_model *model, const sf_build_report *report);
 
+/* Expected time of the run on two cores, s, to a factor of 2. */
+double sf_report_seconds(const sf_model *model, const sf_build_report *report);
+
 #endif

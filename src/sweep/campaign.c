@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sweep/campaign.h"
+
+#include "core/hash.h"
+#include "io/plain_file.h"
+#include "io/replace.h"
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const double WRITE_INTERVAL = 20; /* s between two tables, or this many times what one takes */
+static const double WRITE_SHARE = 20;
+enum { KEY_SIZE = 256, GEOMETRIES = 64 };
+
+typedef struct path {
+    char text[PATH_MAX];
+} path;
+
+static path file_of(const sf_sweep_campaign *c, const char *name) {
+    path p;
+    snprintf(p.text, sizeof p.text, "%s/%s", c->folder, name);
+    return p;
+}
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- whose folder it is: the file sweep.key ---- */
+
+typedef struct keys {
+    bool there;
+    uint64_t table, inputs;
+} keys;
+
+static sf_status read_keys(const sf_sweep_campaign *c, keys *k, sf_error *err) {
+    path p = file_of(c, "sweep.key");
+    unsigned long long table = 0, inputs = 0;
+    char *text = NULL;
+    *k = (keys){0};
+    if (access(p.text, F_OK) != 0)
+        return SF_OK;
+    if (sf_plain_read(p.text, NULL, KEY_SIZE, &text, NULL, err) == SF_OK &&
+        sscanf(text, "softfall-sweep table %16llx inputs %16llx", &table, &inputs) == 2)
+        *k = (keys){true, table, inputs};
+    else if (err->status == SF_OK)
+        SF_FAIL(err, SF_ERR_INPUT, "%s is not a file of softfall-sweep: give another directory", p.text);
+    free(text);
+    return err->status;
+}
+
+static sf_status write_keys(const sf_sweep_campaign *c, sf_error *err) {
+    sf_replacement out;
+    path p = file_of(c, "sweep.key");
+    FILE *file = sf_replace_open(p.text, &out, err);
+    if (!file)
+        return err->status;
+    fprintf(file, "softfall-sweep table %016llx inputs %016llx\n", (unsigned long long)sf_plan_hash(c->plan),
+            (unsigned long long)c->inputs);
+    return sf_replace_close(&out, err);
+}
+
+static sf_status check_keys(const sf_sweep_campaign *c, keys *k, bool *known, sf_error *err) {
+    *known = false;
+    if (read_keys(c, k, err) != SF_OK)
+        return err->status;
+    *known = k->there && k->table == sf_plan_hash(c->plan);
+    if (k->there && !*known && !c->force)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s holds the runs of another plan: give another directory, or --force to replace its table "
+            "(finished drops of the same inputs are used again)",
+            c->folder);
+    return SF_OK;
+}
+
+sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_error *err) {
+    keys k;
+    return check_keys(c, &k, known, err);
+}
+
+/* ---- what is there ---- */
+
+sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+    keys k;
+    bool known = false;
+    path table = file_of(c, "runs.csv");
+    if (check_keys(c, &k, &known, err) != SF_OK || !known || access(table.text, F_OK) != 0)
+        return err->status;
+    return sf_runs_read(runs, table.text, err);
+}
+
+static void open_all(sf_runs *runs, sf_run_state state) {
+    for (int64_t row = 0; row < runs->count; row++)
+        if (runs->state[row] == state)
+            sf_runs_open(runs, row);
+}
+
+static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+    keys k;
+    bool known = false;
+    if (check_keys(c, &k, &known, err) != SF_OK || sf_sweep_campaign_look(c, runs, err) != SF_OK)
+        return err->status;
+    if (known && k.inputs != c->inputs) {
+        open_all(runs, SF_RUN_DONE);
+        open_all(runs, SF_RUN_FAILED);
+        if (c->log)
+            fputs("  files or programs have changed since: every run is looked at again\n", c->log);
+    }
+    if (c->retry)
+        open_all(runs, SF_RUN_FAILED);
+    return SF_OK;
+}
+
+/* The values of the factors of the geometry in a row. */
+static uint64_t geometry_of(const sf_plan *plan, int64_t row) {
+    uint64_t hash = SF_HASH_START;
+    for (int f = 0; f < plan->factor_count; f++)
+        if (strncmp(plan->factor[f].key, "geometry", 8) == 0) {
+            double value = sf_plan_value(plan, f, row);
+            hash = sf_hash_bytes(hash, &value, sizeof value);
+        }
+    return hash;
+}
+
+/* The first row that is done of each geometry, at most GEOMETRIES. */
+static int pick_samples(const sf_runs *runs, int64_t sample[GEOMETRIES]) {
+    uint64_t seen[GEOMETRIES];
+    int count = 0;
+    for (int64_t row = 0; row < runs->count && count < GEOMETRIES; row++) {
+        if (runs->state[row] != SF_RUN_DONE)
+            continue;
+        uint64_t hash = geometry_of(runs->plan, row);
+        int k = 0;
+        while (k < count && seen[k] != hash)
+            k++;
+        if (k == count) {
+            seen[count] = hash;
+            sample[count++] = row;
+        }
+    }
+    return count;
+}
+
+/* A file that only the geometry knows of may have changed: one finished run of each geometry is given to the
+ * engine again. If it has to be simulated, every run is looked at again. */
+static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
+                       sf_error *err) {
+    int64_t sample[GEOMETRIES];
+    int fresh = 0, count = pick_samples(runs, sample);
+    if (count == 0)
+        return SF_OK;
+    if (engine->run(engine->context, runs, count, sample, &fresh, err) != SF_OK || fresh == 0)
+        return err->status;
+    open_all(runs, SF_RUN_DONE);
+    if (c->log)
+        fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
+              c->log);
+    return SF_OK;
+}
+
+/* ---- the work ---- */
+
+static int next_piece(const sf_runs *runs, int64_t *from, int most, int64_t *row) {
+    int count = 0;
+    for (; *from < runs->count && count < most; ++*from)
+        if (runs->state[*from] == SF_RUN_OPEN)
+            row[count++] = *from;
+    return count;
+}
+
+static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t done, int64_t open,
+                          double start) {
+    double spent = now() - start, left = spent / (double)done * (double)(open - done);
+    if (c->log) {
+        fprintf(c->log, "%lld of %lld runs; %.0f s so far, about %.0f s to go\n", (long long)(begun + done),
+                (long long)(begun + open), spent, left);
+        fflush(c->log);
+    }
+}
+
+static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine, const char *table,
+                      sf_runs *runs, int64_t *row, sf_error *err) {
+    int64_t from = 0, done = 0, open = sf_runs_count(runs, SF_RUN_OPEN);
+    double start = now(), written = start, duration = 0;
+    int count;
+    while (err->status == SF_OK && (count = next_piece(runs, &from, engine->piece, row)) > 0) {
+        int fresh = 0;
+        if (engine->run(engine->context, runs, count, row, &fresh, err) != SF_OK)
+            return err->status;
+        done += count;
+        double time = now();
+        if (time - written < WRITE_INTERVAL || time - written < WRITE_SHARE * duration)
+            continue;
+        sf_runs_write(runs, table, err);
+        written = now();
+        duration = written - time;
+        tell_progress(c, runs->count - open, done, open, start);
+    }
+    return err->status;
+}
+
+/* runs.csv is written in any case; the first failure counts. */
+sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
+                                sf_error *err) {
+    path table = file_of(c, "runs.csv");
+    int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
+    if (!row || take_over(c, runs, err) != SF_OK)
+        goto done;
+    if (write_keys(c, err) == SF_OK && sf_runs_write(runs, table.text, err) == SF_OK &&
+        probe(c, engine, runs, err) == SF_OK)
+        work(c, engine, table.text, runs, row, err);
+    sf_error second = SF_ERROR_INIT;
+    if (sf_runs_write(runs, table.text, &second) != SF_OK && err->status == SF_OK)
+        *err = second;
+done:
+    free(row);
+    return err->status;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the open runs of a plan will take: from the runs that are done, or else from the model of the first
+ * row. */
+#ifndef SF_SWEEP_COST_H
+#define SF_SWEEP_COST_H
+
+#include "sweep/runs.h"
+
+typedef struct sf_sweep_cost {
+    double seconds;    /* processor time of one run */
+    double bytes;      /* of its results */
+    double work_bytes; /* that one run needs while it is at work */
+    int64_t open;      /* runs */
+    char basis[160];   /* where that comes from */
+} sf_sweep_cost;
+
+/* `folder`: of the results' folders ("DIR/runs"). Without a finished run the model of the first row is built
+ * in memory. */
+sf_status sf_sweep_cost_estimate(const sf_runs *runs, const char *folder, sf_sweep_cost *cost, sf_error *err);
+
+/* SF_ERR_INPUT if the file system of `folder` has too little room. */
+sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *cost, const char *folder, int jobs, sf_error *err);
+
+void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *cost, int jobs);
+
+#endif

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sweep/drops.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct row_text {
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+} row_text;
+
+typedef struct piece {
+    int count;
+    sf_runner_drop *drop;
+    sf_runner_result *result;
+    sf_error *failure;
+    row_text *text;
+} piece;
+
+static sf_status begin_piece(piece *p, const sf_plan *plan, int count, const int64_t *row, sf_error *err) {
+    unsigned long n = (unsigned long)count;
+    *p = (piece){.count = count,
+                 .drop = sf_alloc(err, n, sizeof *p->drop, "drops"),
+                 .result = sf_alloc(err, n, sizeof *p->result, "drops"),
+                 .failure = sf_alloc(err, n, sizeof *p->failure, "drops"),
+                 .text = sf_alloc(err, n, sizeof *p->text, "drops")};
+    for (int k = 0; k < count && err->status == SF_OK; k++) {
+        sf_runner_drop *d = &p->drop[k];
+        *d = (sf_runner_drop){.label = "drop", .case_path = plan->case_path};
+        d->override_count = sf_plan_overrides(plan, row[k], p->text[k].text);
+        for (int i = 0; i < d->override_count; i++)
+            d->overrides[i] = p->text[k].text[i];
+    }
+    return err->status;
+}
+
+static void end_piece(piece *p) {
+    for (int k = 0; k < p->count && p->result; k++)
+        sf_runner_result_free(&p->result[k]);
+    free(p->drop);
+    free(p->result);
+    free(p->failure);
+    free(p->text);
+}
+
+/* "drop-0123456789abcdef" of ".../drop-0123456789abcdef/results.h5". */
+static void folder_name(const char *path, char *out, size_t size) {
+    const char *end = strrchr(path, '/'), *begin = end;
+    while (begin && begin > path && begin[-1] != '/')
+        begin--;
+    snprintf(out, size, "%.*s", end ? (int)(end - begin) : 0, end ? begin : "");
+}
+
+static sf_status take_result(sf_runs *runs, int64_t row, const sf_runner_result *result, sf_error *err) {
+    char folder[256];
+    sf_results r;
+    sf_figures f = {0};
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_results_open(result->path, &r, &inner) != SF_OK)
+        return sf_runs_failed(runs, row, inner.text, err);
+    if (sf_figures_compute(&r, 1000, &f, &inner) == SF_OK) {
+        folder_name(result->path, folder, sizeof folder);
+        sf_runs_take(runs, row, &r, &f);
+        sf_runs_done(runs, row, result->grade, folder,
+                     result->grade == SF_GRADE_VALID ? NULL : result->verdict, err);
+    } else {
+        sf_runs_failed(runs, row, inner.text, err);
+    }
+    sf_figures_free(&f);
+    sf_results_close(&r);
+    return err->status;
+}
+
+/* Not the drop's own, as a disk that is full: it ends the campaign. */
+static bool is_of_the_machine(const sf_error *failure) {
+    return failure->status == SF_ERR_IO || failure->status == SF_ERR_MEMORY ||
+           failure->status == SF_INTERRUPTED;
+}
+
+static sf_status take_row(const piece *p, int k, sf_runs *runs, int64_t row, int *fresh, sf_error *err) {
+    const sf_error *failure = &p->failure[k];
+    if (failure->status == SF_OK) {
+        *fresh += !p->result[k].reused;
+        return take_result(runs, row, &p->result[k], err);
+    }
+    *fresh += 1;
+    if (is_of_the_machine(failure))
+        return SF_FAIL(err, failure->status, "run %lld: %s", (long long)row + 1, failure->text);
+    return sf_runs_failed(runs, row, failure->text, err);
+}
+
+static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh, sf_error *err) {
+    sf_runner *runner = context;
+    piece p;
+    *fresh = 0;
+    if (begin_piece(&p, runs->plan, count, row, err) == SF_OK &&
+        sf_runner_run_each(runner, count, p.drop, p.result, p.failure, err) == SF_OK) {
+        sf_error first = SF_ERROR_INIT;
+        for (int k = 0; k < count; k++) {
+            sf_error own = SF_ERROR_INIT;
+            if (take_row(&p, k, runs, row[k], fresh, &own) != SF_OK && first.status == SF_OK)
+                first = own;
+        }
+        *err = first;
+    }
+    end_piece(&p);
+    return err->status;
+}
+
+sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
+    return (sf_sweep_engine){.run = run,
+                             .context = runner,
+                             .piece = jobs < SF_SWEEP_JOBS ? SF_SWEEP_PIECE * (jobs > 0 ? jobs : 1)
+                                                           : SF_SWEEP_PIECE * SF_SWEEP_JOBS};
+}

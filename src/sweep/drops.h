@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The engine of a sweep that simulates drops, by campaign/runner.h. */
+#ifndef SF_SWEEP_DROPS_H
+#define SF_SWEEP_DROPS_H
+
+#include "sweep/campaign.h"
+
+enum {
+    SF_SWEEP_PIECE = 32, /* rows at a time, for each drop that runs side by side */
+    SF_SWEEP_JOBS = 8    /* up to so many of them */
+};
+
+/* The context of the engine is the runner, borrowed. */
+sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs);
+
+#endif

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sweep/effects.h"
+
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Ranks of the numbers, equal numbers the same group as long as there are few. */
+static sf_status group_numbers(const sf_factor *f, int64_t rows, sf_groups *g, sf_error *err) {
+    size_t *order = sf_alloc(err, (unsigned long)rows, sizeof *order, "groups");
+    if (!order)
+        return err->status;
+    gsl_sort_index(order, f->value, 1, (size_t)rows);
+    int64_t distinct = 1;
+    for (int64_t k = 1; k < rows; k++)
+        distinct += f->value[order[k]] > f->value[order[k - 1]];
+    g->count = distinct <= SF_EFFECT_LEVELS ? distinct : SF_EFFECT_BINS;
+    for (int64_t k = 0, level = 0; k < rows; k++) {
+        level += k > 0 && f->value[order[k]] > f->value[order[k - 1]];
+        g->of_row[order[k]] = distinct <= SF_EFFECT_LEVELS ? level : k * SF_EFFECT_BINS / rows;
+    }
+    free(order);
+    return SF_OK;
+}
+
+static sf_status find_middles(const sf_factor *f, int64_t rows, sf_groups *g, sf_error *err) {
+    int64_t *number = sf_alloc(err, (unsigned long)g->count, sizeof *number, "groups");
+    g->middle = sf_alloc(err, (unsigned long)g->count, sizeof *g->middle, "groups");
+    for (int64_t k = 0; k < rows && err->status == SF_OK; k++) {
+        g->middle[g->of_row[k]] += f->value[k];
+        number[g->of_row[k]]++;
+    }
+    for (int64_t k = 0; k < g->count && err->status == SF_OK; k++)
+        g->middle[k] /= (double)number[k];
+    free(number);
+    return err->status;
+}
+
+sf_status sf_groups_make(const sf_plan *p, int factor, sf_groups *g, sf_error *err) {
+    const sf_factor *f = &p->factor[factor];
+    int64_t rows = p->block[p->block_of[factor]].rows;
+    *g = (sf_groups){.count = f->count,
+                     .of_row = sf_alloc(err, (unsigned long)rows, sizeof(int64_t), "groups")};
+    for (int64_t k = 0; k < rows && g->of_row && f->words; k++)
+        g->of_row[k] = (int64_t)f->value[k];
+    if (err->status == SF_OK && !f->words)
+        group_numbers(f, rows, g, err);
+    return err->status == SF_OK ? find_middles(f, rows, g, err) : err->status;
+}
+
+void sf_groups_free(sf_groups *g) {
+    free(g->of_row);
+    free(g->middle);
+    *g = (sf_groups){0};
+}
+
+void sf_groups_mean(const sf_runs *r, int factor, const sf_groups *g, size_t figure, double *mean,
+                    int64_t *number) {
+    const sf_block *b = &r->plan->block[r->plan->block_of[factor]];
+    for (int64_t k = 0; k < g->count; k++)
+        mean[k] = 0, number[k] = 0;
+    for (int64_t row = 0; row < r->count; row++) {
+        double value = sf_runs_usable(r, row) ? r->value[row * (int64_t)r->figures + (int64_t)figure] : NAN;
+        int64_t k = g->of_row[row / b->stride % b->rows];
+        if (isnan(value))
+            continue;
+        mean[k] += value;
+        number[k]++;
+    }
+    for (int64_t k = 0; k < g->count; k++)
+        mean[k] = number[k] > 0 ? mean[k] / (double)number[k] : NAN;
+}
+
+/* The range of the means that are there; `mean` is sorted. */
+static void find_range(double *mean, int64_t count, bool draws, sf_effect *e) {
+    size_t n = 0;
+    for (int64_t k = 0; k < count; k++)
+        if (!isnan(mean[k]))
+            mean[n++] = mean[k];
+    if (n < 2)
+        return;
+    gsl_sort(mean, 1, n);
+    e->low = draws ? gsl_stats_quantile_from_sorted_data(mean, 1, n, 0.05) : mean[0];
+    e->high = draws ? gsl_stats_quantile_from_sorted_data(mean, 1, n, 0.95) : mean[n - 1];
+}
+
+sf_status sf_effect_measure(const sf_runs *r, int factor, size_t figure, sf_effect *e, sf_error *err) {
+    sf_groups g = {0};
+    const sf_factor *f = &r->plan->factor[factor];
+    *e = (sf_effect){NAN, NAN, NAN, NAN};
+    if (sf_groups_make(r->plan, factor, &g, err) == SF_OK) {
+        double *mean = sf_alloc(err, (unsigned long)g.count, sizeof *mean, "means");
+        int64_t *number = sf_alloc(err, (unsigned long)g.count, sizeof *number, "means");
+        if (mean && number) {
+            sf_groups_mean(r, factor, &g, figure, mean, number);
+            e->first = f->words ? NAN : mean[0];
+            e->last = f->words ? NAN : mean[g.count - 1];
+            find_range(mean, g.count, f->words && f->uncertain, e);
+        }
+        free(mean);
+        free(number);
+    }
+    sf_groups_free(&g);
+    return err->status;
+}

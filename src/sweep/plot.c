@@ -1,0 +1,497 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sweep/plot.h"
+
+#include "io/gnuplot.h"
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COLUMNS = 4, SERIES = 8, POINTS = 3000, CURVES = 200, CURVE_POINTS = 300, BARS = SF_SWEEP_FACTORS };
+
+static const sf_sweep_picture pictures[] = {
+    {"factors", "Each figure against each factor that is a number: a point is a run, lines join the means"},
+    {"curves", "Deceleration over time of the runs"},
+    {"effects", "Main effects: the range of the means between the values of a factor, the greatest on top"},
+    {"indices", "Sobol' indices, first order and total, with 95 % intervals"},
+    {"surface", "Response surface: each run as the surface without it predicts it"},
+    {"probability", "Probability of staying below the limit"},
+    {NULL, NULL}};
+
+static const char *const colours[SERIES] = {"#08519c", "#cb181d", "#238b45", "#6a51a3",
+                                            "#d94801", "#17becf", "#8c6d31", "#525252"};
+
+const sf_sweep_picture *sf_sweep_pictures(void) {
+    return pictures;
+}
+
+/* A text between single quotes of gnuplot. */
+static void put_text(FILE *g, const char *text) {
+    fputc('\'', g);
+    for (; *text; text++) {
+        if (*text == '\'')
+            fputc('\'', g);
+        fputc(*text == '\n' ? ' ' : *text, g);
+    }
+    fputc('\'', g);
+}
+
+static void put_label(FILE *g, const char *command, const char *text) {
+    fprintf(g, "%s ", command);
+    put_text(g, text);
+    fputc('\n', g);
+}
+
+static void put_factor_label(FILE *g, const char *command, const sf_factor *f) {
+    char text[SF_FACTOR_KEY_SIZE + SF_FACTOR_UNIT_SIZE + 8];
+    sf_factor_heading(f, text, sizeof text);
+    put_label(g, command, text);
+}
+
+/* The last part of a level's name: a file without its folders. */
+static const char *short_label(const char *label) {
+    const char *slash = strrchr(label, '/');
+    return slash ? slash + 1 : label;
+}
+
+static void level_text(const sf_factor *f, double value, char *text, size_t size) {
+    char whole[SF_SWEEP_OVERRIDE_SIZE];
+    if (f->words)
+        snprintf(text, size, "%s", short_label(f->label[(int64_t)value]));
+    else if (sf_factor_text(f, value, whole, sizeof whole), *f->unit)
+        snprintf(text, size, "%.32s %s", whole, f->unit);
+    else
+        snprintf(text, size, "%.32s", whole);
+}
+
+/* ---- series: the levels of one chosen factor ---- */
+
+typedef struct series {
+    int factor; /* -1: one series */
+    sf_groups groups;
+} series;
+
+static sf_status choose_series(const sf_plan *p, int other, series *s, sf_error *err) {
+    *s = (series){.factor = -1};
+    for (int f = 0; f < p->factor_count && s->factor < 0; f++) {
+        if (f == other || p->factor[f].uncertain || (other >= 0 && p->block_of[f] == p->block_of[other]))
+            continue;
+        if (sf_groups_make(p, f, &s->groups, err) != SF_OK)
+            return err->status;
+        if (s->groups.count > 1 && s->groups.count <= SERIES)
+            s->factor = f;
+        else
+            sf_groups_free(&s->groups);
+    }
+    return SF_OK;
+}
+
+static int series_count(const series *s) {
+    return s->factor < 0 ? 1 : (int)s->groups.count;
+}
+
+static int series_of(const sf_plan *p, const series *s, int64_t row) {
+    if (s->factor < 0)
+        return 0;
+    const sf_block *b = &p->block[p->block_of[s->factor]];
+    return (int)s->groups.of_row[row / b->stride % b->rows];
+}
+
+static void put_series_title(FILE *g, const sf_plan *p, const series *s, int k) {
+    char text[SF_FACTOR_KEY_SIZE + 160], level[128];
+    if (s->factor < 0) {
+        fputs("notitle", g);
+        return;
+    }
+    level_text(&p->factor[s->factor], s->groups.middle[k], level, sizeof level);
+    snprintf(text, sizeof text, "%.60s %.100s", p->factor[s->factor].name, level);
+    fputs("title ", g);
+    put_text(g, text);
+}
+
+/* ---- figures against factors ---- */
+
+/* Points and means of one factor, series by series: $p<column>_<series> and $m... */
+static sf_status put_factor_data(FILE *g, const sf_analysis *a, int column, int factor, const series *s,
+                                 sf_error *err) {
+    const sf_plan *p = a->plan;
+    int64_t every = p->rows / POINTS + 1;
+    sf_groups g2 = {0};
+    if (sf_groups_make(p, factor, &g2, err) != SF_OK)
+        return err->status;
+    int64_t groups = g2.count, cells = groups * p->figure_count;
+    double *sum = sf_alloc(err, (unsigned long)cells, sizeof *sum, "a picture");
+    double *number = sf_alloc(err, (unsigned long)cells, sizeof *number, "a picture");
+    const sf_block *b = &p->block[p->block_of[factor]];
+    for (int k = 0; k < series_count(s) && err->status == SF_OK; k++) {
+        memset(sum, 0, (size_t)cells * sizeof *sum);
+        memset(number, 0, (size_t)cells * sizeof *number);
+        fprintf(g, "$p%d_%d << EOD\nNaN,NaN\n", column, k);
+        for (int64_t row = 0; row < p->rows; row++) {
+            if (!sf_runs_usable(a->runs, row) || series_of(p, s, row) != k)
+                continue;
+            int64_t group = g2.of_row[row / b->stride % b->rows];
+            if (row % every == 0)
+                fprintf(g, "%.9g", sf_plan_value(p, factor, row));
+            for (int f = 0; f < p->figure_count; f++) {
+                double value = sf_analysis_value(a, f, row);
+                if (row % every == 0)
+                    fprintf(g, ",%.6g", value);
+                sum[f * groups + group] += isnan(value) ? 0 : value;
+                number[f * groups + group] += !isnan(value);
+            }
+            if (row % every == 0)
+                fputc('\n', g);
+        }
+        fprintf(g, "EOD\n$m%d_%d << EOD\nNaN,NaN\n", column, k);
+        for (int64_t group = 0; group < groups; group++) {
+            fprintf(g, "%.9g", g2.middle[group]);
+            for (int f = 0; f < p->figure_count; f++)
+                fprintf(g, ",%.6g", sum[f * groups + group] / number[f * groups + group]);
+            fputc('\n', g);
+        }
+        fputs("EOD\n", g);
+    }
+    free(sum);
+    free(number);
+    sf_groups_free(&g2);
+    return err->status;
+}
+
+static void put_factor_panel(FILE *g, const sf_analysis *a, int figure, int column, int factor,
+                             const series *s) {
+    const sf_sweep_limit *limit = &a->plan->figure[figure];
+    put_factor_label(g, "set xlabel", &a->plan->factor[factor]);
+    put_label(g, "set ylabel", limit->figure);
+    fputs(figure == 0 && s->factor >= 0 ? "set key top left\n" : "unset key\n", g);
+    fputs("plot ", g);
+    if (!isnan(limit->limit))
+        fprintf(g, "%.9g with lines lw 2 dt 2 lc rgb '#cb181d' notitle, \\\n     ", limit->limit);
+    for (int k = 0; k < series_count(s); k++) {
+        fprintf(g, "%s$p%d_%d using 1:%d with points pt 7 ps 0.8*dot lc rgb '%s' notitle, \\\n     ",
+                k ? ", \\\n     " : "", column, k, figure + 2, colours[k]);
+        fprintf(g, "$m%d_%d using 1:%d with lines lw 2.5 lc rgb '%s' ", column, k, figure + 2, colours[k]);
+        put_series_title(g, a->plan, s, k);
+    }
+    fputc('\n', g);
+}
+
+static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, sf_error *err) {
+    int list[SF_SWEEP_FACTORS], columns = sf_analysis_numbers(a->plan, list), figures = a->plan->figure_count;
+    series s[COLUMNS] = {{0}};
+    columns = columns < COLUMNS ? columns : COLUMNS;
+    if (columns == 0)
+        return SF_OK;
+    FILE *g = sf_gnuplot_begin(output, "factors", columns > 1 ? 1800 : 1300, 620 * figures, err);
+    for (int c = 0; c < columns && g && err->status == SF_OK; c++)
+        if (choose_series(a->plan, list[c], &s[c], err) == SF_OK)
+            put_factor_data(g, a, c, list[c], &s[c], err);
+    if (g)
+        fprintf(g, "set multiplot layout %d,%d\nset offsets graph 0.04, graph 0.04, graph 0.05, graph 0.05\n",
+                figures, columns);
+    for (int k = 0; k < figures && g; k++)
+        for (int c = 0; c < columns; c++)
+            put_factor_panel(g, a, k, c, list[c], &s[c]);
+    for (int c = 0; c < columns; c++)
+        sf_groups_free(&s[c].groups);
+    if (g)
+        fputs("unset multiplot\n", g);
+    return g ? sf_staging_close(g, "factors.gp", err) : err->status;
+}
+
+/* ---- curves ---- */
+
+/* A curve as a block of lines; false if its results cannot be read any more. */
+static bool put_curve(FILE *g, const char *folder, const char *name, int number) {
+    char path[PATH_MAX];
+    sf_results r;
+    sf_figures f = {0};
+    sf_error none = SF_ERROR_INIT;
+    snprintf(path, sizeof path, "%s/%s/results.h5", folder, name);
+    if (sf_results_open(path, &r, &none) != SF_OK)
+        return false;
+    bool good = sf_figures_compute(&r, 1000, &f, &none) == SF_OK;
+    int64_t count = good ? f.filtered.count : 0, every = count / CURVE_POINTS + 1;
+    if (good)
+        fprintf(g, "$c%d << EOD\n", number);
+    for (int64_t k = 0; k < count; k += every)
+        fprintf(g, "%.6g,%.6g\n", 1e3 * f.filtered.time[k], f.filtered.value[k]);
+    if (good)
+        fputs("EOD\n", g);
+    sf_figures_free(&f);
+    sf_results_close(&r);
+    return good;
+}
+
+static void put_curve_plot(FILE *g, const sf_plan *p, const series *s, int count, const int *of) {
+    bool titled[SERIES] = {false};
+    fputs("set xlabel 'time (ms)'\nset ylabel 'deceleration (g)'\nset key top right\nplot ", g);
+    for (int k = 0; k < count; k++) {
+        fprintf(g, "%s$c%d using 1:2 with lines lw 1.2 lc rgb '%s' ", k ? ", \\\n     " : "", k,
+                colours[of[k]]);
+        if (titled[of[k]])
+            fputs("notitle", g);
+        else
+            put_series_title(g, p, s, of[k]);
+        titled[of[k]] = true;
+    }
+    fputc('\n', g);
+}
+
+static sf_status plot_curves(const sf_staging *output, const sf_analysis *a, const char *folder,
+                             sf_error *err) {
+    int of[CURVES + 1], count = 0;
+    int64_t usable = a->done - a->unusable, every = usable / CURVES + 1, at = 0;
+    series s;
+    if (choose_series(a->plan, -1, &s, err) != SF_OK)
+        return err->status;
+    FILE *g = sf_gnuplot_begin(output, "curves", 1600, 900, err);
+    for (int64_t row = 0; row < a->runs->count && g && count < CURVES; row++)
+        if (sf_runs_usable(a->runs, row) && a->runs->folder[row] && at++ % every == 0 &&
+            put_curve(g, folder, a->runs->folder[row], count))
+            of[count++] = series_of(a->plan, &s, row);
+    if (g && count > 0)
+        put_curve_plot(g, a->plan, &s, count, of);
+    sf_groups_free(&s.groups);
+    if (!g || sf_staging_close(g, "curves.gp", err) != SF_OK)
+        return err->status;
+    if (count == 0)
+        sf_staging_remove(output, "curves.gp");
+    return SF_OK;
+}
+
+/* ---- effects and indices: horizontal bars ---- */
+
+/* The factors, the greatest value on top: at the end. */
+static void sort_factors(int count, const double *size, int *order) {
+    for (int k = 0; k < count; k++)
+        order[k] = k;
+    for (int k = 1; k < count; k++)
+        for (int j = k; j > 0 && !(size[order[j - 1]] <= size[order[j]]); j--) {
+            int other = order[j];
+            order[j] = order[j - 1];
+            order[j - 1] = other;
+        }
+}
+
+static void put_tics(FILE *g, const sf_plan *p, int count, const int *order) {
+    fputs("set ytics (", g);
+    for (int k = 0; k < count; k++) {
+        put_text(g, p->factor[order[k]].name);
+        fprintf(g, " %d%s", k, k + 1 < count ? ", " : ")\n");
+    }
+    fprintf(g, "set yrange [-0.6:%g]\n", count - 0.4);
+}
+
+static void put_effect_panel(FILE *g, const sf_analysis *a, int figure) {
+    const sf_plan *p = a->plan;
+    double size[BARS];
+    int order[BARS];
+    for (int f = 0; f < p->factor_count; f++) {
+        const sf_effect *e = &a->effect[figure][f];
+        size[f] = isnan(e->low) ? 0 : e->high - e->low;
+    }
+    sort_factors(p->factor_count, size, order);
+    fprintf(g, "$e%d << EOD\nNaN,NaN,NaN,NaN\n", figure);
+    for (int k = 0; k < p->factor_count; k++) {
+        const sf_effect *e = &a->effect[figure][order[k]];
+        fprintf(g, "%.9g,%d,%.9g,%.9g\n", 0.5 * (e->low + e->high), k, e->low, e->high);
+    }
+    fputs("EOD\n", g);
+    put_tics(g, p, p->factor_count, order);
+    put_label(g, "set xlabel", p->figure[figure].figure);
+    fprintf(
+        g,
+        "plot $e%d using 1:2:3:4:($2-0.35):($2+0.35) with boxxyerror fs solid 0.7 noborder lc rgb '#6baed6' "
+        "notitle\n",
+        figure);
+}
+
+static sf_status plot_effects(const sf_staging *output, const sf_analysis *a, sf_error *err) {
+    int figures = a->plan->figure_count, height = 160 + 70 * a->plan->factor_count;
+    FILE *g = sf_gnuplot_begin(output, "effects", 1600, (height < 400 ? 400 : height) * figures, err);
+    if (!g)
+        return err->status;
+    fprintf(g, "set multiplot layout %d,1\nset lmargin 26\nunset key\n", figures);
+    for (int k = 0; k < figures; k++)
+        put_effect_panel(g, a, k);
+    fputs("unset multiplot\n", g);
+    return sf_staging_close(g, "effects.gp", err);
+}
+
+static void put_index_panel(FILE *g, const sf_analysis *a, int figure) {
+    const sf_plan *p = a->plan;
+    double size[BARS];
+    int order[BARS];
+    for (int f = 0; f < p->factor_count; f++)
+        size[f] = a->index[figure][f].total;
+    sort_factors(p->factor_count, size, order);
+    fprintf(g, "$i%d << EOD\n", figure);
+    for (int k = 0; k < p->factor_count; k++) {
+        const sf_index *i = &a->index[figure][order[k]];
+        fprintf(g, "%d,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", k, i->first, i->first_low, i->first_high, i->total,
+                i->total_low, i->total_high);
+    }
+    fputs("EOD\n", g);
+    put_tics(g, p, p->factor_count, order);
+    fputs("set xlabel 'share of the variance of ", g);
+    fprintf(g, "%s'\n", p->figure[figure].figure);
+    fprintf(
+        g,
+        "plot $i%d using 2:($1+0.12):3:4 with xerrorbars pt 7 lw 2 lc rgb '#08519c' title 'first order', \\\n"
+        "     $i%d using 5:($1-0.12):6:7 with xerrorbars pt 5 lw 2 lc rgb '#cb181d' title 'total'\n",
+        figure, figure);
+}
+
+static sf_status plot_indices(const sf_staging *output, const sf_analysis *a, sf_error *err) {
+    int figures = a->plan->figure_count;
+    if (!a->with_indices || isnan(a->index[0][0].first))
+        return SF_OK;
+    FILE *g = sf_gnuplot_begin(output, "indices", 1600, (240 + 70 * a->plan->factor_count) * figures, err);
+    if (!g)
+        return err->status;
+    fprintf(g, "set multiplot layout %d,1\nset lmargin 26\nset key top right\n", figures);
+    for (int k = 0; k < figures; k++)
+        if (!isnan(a->index[k][0].first))
+            put_index_panel(g, a, k);
+    fputs("unset multiplot\n", g);
+    return sf_staging_close(g, "indices.gp", err);
+}
+
+/* ---- response surface ---- */
+
+static void put_surface_panel(FILE *g, const sf_analysis *a, int figure) {
+    const sf_sweep_surface *s = &a->surface[figure];
+    int64_t every = s->rows / POINTS + 1;
+    fprintf(g, "$s%d << EOD\n", figure);
+    for (int64_t k = 0; k < s->rows; k += every)
+        fprintf(g, "%.6g,%.6g\n", s->simulated[k], s->left_out[k]);
+    fprintf(g, "EOD\nset xlabel '%s, simulated'\nset ylabel 'by the surface without the run'\n",
+            a->plan->figure[figure].figure);
+    fprintf(g,
+            "plot $s%d using 1:2 with points pt 7 ps 1.2*dot lc rgb '#08519c' notitle, \\\n"
+            "     '' using 1:1 with lines lw 1.5 lc rgb '#606060' notitle\n",
+            figure);
+}
+
+static sf_status plot_surface(const sf_staging *output, const sf_analysis *a, sf_error *err) {
+    int panels = 0;
+    for (int k = 0; k < a->plan->figure_count; k++)
+        panels += a->surface[k].fit.terms > 0;
+    if (panels == 0)
+        return SF_OK;
+    FILE *g = sf_gnuplot_begin(output, "surface", 1600, panels > 1 ? 800 * ((panels + 1) / 2) : 1000, err);
+    if (!g)
+        return err->status;
+    fprintf(g, "set multiplot layout %d,%d\n", panels > 1 ? (panels + 1) / 2 : 1, panels > 1 ? 2 : 1);
+    for (int k = 0; k < a->plan->figure_count; k++)
+        if (a->surface[k].fit.terms > 0)
+            put_surface_panel(g, a, k);
+    fputs("unset multiplot\n", g);
+    return sf_staging_close(g, "surface.gp", err);
+}
+
+/* ---- probability ---- */
+
+static int list_chosen(const sf_plan *p, int *block) {
+    int count = 0;
+    for (int k = 0; k < p->block_count; k++)
+        if (sf_block_is_chosen(p, k))
+            block[count++] = k;
+    return count;
+}
+
+/* The levels of a block's first factor as tics at 0, 1, ... */
+static void put_level_tics(FILE *g, const char *axis, const sf_plan *p, int block) {
+    const sf_block *b = &p->block[block];
+    const sf_factor *f = &p->factor[b->first];
+    char text[128];
+    fprintf(g, "set %stics (", axis);
+    for (int64_t k = 0; k < b->rows; k++) {
+        if (f->words)
+            snprintf(text, sizeof text, "%s", short_label(f->label[(int64_t)f->value[k]]));
+        else
+            snprintf(text, sizeof text, "%.6g", f->value[k]);
+        put_text(g, text);
+        fprintf(g, " %lld%s", (long long)k, k + 1 < b->rows ? ", " : ")\n");
+    }
+    fprintf(g, "set %srange [-0.5:%g]\nset %slabel ", axis, (double)b->rows - 0.5, axis);
+    sf_factor_heading(f, text, sizeof text);
+    put_text(g, text);
+    fputc('\n', g);
+}
+
+static void put_map(FILE *g, const sf_analysis *a, int figure, const int *block) {
+    const sf_plan *p = a->plan;
+    int64_t ny = p->block[block[1]].rows;
+    put_level_tics(g, "x", p, block[0]);
+    put_level_tics(g, "y", p, block[1]);
+    fprintf(g, "$q%d << EOD\n", figure);
+    for (int64_t k = 0; k < a->probability.cells; k++)
+        fprintf(g, "%lld,%lld,%.6g\n", (long long)(k / ny), (long long)(k % ny),
+                a->probability.cell[figure * a->probability.cells + k].share);
+    fprintf(g,
+            "EOD\nset cbrange [0:1]\nset palette defined (0 '#cb181d', 0.5 '#fee8a0', 1 '#238b45')\n"
+            "set title 'P(%s < %g)'\n",
+            p->figure[figure].figure, p->figure[figure].limit);
+    fprintf(g,
+            "plot $q%d using 1:2:(0.5):(0.5):3 with boxxyerror fs solid lc palette notitle, \\\n"
+            "     '' using 1:2:(sprintf('%%.2f', $3)) with labels notitle\n",
+            figure);
+}
+
+static void put_line(FILE *g, const sf_analysis *a, int figure, const int *block) {
+    const sf_probabilities *q = &a->probability;
+    put_level_tics(g, "x", a->plan, block[0]);
+    fprintf(g, "set yrange [-0.02:1.02]\nset ylabel 'probability'\n$q%d << EOD\n", figure);
+    for (int64_t k = 0; k < q->cells; k++) {
+        const sf_probability *c = &q->cell[figure * q->cells + k];
+        fprintf(g, "%lld,%.6g,%.6g,%.6g\n", (long long)k, c->share, c->low, c->high);
+    }
+    fprintf(g, "EOD\nset title 'P(%s < %g), 95 %% interval'\n", a->plan->figure[figure].figure,
+            a->plan->figure[figure].limit);
+    fprintf(g, "plot $q%d using 1:2:3:4 with yerrorbars pt 7 lw 2 lc rgb '#08519c' notitle\n", figure);
+}
+
+static sf_status plot_probability(const sf_staging *output, const sf_analysis *a, sf_error *err) {
+    int block[SF_SWEEP_FACTORS], chosen = list_chosen(a->plan, block), panels = 0;
+    for (int k = 0; k < a->plan->figure_count; k++)
+        panels += !isnan(a->plan->figure[k].limit);
+    if (a->probability.cells < 2 || a->probability.cells > 400 || chosen < 1 || chosen > 2 || panels == 0)
+        return SF_OK;
+    FILE *g =
+        sf_gnuplot_begin(output, "probability", 1600, panels > 1 ? 760 * ((panels + 1) / 2) : 1000, err);
+    if (!g)
+        return err->status;
+    fprintf(g, "set multiplot layout %d,%d\nunset key\n", panels > 1 ? (panels + 1) / 2 : 1,
+            panels > 1 ? 2 : 1);
+    for (int k = 0; k < a->plan->figure_count; k++)
+        if (isnan(a->plan->figure[k].limit))
+            continue;
+        else if (chosen == 2)
+            put_map(g, a, k, block);
+        else
+            put_line(g, a, k, block);
+    fputs("unset multiplot\n", g);
+    return sf_staging_close(g, "probability.gp", err);
+}
+
+/* ---- all ---- */
+
+sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *a, const char *folder, char *warning,
+                        size_t size, sf_error *err) {
+    warning[0] = '\0';
+    if (a->done - a->unusable < 1)
+        return SF_OK;
+    if (plot_factors(output, a, err) != SF_OK || plot_curves(output, a, folder, err) != SF_OK ||
+        plot_effects(output, a, err) != SF_OK || plot_indices(output, a, err) != SF_OK ||
+        plot_surface(output, a, err) != SF_OK || plot_probability(output, a, err) != SF_OK)
+        return err->status;
+    for (const sf_sweep_picture *p = pictures; p->name && !*warning; p++) {
+        char script[64];
+        snprintf(script, sizeof script, "%s.gp", p->name);
+        if (sf_staging_has(output, script))
+            sf_gnuplot_draw(output, p->name, warning, size);
+    }
+    return SF_OK;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The state of every run of a plan and its figures: the table runs.csv. */
+#ifndef SF_SWEEP_RUNS_H
+#define SF_SWEEP_RUNS_H
+
+#include "post/figures.h"
+#include "post/verdict.h"
+#include "sweep/plan.h"
+
+typedef enum sf_run_state { SF_RUN_OPEN, SF_RUN_DONE, SF_RUN_FAILED } sf_run_state;
+
+enum { SF_RUNS_TEXTS = 64 };
+
+typedef struct sf_runs {
+    const sf_plan *plan; /* borrowed */
+    int64_t count;
+    size_t figures;               /* of the list of summary.json, post/figures.h */
+    unsigned char *state, *grade; /* [count] sf_run_state, sf_grade */
+    double *value;                /* [count][figures] as in summary.json; NaN: none; a text: its number */
+    char **folder;                /* [count] name of its folder; NULL: none */
+    char **message;               /* [count] why it failed, or the remarks of its verdict; NULL: none */
+    char text[SF_RUNS_TEXTS][80]; /* of the figures that are texts */
+    int text_count;
+} sf_runs;
+
+/* All open. Release with sf_runs_free. */
+sf_status sf_runs_create(const sf_plan *plan, sf_runs *runs, sf_error *err);
+void sf_runs_free(sf_runs *runs);
+
+/* The figures of a row, to be filled before sf_runs_done. */
+double *sf_runs_place(sf_runs *runs, int64_t row);
+/* The place of a figure among them; the key must be in the list. */
+size_t sf_runs_figure(const char *key);
+/* The figures of a drop into the place of the row. */
+void sf_runs_take(sf_runs *runs, int64_t row, const sf_results *results, const sf_figures *figures);
+
+/* Figures are rounded to the 9 digits of runs.csv, so that a campaign in pieces computes with the same. */
+sf_status sf_runs_done(sf_runs *runs, int64_t row, sf_grade grade, const char *folder, const char *message,
+                       sf_error *err);
+sf_status sf_runs_failed(sf_runs *runs, int64_t row, const char *message, sf_error *err);
+void sf_runs_open(sf_runs *runs, int64_t row);
+int64_t sf_runs_count(const sf_runs *runs, sf_run_state state);
+
+/* Can the figures of the row be used: done, and not "do not use"? */
+bool sf_runs_usable(const sf_runs *runs, int64_t row);
+
+/* Writes runs.csv aside and renames it. */
+sf_status sf_runs_write(const sf_runs *runs, const char *path, sf_error *err);
+/* Reads what sf_runs_write wrote. Rows stay open where the file is of another table. */
+sf_status sf_runs_read(sf_runs *runs, const char *path, sf_error *err);
+
+#endif

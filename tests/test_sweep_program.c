@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-sweep on the example case with a coarse pad. */
+#include "model_fixture.h"
+#include "program_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "io/folder.h"
+
+/* Two speeds and two foams of a pad with a spacing of 20 mm. */
+static void write_plan(const program_place *p, const char *name, const char *speeds) {
+    char text[2048];
+    snprintf(
+        text, sizeof text,
+        "case = \"%s\";\ntitle = \"Two speeds & two foams\";\n"
+        "set = [\"geometry.parameters.fine_spacing=20.0\", \"geometry.parameters.outer_spacing=40.0\","
+        " \"pad.mesh_error_limit=9.0\"];\n"
+        "factors = (\n{ key = \"missile.velocity\"; name = \"speed\"; values = %s; },\n"
+        "{ key = \"material\"; name = \"foam\"; uncertain = true; files = [\"%s\", \"foam.cfg\"]; } );\n",
+        fixture_source("examples/eva50-v4.5/case.cfg"), speeds,
+        fixture_source("examples/materials/eva35.cfg"));
+    program_write_text(p, name, text);
+}
+
+static int set_up(void **state) {
+    int result = program_group_folder(state);
+    const program_place *p = *state;
+    program_shell(p, "sed 's/^HU = .*/HU = 0.1;/' '%s' > foam.cfg && cp '%s' .",
+                  fixture_source("examples/materials/eva35.cfg"),
+                  fixture_source("examples/materials/eva35.csv"));
+    write_plan(p, "plan.cfg", "[\"3 m/s\", \"4 m/s\"]");
+    return result;
+}
+
+static void a_dry_run_tells_the_table_and_the_cost_and_writes_nothing(void **state) {
+    const program_place *p = *state;
+    program_result r = program_succeed(p, "sweep", "plan.cfg -o out --dry-run --jobs 2");
+    assert_non_null(strstr(r.out, "4 runs\n  id, speed (m/s), foam\n  1, 3, "));
+    assert_non_null(strstr(r.out, "4 open runs of about "));
+    assert_non_null(strstr(r.out, "the estimate of softfall-pre for the first row"));
+    assert_int_equal(program_shell(p, "test -e out").code, 1);
+}
+
+/* runs.csv without the figures that are of the machine. */
+static char *table(const program_place *p) {
+    program_result r =
+        program_shell(p, "python3 -c \"import csv\nfor row in csv.DictReader(open('out/runs.csv')): "
+                         "row.pop('wall_s'), row.pop('threads'); print(row)\"");
+    assert_int_equal(r.code, 0);
+    return strdup(r.out);
+}
+
+static void a_sweep_writes_its_table_and_report_and_resumes(void **state) {
+    const program_place *p = *state;
+    program_result r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2");
+    assert_non_null(strstr(r.out, "4 runs: 4 done, 0 failed, 0 open"));
+    assert_int_equal(program_shell(p, "test $(wc -l < out/runs.csv) = 5").code, 0);
+    assert_int_equal(
+        program_shell(
+            p,
+            "head -1 out/runs.csv | grep -q '^id,speed (m/s),foam,run_status,grade,message,folder,a_max_g,'")
+            .code,
+        0);
+    assert_int_equal(program_shell(p, "test $(ls -d out/runs/drop-* | wc -l) = 4").code, 0);
+    program_assert_page(p, "out/report.html", "Two speeds & two foams");
+    program_assert_page(p, "out/report.html", "Probability of staying below the limits");
+    assert_int_equal(program_shell(p, "python3 -m json.tool out/sweep.json > /dev/null").code, 0);
+    assert_int_equal(
+        program_shell(p, "for n in factors curves effects probability; do test -s out/$n.png || exit 1; done")
+            .code,
+        0);
+    char *before = table(p);
+    r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2"); /* nothing is left to do */
+    assert_non_null(strstr(r.out, "0 drops simulated"));
+    char *again = table(p);
+    assert_string_equal(again, before);
+    program_shell(
+        p, "rm -r out/runs.csv out/sweep.key $(ls -d out/runs/drop-* | head -1)"); /* as after a kill */
+    r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2 --force");
+    assert_non_null(strstr(r.out, "1 drops simulated, 3 were there"));
+    char *resumed = table(p);
+    assert_string_equal(resumed, before);
+    free(before);
+    free(again);
+    free(resumed);
+}
+
+/* Goes on from the folder of the test before. */
+static void what_a_run_reads_is_simulated_again_when_it_changes(void **state) {
+    const program_place *p = *state;
+    program_shell(p, "sed -i 's/^HU = .*/HU = 0.2;/' foam.cfg");
+    program_result r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2");
+    assert_non_null(strstr(r.out, "every run is looked at again"));
+    assert_non_null(strstr(r.out, "2 drops simulated, 2 were there"));
+}
+
+static void assert_refused(const program_place *p, const char *words, const char *part) {
+    program_result r = program_run(p, "sweep", "%s", words);
+    if (r.code != 2 || !strstr(r.err, part))
+        fail_msg("exit code %d, \"%s\" expected in: %s", r.code, part, r.err);
+    const char *end = strchr(r.err, '\n');
+    if (!end || end[1])
+        fail_msg("more than a sentence: %s", r.err);
+}
+
+static void folders_that_are_not_of_the_plan_or_taken_are_refused(void **state) {
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    int lock = -1;
+    write_plan(p, "other.cfg", "[\"3 m/s\", \"4 m/s\", \"5 m/s\"]");
+    assert_refused(p, "other.cfg -o out", "holds the runs of another plan");
+    assert_int_equal(sf_folder_lock(program_path(p, "out"), &lock, &err), SF_OK);
+    assert_refused(p, "plan.cfg -o out", "another campaign is at work in out");
+    close(lock);
+    program_succeed(p, "sweep", "plan.cfg -o out");
+    program_shell(p, "mkdir used; touch used/report.html");
+    assert_refused(p, "plan.cfg -o used", "used already holds report.html");
+    write_plan(p, "wrong.cfg", "[\"3 kg\"]");
+    assert_refused(p, "wrong.cfg -o new", "wrong.cfg:5: ");
+    assert_refused(p, "none.cfg -o new", "none.cfg");
+    assert_int_equal(program_shell(p, "test -e new").code, 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_dry_run_tells_the_table_and_the_cost_and_writes_nothing),
+        cmocka_unit_test(a_sweep_writes_its_table_and_report_and_resumes),
+        cmocka_unit_test(what_a_run_reads_is_simulated_again_when_it_changes),
+        cmocka_unit_test(folders_that_are_not_of_the_plan_or_taken_are_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+}
