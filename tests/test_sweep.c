@@ -403,7 +403,7 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
     formula *f = context;
     *fresh = 0;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
-        bool there = runs->state[row[k]] == SF_RUN_DONE;
+        bool there = runs->state[row[k]] == SF_SWEEP_DONE;
         if (there && !f->changed)
             continue;
         if (f->stop_at > 0 && f->calls == f->stop_at)
@@ -478,7 +478,7 @@ static void a_failed_run_keeps_its_sentence_and_is_done_again_on_request(void **
     f.fails = -1;
     assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
     assert_int_equal(f.calls, 0);
-    assert_int_equal(runs.state[3], SF_RUN_FAILED);
+    assert_int_equal(runs.state[3], SF_SWEEP_FAILED);
     assert_string_equal(runs.message[3], "it failed, and said \"no\"; see log");
     sf_runs_free(&runs);
     assert_int_equal(rows_done(p, &plan, &f, true, 1), 1);

@@ -121,6 +121,12 @@ static void folders_that_are_not_of_the_plan_or_taken_are_refused(void **state) 
     assert_refused(p, "plan.cfg -o out", "another campaign is at work in out");
     close(lock);
     program_succeed(p, "sweep", "plan.cfg -o out");
+    program_shell(p, "mkdir taken"); /* the same of softfall-cfh */
+    assert_int_equal(sf_folder_lock(program_path(p, "taken"), &lock, &err), SF_OK);
+    program_result r = program_run(p, "cfh", "'%s' -o taken", fixture_source("examples/eva50-v4.5/case.cfg"));
+    assert_int_equal(r.code, 2);
+    assert_non_null(strstr(r.err, "another campaign is at work in taken"));
+    close(lock);
     program_shell(p, "mkdir used; touch used/report.html");
     assert_refused(p, "plan.cfg -o used", "used already holds report.html");
     write_plan(p, "wrong.cfg", "[\"3 kg\"]");

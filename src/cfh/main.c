@@ -5,6 +5,7 @@
 #include "cfh/series.h"
 #include "cfh/spread_report.h"
 #include "core/program.h"
+#include "io/folder.h"
 #include "io/process.h"
 #include "io/provenance.h"
 #include "case/case.h"
@@ -195,6 +196,7 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
     sf_cfh_points points = {0};
     sf_cfh_result result;
     sf_cfh_spread spread = {0};
+    int lock = -1; /* until the program ends */
     if (sf_staging_check(o->directory, output_names, o->force, err) != SF_OK ||
         (o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
         return err->status;
@@ -215,6 +217,7 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
                             .mass = s->mass,
                             .foams = &s->foams};
     if (sf_staging_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
+        sf_folder_lock(o->directory, &lock, err) != SF_OK ||
         simulate(o, s, output, &report, &points, &result, &spread, err) != SF_OK)
         ;
     else if (write_output(output, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)

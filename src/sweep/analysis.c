@@ -11,10 +11,10 @@ double sf_analysis_value(const sf_analysis *a, int figure, int64_t row) {
 
 static void count(sf_analysis *a) {
     for (int64_t k = 0; k < a->runs->count; k++) {
-        bool done = a->runs->state[k] == SF_RUN_DONE;
+        bool done = a->runs->state[k] == SF_SWEEP_DONE;
         a->done += done;
-        a->failed += a->runs->state[k] == SF_RUN_FAILED;
-        a->open += a->runs->state[k] == SF_RUN_OPEN;
+        a->failed += a->runs->state[k] == SF_SWEEP_FAILED;
+        a->open += a->runs->state[k] == SF_SWEEP_OPEN;
         a->unusable += done && a->runs->grade[k] == SF_GRADE_DO_NOT_USE;
         a->remarks += done && a->runs->grade[k] == SF_GRADE_REMARKS;
     }

@@ -94,7 +94,7 @@ sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, sf_e
     return sf_runs_read(runs, table.text, err);
 }
 
-static void open_all(sf_runs *runs, sf_run_state state) {
+static void open_all(sf_runs *runs, sf_sweep_state state) {
     for (int64_t row = 0; row < runs->count; row++)
         if (runs->state[row] == state)
             sf_runs_open(runs, row);
@@ -106,13 +106,13 @@ static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, sf_error *
     if (check_keys(c, &k, &known, err) != SF_OK || sf_sweep_campaign_look(c, runs, err) != SF_OK)
         return err->status;
     if (known && k.inputs != c->inputs) {
-        open_all(runs, SF_RUN_DONE);
-        open_all(runs, SF_RUN_FAILED);
+        open_all(runs, SF_SWEEP_DONE);
+        open_all(runs, SF_SWEEP_FAILED);
         if (c->log)
             fputs("  files or programs have changed since: every run is looked at again\n", c->log);
     }
     if (c->retry)
-        open_all(runs, SF_RUN_FAILED);
+        open_all(runs, SF_SWEEP_FAILED);
     return SF_OK;
 }
 
@@ -132,7 +132,7 @@ static int pick_samples(const sf_runs *runs, int64_t sample[GEOMETRIES]) {
     uint64_t seen[GEOMETRIES];
     int count = 0;
     for (int64_t row = 0; row < runs->count && count < GEOMETRIES; row++) {
-        if (runs->state[row] != SF_RUN_DONE)
+        if (runs->state[row] != SF_SWEEP_DONE)
             continue;
         uint64_t hash = geometry_of(runs->plan, row);
         int k = 0;
@@ -156,7 +156,7 @@ static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine
         return SF_OK;
     if (engine->run(engine->context, runs, count, sample, &fresh, err) != SF_OK || fresh == 0)
         return err->status;
-    open_all(runs, SF_RUN_DONE);
+    open_all(runs, SF_SWEEP_DONE);
     if (c->log)
         fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
               c->log);
@@ -168,7 +168,7 @@ static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine
 static int next_piece(const sf_runs *runs, int64_t *from, int most, int64_t *row) {
     int count = 0;
     for (; *from < runs->count && count < most; ++*from)
-        if (runs->state[*from] == SF_RUN_OPEN)
+        if (runs->state[*from] == SF_SWEEP_OPEN)
             row[count++] = *from;
     return count;
 }
@@ -185,7 +185,7 @@ static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t don
 
 static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine, const char *table,
                       sf_runs *runs, int64_t *row, sf_error *err) {
-    int64_t from = 0, done = 0, open = sf_runs_count(runs, SF_RUN_OPEN);
+    int64_t from = 0, done = 0, open = sf_runs_count(runs, SF_SWEEP_OPEN);
     double start = now(), written = start, duration = 0;
     int count;
     while (err->status == SF_OK && (count = next_piece(runs, &from, engine->piece, row)) > 0) {

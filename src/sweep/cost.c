@@ -33,7 +33,7 @@ static sf_status measure(const sf_runs *r, double *seconds, int64_t *done, sf_er
     size_t wall = sf_runs_figure("wall_s"), threads = sf_runs_figure("threads"), n = 0;
     for (int64_t row = 0; row < r->count && value; row++) {
         const double *place = r->value + row * (int64_t)r->figures;
-        if (r->state[row] == SF_RUN_DONE && place[wall] * place[threads] >= 0)
+        if (r->state[row] == SF_SWEEP_DONE && place[wall] * place[threads] >= 0)
             value[n++] = place[wall] * place[threads];
     }
     *done = (int64_t)n;
@@ -46,7 +46,7 @@ static sf_status measure(const sf_runs *r, double *seconds, int64_t *done, sf_er
 
 static void from_runs(const sf_runs *r, const char *folder, int64_t done, sf_sweep_cost *c) {
     for (int64_t row = 0; row < r->count && c->bytes <= 0; row++)
-        if (r->state[row] == SF_RUN_DONE && r->folder[row])
+        if (r->state[row] == SF_SWEEP_DONE && r->folder[row])
             c->bytes = size_of(folder, r->folder[row]) + 1e4;
     c->work_bytes = 20 * c->bytes;
     snprintf(c->basis, sizeof c->basis, "from %lld finished run%s: the median of softfall-solve alone",
@@ -74,7 +74,7 @@ static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
 
 sf_status sf_sweep_cost_estimate(const sf_runs *r, const char *folder, sf_sweep_cost *c, sf_error *err) {
     int64_t done = 0;
-    *c = (sf_sweep_cost){.open = sf_runs_count(r, SF_RUN_OPEN)};
+    *c = (sf_sweep_cost){.open = sf_runs_count(r, SF_SWEEP_OPEN)};
     if (measure(r, &c->seconds, &done, err) != SF_OK)
         return err->status;
     if (done == 0)

@@ -47,7 +47,7 @@ static void count(const sf_runs *r, int64_t row, const sf_sweep_limit *limit, sf
     double value =
         sf_runs_usable(r, row) ? sf_runs_place((sf_runs *)r, row)[sf_runs_figure(limit->figure)] : NAN;
     bool anvil =
-        r->state[row] == SF_RUN_FAILED && r->message[row] && strstr(r->message[row], SF_ENDED_ON_ANVIL);
+        r->state[row] == SF_SWEEP_FAILED && r->message[row] && strstr(r->message[row], SF_ENDED_ON_ANVIL);
     p->below += value < limit->limit;
     p->above += value >= limit->limit || anvil;
     p->unknown += isnan(value) && !anvil;
@@ -64,8 +64,8 @@ sf_status sf_probabilities_count(const sf_runs *r, sf_probabilities *p, sf_error
     for (int64_t row = r->count - 1; row >= 0 && err->status == SF_OK; row--) {
         int64_t cell = cell_of(plan, row);
         p->row[cell] = row;
-        p->open += r->state[row] == SF_RUN_OPEN;
-        for (int k = 0; k < plan->figure_count && r->state[row] != SF_RUN_OPEN; k++)
+        p->open += r->state[row] == SF_SWEEP_OPEN;
+        for (int k = 0; k < plan->figure_count && r->state[row] != SF_SWEEP_OPEN; k++)
             count(r, row, &plan->figure[k], &p->cell[k * p->cells + cell]);
     }
     for (int64_t k = 0; k < plan->figure_count * p->cells && err->status == SF_OK; k++)

@@ -415,8 +415,8 @@ static void put_failures(FILE *page, const sf_sweep_report *r) {
     sf_html_heading(page, "Runs that failed or are not to be used");
     sf_html_table t = sf_html_table_begin(page, "dense", ">id|what|sentence");
     for (int64_t row = 0; row < r->runs->count && listed < LISTED; row++) {
-        bool failed = r->runs->state[row] == SF_RUN_FAILED;
-        if (!failed && (r->runs->state[row] != SF_RUN_DONE || sf_runs_usable(r->runs, row)))
+        bool failed = r->runs->state[row] == SF_SWEEP_FAILED;
+        if (!failed && (r->runs->state[row] != SF_SWEEP_DONE || sf_runs_usable(r->runs, row)))
             continue;
         listed++;
         sf_html_row(&t);
@@ -466,7 +466,7 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
             (long long)a->unusable);
     int listed = 0;
     for (int64_t row = 0; row < r->runs->count && listed < 5; row++)
-        if (r->runs->state[row] == SF_RUN_FAILED && ++listed)
+        if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)
             fprintf(out, "  run %lld failed: %s\n", (long long)row + 1, r->runs->message[row]);
     if (a->failed > listed)
         fprintf(out, "  %lld more in runs.csv; --retry does them again\n", (long long)a->failed - listed);

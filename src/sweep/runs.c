@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const char *const states[] = {
-    [SF_RUN_OPEN] = "open", [SF_RUN_DONE] = "done", [SF_RUN_FAILED] = "failed"};
+    [SF_SWEEP_OPEN] = "open", [SF_SWEEP_DONE] = "done", [SF_SWEEP_FAILED] = "failed"};
 
 sf_status sf_runs_create(const sf_plan *plan, sf_runs *r, sf_error *err) {
     unsigned long n = (unsigned long)plan->rows;
@@ -102,7 +102,7 @@ sf_status sf_runs_done(sf_runs *r, int64_t row, sf_grade grade, const char *fold
     double *place = sf_runs_place(r, row);
     for (size_t k = 0; k < r->figures; k++)
         place[k] = to_nine_digits(place[k]);
-    r->state[row] = SF_RUN_DONE;
+    r->state[row] = SF_SWEEP_DONE;
     r->grade[row] = (unsigned char)grade;
     keep_text(&r->message[row], message, err);
     return keep_text(&r->folder[row], folder, err);
@@ -110,13 +110,13 @@ sf_status sf_runs_done(sf_runs *r, int64_t row, sf_grade grade, const char *fold
 
 sf_status sf_runs_failed(sf_runs *r, int64_t row, const char *message, sf_error *err) {
     sf_runs_open(r, row);
-    r->state[row] = SF_RUN_FAILED;
+    r->state[row] = SF_SWEEP_FAILED;
     return keep_text(&r->message[row], message, err);
 }
 
 void sf_runs_open(sf_runs *r, int64_t row) {
     double *place = sf_runs_place(r, row);
-    r->state[row] = SF_RUN_OPEN;
+    r->state[row] = SF_SWEEP_OPEN;
     free(r->message[row]);
     free(r->folder[row]);
     r->message[row] = r->folder[row] = NULL;
@@ -124,7 +124,7 @@ void sf_runs_open(sf_runs *r, int64_t row) {
         place[k] = NAN;
 }
 
-int64_t sf_runs_count(const sf_runs *r, sf_run_state state) {
+int64_t sf_runs_count(const sf_runs *r, sf_sweep_state state) {
     int64_t count = 0;
     for (int64_t k = 0; k < r->count; k++)
         count += r->state[k] == state;
@@ -132,7 +132,7 @@ int64_t sf_runs_count(const sf_runs *r, sf_run_state state) {
 }
 
 bool sf_runs_usable(const sf_runs *r, int64_t row) {
-    return r->state[row] == SF_RUN_DONE && r->grade[row] != SF_GRADE_DO_NOT_USE;
+    return r->state[row] == SF_SWEEP_DONE && r->grade[row] != SF_GRADE_DO_NOT_USE;
 }
 
 /* ---- runs.csv ---- */
@@ -187,7 +187,7 @@ static void put_row(FILE *out, const sf_runs *r, int64_t row) {
         sf_factor_text(&r->plan->factor[f], sf_plan_value(r->plan, f, row), text, sizeof text);
         put_cell(out, text);
     }
-    bool done = r->state[row] == SF_RUN_DONE;
+    bool done = r->state[row] == SF_SWEEP_DONE;
     fprintf(out, ",%s,%s,", states[r->state[row]], done ? sf_verdict_phrase(r->grade[row]) : "");
     put_cell(out, r->message[row] ? r->message[row] : "");
     fputc(',', out);
@@ -254,12 +254,12 @@ static sf_status take_row(sf_runs *r, int64_t row, char *line, sf_error *err) {
         next_cell(&line);
     int state = find_word(next_cell(&line), states, 3), grade = find_word(next_cell(&line), grades, 3);
     const char *message = next_cell(&line), *folder = next_cell(&line);
-    if (state == SF_RUN_FAILED && message)
+    if (state == SF_SWEEP_FAILED && message)
         return sf_runs_failed(r, row, message, err);
-    if (state != SF_RUN_DONE || grade < 0 || !folder)
+    if (state != SF_SWEEP_DONE || grade < 0 || !folder)
         return SF_OK;
     take_figures(r, row, line);
-    r->state[row] = SF_RUN_DONE;
+    r->state[row] = SF_SWEEP_DONE;
     r->grade[row] = (unsigned char)grade;
     keep_text(&r->message[row], message, err);
     return keep_text(&r->folder[row], folder, err);

@@ -7,7 +7,7 @@
 #include "post/verdict.h"
 #include "sweep/plan.h"
 
-typedef enum sf_run_state { SF_RUN_OPEN, SF_RUN_DONE, SF_RUN_FAILED } sf_run_state;
+typedef enum sf_sweep_state { SF_SWEEP_OPEN, SF_SWEEP_DONE, SF_SWEEP_FAILED } sf_sweep_state;
 
 enum { SF_RUNS_TEXTS = 64 };
 
@@ -15,7 +15,7 @@ typedef struct sf_runs {
     const sf_plan *plan; /* borrowed */
     int64_t count;
     size_t figures;               /* of the list of summary.json, post/figures.h */
-    unsigned char *state, *grade; /* [count] sf_run_state, sf_grade */
+    unsigned char *state, *grade; /* [count] sf_sweep_state, sf_grade */
     double *value;                /* [count][figures] as in summary.json; NaN: none; a text: its number */
     char **folder;                /* [count] name of its folder; NULL: none */
     char **message;               /* [count] why it failed, or the remarks of its verdict; NULL: none */
@@ -39,7 +39,7 @@ sf_status sf_runs_done(sf_runs *runs, int64_t row, sf_grade grade, const char *f
                        sf_error *err);
 sf_status sf_runs_failed(sf_runs *runs, int64_t row, const char *message, sf_error *err);
 void sf_runs_open(sf_runs *runs, int64_t row);
-int64_t sf_runs_count(const sf_runs *runs, sf_run_state state);
+int64_t sf_runs_count(const sf_runs *runs, sf_sweep_state state);
 
 /* Can the figures of the row be used: done, and not "do not use"? */
 bool sf_runs_usable(const sf_runs *runs, int64_t row);
