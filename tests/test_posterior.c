@@ -72,6 +72,35 @@ static double modes(const void *context, const double *u) {
     return -0.5 * fmin(low, high);
 }
 
+/* Three narrow ridges, told by their responses: u[2k] normal, u[2k+1] normal about exp(u[2k]) with deviation
+ * THIN. Mean of u[2k+1] e^(1/2), mean of log u[2k+1] almost 0, integral 1. */
+enum { RIDGES = 3, RIDGE_PARAMETERS = 2 * RIDGES };
+static const double THIN = 0.02;
+
+static bool respond_ridges(const void *context, const double *u, double *y) {
+    (void)context;
+    for (int k = 0; k < RIDGES; k++) {
+        y[2 * k] = u[2 * k];
+        y[2 * k + 1] = u[2 * k + 1] - exp(u[2 * k]);
+    }
+    return true;
+}
+
+static double ridges_of(const void *context, const double *u, const double *y) {
+    (void)context;
+    (void)u;
+    double sum = -RIDGES * log(2 * M_PI * THIN);
+    for (int k = 0; k < RIDGES; k++)
+        sum -= 0.5 * (y[2 * k] * y[2 * k] + pow(y[2 * k + 1] / THIN, 2));
+    return sum;
+}
+
+static double ridges(const void *context, const double *u) {
+    double y[RIDGE_PARAMETERS];
+    respond_ridges(context, u, y);
+    return ridges_of(context, u, y);
+}
+
 static void fill_start(int n, double factor, double *start, double *covariance) {
     memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
     for (int i = 0; i < n; i++) {
@@ -278,6 +307,43 @@ static void test_limit_is_marked(void **state) {
     sf_chains_free(&c);
 }
 
+/* Chains that know the responses walk along narrow, bent ridges, where those that do not know them stand
+ * still; the emulator, a polynomial, is not the exponential, and the moments are right all the same. */
+static void test_errands(void **state) {
+    (void)state;
+    double start[RIDGE_PARAMETERS] = {0}, covariance[RIDGE_PARAMETERS * RIDGE_PARAMETERS] = {0};
+    sf_target target = {.parameters = RIDGE_PARAMETERS,
+                        .log_density = ridges,
+                        .responses = RIDGE_PARAMETERS,
+                        .shape = RIDGE_PARAMETERS,
+                        .respond = respond_ridges,
+                        .log_density_of = ridges_of};
+    for (int i = 0; i < RIDGE_PARAMETERS; i++) {
+        start[i] = i % 2;
+        covariance[i * RIDGE_PARAMETERS + i] = 0.01;
+    }
+    sf_error err = SF_ERROR_INIT;
+    sf_chains c, blind;
+    sf_chains_options options = sf_chains_defaults(5);
+    assert_int_equal(sf_chains_run(&target, start, covariance, &options, &c, &err), SF_OK);
+    assert_true(c.converged);
+    for (int i = 0; i < RIDGE_PARAMETERS; i++) {
+        double mean = 0;
+        int count = c.chains * c.kept;
+        for (int k = 0; k < count; k++) {
+            double u = c.sample[k * RIDGE_PARAMETERS + i];
+            mean += (i % 2 ? log(u) : u) / count;
+        }
+        assert_close(mean, 0, 4 / sqrt(c.effective[i]));
+    }
+    target.responses = 0;
+    options.most_steps = (int)(c.evaluations / options.chains);
+    assert_int_equal(sf_chains_run(&target, start, covariance, &options, &blind, &err), SF_OK);
+    assert_false(blind.converged);
+    sf_chains_free(&c);
+    sf_chains_free(&blind);
+}
+
 /* ---- leave one out: mean of normal data with unit deviation and a prior N(0, 10^2) ---- */
 
 enum { GROUPS = 4 };
@@ -285,8 +351,9 @@ typedef struct mean_of {
     double y[GROUPS];
 } mean_of;
 
-static double split_mean(const void *context, const double *u, double *conditional) {
+static double split_mean(const void *context, const double *u, const double *y, double *conditional) {
     const mean_of *m = context;
+    (void)y;
     double sum = -0.5 * u[0] * u[0] / 100 - log(10 * sqrt(2 * M_PI));
     for (int g = 0; g < GROUPS; g++) {
         double one = -0.5 * pow(m->y[g] - u[0], 2) - 0.5 * log(2 * M_PI);
@@ -298,7 +365,7 @@ static double split_mean(const void *context, const double *u, double *condition
 }
 
 static double mean_density(const void *context, const double *u) {
-    return split_mean(context, u, NULL);
+    return split_mean(context, u, NULL, NULL);
 }
 
 /* The second case has an outlier, whose weights cannot be used. */
@@ -425,6 +492,7 @@ int main(void) {
         cmocka_unit_test(test_evidence_is_marked),
         cmocka_unit_test(test_modes),
         cmocka_unit_test(test_limit_is_marked),
+        cmocka_unit_test(test_errands),
         cmocka_unit_test(test_threads_and_seeds),
         cmocka_unit_test(test_leave_one_out),
         cmocka_unit_test(test_pareto_shape),

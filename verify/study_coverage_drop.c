@@ -13,20 +13,15 @@ enum { FOAMS = 200 };
 
 static sf_inference_options short_chains(void) {
     sf_inference_options o = sf_inference_defaults(1);
-    o.chains.burn_in_rounds = 2;
-    o.chains.round = 100;
-    o.chains.most_steps = 500;
-    o.chains.most_kept = 150;
-    o.chains.rhat = 1.05;
-    o.chains.effective = 100;
+    o.chains.burn_in_rounds = o.without.chains.burn_in_rounds = 3;
+    o.chains.round = o.without.chains.round = 120;
+    o.chains.most_steps = o.without.chains.most_steps = 960;
+    o.chains.most_kept = 250;
+    o.chains.rhat = o.without.chains.rhat = 1.05;
+    o.chains.effective = o.without.chains.effective = 100;
     o.without.draws = 400;
-    o.without.effective = 30;
-    o.without.chains.burn_in_rounds = 2;
-    o.without.chains.round = 60;
-    o.without.chains.most_steps = 180;
-    o.without.chains.rhat = 1.1;
-    o.without.chains.effective = 50;
-    o.evidence_draws = 200;
+    o.without.effective = 50;
+    o.evidence_draws = 400;
     return o;
 }
 

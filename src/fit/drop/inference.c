@@ -3,6 +3,7 @@
 
 #include "campaign/run_folder.h"
 #include "io/process.h"
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
@@ -302,46 +303,68 @@ static sf_status prepare(sf_drop_inference *in, bool leave_one_out, sf_error *er
 
 /* ---- densities ---- */
 
+/* Normal in the logarithms, cut at the bounds of the parameters (HU: 1). */
 static double log_prior(const sf_drop_inference *in, const double *u) {
     const sf_fit_input *input = in->fit->input;
     const double *z = &u[input->unknown_count];
     double sum = -0.5 * (z[0] * z[0] + z[1] * z[1]) - log(2 * M_PI);
     for (int k = 0; k < input->unknown_count; k++) {
-        double away = (u[k] - log(input->prior[k])) / input->prior_sd[k];
-        sum += -0.5 * (away * away + log(2 * M_PI)) - log(input->prior_sd[k]);
+        const sf_parameter_info *info = sf_parameter_get(input->unknown[k]);
+        double sd = input->prior_sd[k], middle = log(input->prior[k]), low = log(info->low),
+               high = log(info->high), away = (u[k] - middle) / sd;
+        if (!(u[k] >= low && u[k] <= high))
+            return -INFINITY;
+        sum += -0.5 * (away * away + log(2 * M_PI)) - log(sd) -
+               log(gsl_cdf_ugaussian_P((high - middle) / sd) - gsl_cdf_ugaussian_P((low - middle) / sd));
     }
     return sum;
 }
 
-/* The joint density; `conditional` [measured drops]: log p(data of a drop | those of the others), or NULL. */
-static double split(const void *context, const double *u, double *conditional) {
-    const sf_drop_inference *in = context;
-    double few[256], *residual = few, sum = -INFINITY;
+/* What the target responds: measured less corrected surrogate [data]. */
+static bool respond_residual(const void *context, const double *u, double *residual) {
+    return !sf_process_stopped() &&
+           find_residual(context, u, residual); /* stopped: the chains rush to their end */
+}
+
+/* Log likelihood; `conditional` [measured drops]: log p(data of a drop | those of the others), or NULL;
+ * `part` [data] for what is left. */
+static double split_of(const sf_drop_inference *in, const double *u, const double *residual,
+                       double *conditional, double *part) {
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
+    double likelihood = sf_discrepancy_log_density(&in->all, residual, size);
+    for (int d = 0; conditional && d < in->fit->measured_drops; d++) {
+        int count = 0;
+        for (int i = 0; i < in->data; i++)
+            if (!is_of(in->fit, in->data_row[i], d))
+                part[count++] = residual[i];
+        conditional[d] = likelihood - sf_discrepancy_log_density(&in->without[d], part, size);
+    }
+    return likelihood;
+}
+
+static double split(const void *context, const double *u, const double *residual, double *conditional) {
+    const sf_drop_inference *in = context;
+    double few[256], *own = few, sum = log_prior(in, u);
     sf_error err = SF_ERROR_INIT;
     if (in->data > 128)
-        residual = sf_alloc(&err, 2 * (unsigned long)in->data, sizeof *residual, "data");
+        own = sf_alloc(&err, 2 * (unsigned long)in->data, sizeof *own, "data");
     for (int d = 0; conditional && d < in->fit->measured_drops; d++)
         conditional[d] = 0;
-    if (!sf_process_stopped() && residual &&
-        find_residual(in, u, residual)) { /* else the chains rush to their end */
-        double *part = residual + in->data, likelihood = sf_discrepancy_log_density(&in->all, residual, size);
-        for (int d = 0; conditional && d < in->fit->measured_drops; d++) {
-            int count = 0;
-            for (int i = 0; i < in->data; i++)
-                if (!is_of(in->fit, in->data_row[i], d))
-                    part[count++] = residual[i];
-            conditional[d] = likelihood - sf_discrepancy_log_density(&in->without[d], part, size);
-        }
-        sum = log_prior(in, u) + likelihood;
-    }
-    if (residual != few)
-        free(residual);
+    if (own && isfinite(sum) && (residual || respond_residual(in, u, own)))
+        sum += split_of(in, u, residual ? residual : own, conditional, own + in->data);
+    else
+        sum = -INFINITY;
+    if (own != few)
+        free(own);
     return sum;
+}
+
+static double log_density_of(const void *context, const double *u, const double *residual) {
+    return split(context, u, residual, NULL);
 }
 
 static double log_density(const void *context, const double *u) {
-    return split(context, u, NULL);
+    return split(context, u, NULL, NULL);
 }
 
 /* The shared errors are the first of x. */
@@ -441,6 +464,10 @@ static sf_status sample(const sf_drop_fit *fit, const sf_inference_options *opti
     const sf_grouped grouped = {.target = {.parameters = in->parameters,
                                            .log_density = log_density,
                                            .context = in,
+                                           .responses = in->data <= SF_RESPONSES_MOST ? in->data : 0,
+                                           .shape = fit->input->unknown_count,
+                                           .respond = respond_residual,
+                                           .log_density_of = log_density_of,
                                            .quantities = in->quantities,
                                            .observe = observe},
                                 .groups = fit->measured_drops,

@@ -2,13 +2,13 @@
 #include "fit/posterior/chains.h"
 
 #include "fit/posterior/convergence.h"
-#include <gsl/gsl_randist.h>
+#include "fit/posterior/walk.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { N = SF_POSTERIOR_MOST, START_TRIES = 50 };
-static const double FREEDOM = 8, START_STRETCH = 2, INDEPENDENT = 0.6, SHORT = 0.3;
+enum { N = SF_POSTERIOR_MOST };
+static const double FREEDOM = 8;
 
 sf_chains_options sf_chains_defaults(uint64_t seed) {
     return (sf_chains_options){.chains = 4,
@@ -21,100 +21,30 @@ sf_chains_options sf_chains_defaults(uint64_t seed) {
                                .effective = 400};
 }
 
-/* One chain at work. */
-typedef struct walker {
-    gsl_rng *random;
-    double u[N], log_density, log_proposal;
-    double *path; /* [steps][n] of a round, and their densities */
-    double *density;
-    long long accepted, proposed, evaluations;
-} walker;
-
 typedef struct work {
     const sf_target *target;
     const sf_chains_options *options;
-    sf_mixture proposal, jump; /* of independence steps; its factor of random walks */
-    walker *walker;
+    sf_walk walk;
+    sf_walker *walker;
     sf_chains *out;
     int room;       /* states that `sample` of each chain has room for */
     double *column; /* [chains][kept] of one quantity */
 } work;
 
-/* ---- steps ---- */
-
-static void propose_jump(const work *w, walker *c, double *u) {
-    int n = w->target->parameters;
-    double z[N], scale = 2.38 / sqrt(n);
-    if (gsl_rng_uniform(c->random) < SHORT)
-        scale *= 0.1;
-    for (int i = 0; i < n; i++)
-        z[i] = gsl_ran_ugaussian(c->random);
-    for (int i = 0; i < n; i++) {
-        u[i] = c->u[i];
-        for (int j = 0; j <= i; j++)
-            u[i] += scale * w->jump.part[0].factor[i][j] * z[j];
-    }
-}
-
-static void step(const work *w, walker *c) {
-    double u[N];
-    bool independent = gsl_rng_uniform(c->random) < INDEPENDENT;
-    if (independent)
-        sf_mixture_draw(&w->proposal, c->random, u);
-    else
-        propose_jump(w, c, u);
-    double density = sf_target_at(w->target, u), proposal = sf_mixture_log_density(&w->proposal, u),
-           ratio = density - c->log_density + (independent ? c->log_proposal - proposal : 0);
-    c->evaluations++;
-    c->proposed++;
-    if (!(log(gsl_rng_uniform_pos(c->random)) < ratio))
-        return;
-    c->accepted++;
-    c->log_density = density;
-    c->log_proposal = proposal;
-    memcpy(c->u, u, (size_t)w->target->parameters * sizeof *u);
-}
-
-static void walk(const work *w, walker *c) {
-    int n = w->target->parameters;
-    c->log_proposal = sf_mixture_log_density(&w->proposal, c->u); /* it may have changed */
-    for (int k = 0; k < w->options->round; k++) {
-        step(w, c);
-        memcpy(&c->path[k * n], c->u, (size_t)n * sizeof *c->u);
-        c->density[k] = c->log_density;
-    }
-}
+/* ---- burn-in ---- */
 
 static void walk_all(const work *w) {
 #pragma omp parallel for schedule(dynamic)
     for (int k = 0; k < w->options->chains; k++)
-        walk(w, &w->walker[k]);
-}
-
-/* ---- burn-in ---- */
-
-static void place(const work *w, walker *c) {
-    sf_mixture wide = w->proposal;
-    for (int i = 0; i < wide.parameters; i++)
-        for (int j = 0; j <= i; j++)
-            wide.part[0].factor[i][j] *= START_STRETCH;
-    for (int k = 0; k < START_TRIES; k++) {
-        sf_mixture_draw(&wide, c->random, c->u);
-        c->log_density = sf_target_at(w->target, c->u);
-        c->evaluations++;
-        if (isfinite(c->log_density))
-            return;
-    }
-    memcpy(c->u, w->proposal.part[0].centre, (size_t)w->target->parameters * sizeof *c->u);
-    c->log_density = sf_target_at(w->target, c->u);
+        sf_walker_walk(&w->walk, w->options->round, &w->walker[k]);
 }
 
 static sf_status place_all(const work *w, sf_error *err) {
 #pragma omp parallel for schedule(dynamic)
     for (int k = 0; k < w->options->chains; k++)
-        place(w, &w->walker[k]);
+        sf_walker_place(&w->walk, &w->walker[k]);
     for (int k = 0; k < w->options->chains; k++)
-        if (!isfinite(w->walker[k].log_density))
+        if (!isfinite(w->walker[k].at.density))
             return SF_FAIL(err, SF_ERR_NUMERIC, "no start of a Markov chain has a probability density");
     return SF_OK;
 }
@@ -139,8 +69,8 @@ static sf_status match(work *w, sf_error *err) {
                 covariance[i * n + j] += (all[k * n + i] - mean[i]) * (all[k * n + j] - mean[j]) / count;
     if (sf_mixture_single(n, mean, covariance, FREEDOM, &jump, &none) == SF_OK &&
         sf_mixture_fit(n, count, all, FREEDOM, &proposal, &none) == SF_OK) {
-        w->jump = jump;
-        w->proposal = proposal;
+        w->walk.jump = jump;
+        w->walk.proposal = proposal;
     }
     free(all);
     return err->status;
@@ -151,12 +81,13 @@ static sf_status burn_in(work *w, sf_error *err) {
         return err->status;
     for (int k = 0; k < w->options->burn_in_rounds; k++) {
         walk_all(w);
-        if (match(w, err) != SF_OK)
+        if (match(w, err) != SF_OK || sf_walk_learn(&w->walk, w->options->chains, w->walker, err) != SF_OK)
             return err->status;
     }
+    w->walk.noting = false;
     for (int c = 0; c < w->options->chains; c++)
         w->walker[c].accepted = w->walker[c].proposed = 0;
-    w->out->proposal = w->proposal;
+    w->out->proposal = w->walk.proposal;
     return SF_OK;
 }
 
@@ -276,7 +207,7 @@ static sf_status allocate(work *w, sf_error *err) {
     sf_chains *r = w->out;
     const sf_chains_options *o = w->options;
     unsigned long n = (unsigned long)r->parameters, q = (unsigned long)r->quantities,
-                  chains = (unsigned long)r->chains, round = (unsigned long)o->round;
+                  chains = (unsigned long)r->chains;
     w->room = o->most_kept + o->round;
     unsigned long all = chains * (unsigned long)w->room;
     w->walker = sf_alloc(err, chains, sizeof *w->walker, "Markov chains");
@@ -286,25 +217,16 @@ static sf_status allocate(work *w, sf_error *err) {
     r->quantity = sf_alloc(err, all * q, sizeof(double), "Markov chains");
     r->rhat = sf_alloc(err, n + q, sizeof(double), "Markov chains");
     r->effective = sf_alloc(err, n + q, sizeof(double), "Markov chains");
-    for (int c = 0; c < r->chains && err->status == SF_OK; c++) {
-        walker *k = &w->walker[c];
-        k->random = gsl_rng_alloc(gsl_rng_mt19937);
-        k->path = sf_alloc(err, round * n, sizeof(double), "Markov chains");
-        k->density = sf_alloc(err, round, sizeof(double), "Markov chains");
-        if (!k->random)
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
-        gsl_rng_set(k->random, (unsigned long)sf_seed_of(o->seed, (uint64_t)c) & 0xffffffffu);
-    }
+    for (int c = 0; c < r->chains && err->status == SF_OK; c++)
+        sf_walker_init(w->target, o->burn_in_rounds, o->round, sf_seed_of(o->seed, (uint64_t)c),
+                       &w->walker[c], err);
     return err->status;
 }
 
 static void release(work *w) {
-    for (int c = 0; w->walker && c < w->options->chains; c++) {
-        if (w->walker[c].random)
-            gsl_rng_free(w->walker[c].random);
-        free(w->walker[c].path);
-        free(w->walker[c].density);
-    }
+    for (int c = 0; w->walker && c < w->options->chains; c++)
+        sf_walker_free(&w->walker[c]);
+    sf_emulator_free(&w->walk.emulator);
     free(w->walker);
     free(w->column);
 }
@@ -315,10 +237,10 @@ sf_status sf_chains_run(const sf_target *target, const double *start, const doub
                      .quantities = target->quantities,
                      .chains = options->chains,
                      .thinning = 1};
-    work w = {.target = target, .options = options, .out = r};
-    if (sf_mixture_single(target->parameters, start, covariance, FREEDOM, &w.proposal, err) != SF_OK)
+    work w = {.target = target, .options = options, .out = r, .walk = {.target = target, .noting = true}};
+    if (sf_mixture_single(target->parameters, start, covariance, FREEDOM, &w.walk.proposal, err) != SF_OK)
         return err->status;
-    w.jump = w.proposal;
+    w.walk.jump = w.walk.proposal;
     if (allocate(&w, err) == SF_OK && burn_in(&w, err) == SF_OK) {
         long long accepted = 0, proposed = 0;
         sample(&w);

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Markov chain Monte Carlo. A step of a chain is, by chance, one of two Metropolis-Hastings steps:
+/* Markov chain Monte Carlo. A step of a chain is, by chance, one of three Metropolis-Hastings steps:
  *
  *   - independence: the proposal is drawn from a mixture of t-distributions (mixture.h) matched to all
  * chains;
- *   - random walk: normal with the chains' covariance times 2.38^2 / n, or a hundredth of that.
+ *   - random walk: normal with the chains' covariance times 2.38^2 / n, or a hundredth of that;
+ *   - errand, where the target tells its responses: many steps of the first two kinds on the density that an
+ *     emulator of the responses gives (emulator.h), whose end is then accepted or rejected as a whole by the
+ *     target itself (delayed acceptance: Christen and Fox, J. Comput. Graph. Stat. 14, 2005, 795-810). So the
+ *     chains are those of the target, however good the emulator is.
  *
- * Both are matched during burn-in, round by round, and fixed from then on. Chains start at draws of a
+ * All are matched during burn-in, round by round, and fixed from then on. Chains start at draws of a
  * t-distribution about the point and with the covariance that the caller gives. Every chain has its own
  * generator, and what chains share is computed between rounds in the chains' order: the result has the same
  * bits for any number of threads. */
@@ -37,7 +41,7 @@ typedef struct sf_chains {
     double *quantity;      /* [chains][kept][quantities]; owned */
     double *rhat;          /* [parameters + quantities]; NaN: a quantity that no state has; owned */
     double *effective;     /* [parameters + quantities]; owned */
-    double accepted;       /* share of the proposals after burn-in */
+    double accepted;       /* share of the proposals after burn-in, an errand being one */
     long long evaluations; /* of the target */
     bool converged;
     sf_mixture proposal; /* the one that was fixed */

@@ -15,10 +15,19 @@ typedef struct without {
     int group;
 } without;
 
-static double density_without(const void *context, const double *u) {
+static double density_without_of(const void *context, const double *u, const double *y) {
     const without *w = context;
-    double conditional[MOST_GROUPS], all = w->grouped->split(w->grouped->target.context, u, conditional);
+    double conditional[MOST_GROUPS], all = w->grouped->split(w->grouped->target.context, u, y, conditional);
     return all - conditional[w->group];
+}
+
+static double density_without(const void *context, const double *u) {
+    return density_without_of(context, u, NULL);
+}
+
+static bool respond(const void *context, const double *u, double *y) {
+    const sf_target *target = &((const without *)context)->grouped->target;
+    return target->respond(target->context, u, y);
 }
 
 /* log p(y_g | others, u) of every sample: [samples][groups]. */
@@ -27,7 +36,7 @@ static double *split_all(const sf_grouped *g, const double *sample, int count, s
     if (all) {
 #pragma omp parallel for schedule(dynamic, 8)
         for (int s = 0; s < count; s++)
-            g->split(g->target.context, &sample[s * g->target.parameters], &all[s * g->groups]);
+            g->split(g->target.context, &sample[s * g->target.parameters], NULL, &all[s * g->groups]);
     }
     return all;
 }
@@ -68,8 +77,13 @@ static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
                         const sf_chains_options *options, sf_left_out *out, sf_error *err) {
     double mean[SF_POSTERIOR_MOST], covariance[SF_POSTERIOR_MOST * SF_POSTERIOR_MOST];
     const without context = {g, group};
-    const sf_target target = {
-        .parameters = g->target.parameters, .log_density = density_without, .context = &context};
+    const sf_target target = {.parameters = g->target.parameters,
+                              .log_density = density_without,
+                              .context = &context,
+                              .responses = g->target.responses,
+                              .shape = g->target.shape,
+                              .respond = respond,
+                              .log_density_of = density_without_of};
     sf_chains_options own = *options;
     sf_chains chains;
     own.seed = sf_seed_of(options->seed, (uint64_t)(500 + group));
@@ -124,7 +138,7 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
             sf_mixture_draw(&m, random, &u[k * n]);
 #pragma omp parallel for schedule(dynamic, 8)
         for (int k = 0; k < draws; k++)
-            w->weight[k] = g->split(g->target.context, &u[k * n], &w->conditional[k * g->groups]) -
+            w->weight[k] = g->split(g->target.context, &u[k * n], NULL, &w->conditional[k * g->groups]) -
                            sf_mixture_log_density(&m, &u[k * n]);
         w->count = draws;
     }

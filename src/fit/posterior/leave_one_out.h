@@ -11,8 +11,9 @@
 typedef struct sf_grouped {
     sf_target target; /* of all data */
     int groups;
-    /* The target's log density at u; `conditional` [groups] gets log p(y_g | other groups, u). */
-    double (*split)(const void *context, const double *u, double *conditional);
+    /* The target's log density at u; `conditional` [groups] gets log p(y_g | other groups, u). `y`: what the
+     * target's respond gives there; NULL: not known yet. */
+    double (*split)(const void *context, const double *u, const double *y, double *conditional);
 } sf_grouped;
 
 typedef struct sf_left_out {

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { SF_POSTERIOR_MOST = 24 }; /* parameters */
+enum { SF_POSTERIOR_MOST = 24, SF_RESPONSES_MOST = 64 }; /* parameters; responses of a density in two steps */
 
 typedef struct sf_target {
     int parameters;
@@ -16,6 +16,11 @@ typedef struct sf_target {
      * time. */
     double (*log_density)(const void *context, const double *u);
     const void *context;
+    /* The density in two steps, of which the first costs much more; responses = 0: not told. */
+    int responses; /* smooth functions of the first `shape` parameters */
+    int shape;
+    bool (*respond)(const void *context, const double *u, double *y); /* false: outside */
+    double (*log_density_of)(const void *context, const double *u, const double *y);
     int quantities; /* followed beside the parameters, for example predictions; 0: none */
     /* Quantities of u; what is random in them follows from `seed`. NaN: no value. Called by several threads.
      */
