@@ -50,7 +50,7 @@ int sf_drop_average_best(const sf_drop_average *a) {
 }
 
 static bool is_reached(const sf_drop_inference *in, bool left_out) {
-    bool reached = in->chains.converged && in->evidence.trusted;
+    bool reached = in->chains.converged && (left_out || in->evidence.trusted);
     for (int d = 0; d < in->fit->measured_drops && left_out; d++)
         reached = reached && in->left_out[d].converged;
     return reached;

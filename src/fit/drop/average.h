@@ -30,7 +30,8 @@ sf_status sf_drop_average_build(int models, const sf_drop_inference *const *mode
 
 /* The model with the largest weight. */
 int sf_drop_average_best(const sf_drop_average *average);
-/* Everything reached its criteria: the chains of every model, their evidence, and those of left-out drops. */
+/* What the weights stand on reached its criteria: the chains of every model, and the densities of the
+ * left-out drops or, with weights by it, the evidence. */
 bool sf_drop_average_reached(const sf_drop_average *average);
 
 /* Quantiles of a predicted number (index of the inference's quantities), in its unit, over all models by

@@ -289,10 +289,24 @@ static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf
     return err->status;
 }
 
+/* ln of what makes the cut priors integrate to one. */
+static double prior_norm(const sf_fit_input *input) {
+    double sum = -log(2 * M_PI);
+    for (int k = 0; k < input->unknown_count; k++) {
+        const sf_parameter_info *info = sf_parameter_get(input->unknown[k]);
+        double sd = input->prior_sd[k], middle = log(input->prior[k]);
+        sum -= log(sd * sqrt(2 * M_PI) *
+                   (gsl_cdf_ugaussian_P((log(info->high) - middle) / sd) -
+                    gsl_cdf_ugaussian_P((log(info->low) - middle) / sd)));
+    }
+    return sum;
+}
+
 static sf_status prepare(sf_drop_inference *in, bool leave_one_out, sf_error *err) {
     if (in->parameters > SF_POSTERIOR_MOST)
         return SF_FAIL(err, SF_ERR_INPUT, "%d unknown parameters: at most %d can be sampled",
                        in->fit->input->unknown_count, SF_POSTERIOR_MOST - 2);
+    in->prior_norm = prior_norm(in->fit->input);
     if (list_data(in, err) != SF_OK || find_offset(in, err) != SF_OK || find_jacobian(in, err) != SF_OK ||
         fill_base(in, err) != SF_OK || build_discrepancy(in, -1, &in->all, err) != SF_OK)
         return err->status;
@@ -307,15 +321,13 @@ static sf_status prepare(sf_drop_inference *in, bool leave_one_out, sf_error *er
 static double log_prior(const sf_drop_inference *in, const double *u) {
     const sf_fit_input *input = in->fit->input;
     const double *z = &u[input->unknown_count];
-    double sum = -0.5 * (z[0] * z[0] + z[1] * z[1]) - log(2 * M_PI);
+    double sum = in->prior_norm - 0.5 * (z[0] * z[0] + z[1] * z[1]);
     for (int k = 0; k < input->unknown_count; k++) {
         const sf_parameter_info *info = sf_parameter_get(input->unknown[k]);
-        double sd = input->prior_sd[k], middle = log(input->prior[k]), low = log(info->low),
-               high = log(info->high), away = (u[k] - middle) / sd;
-        if (!(u[k] >= low && u[k] <= high))
+        double away = (u[k] - log(input->prior[k])) / input->prior_sd[k];
+        if (!(u[k] >= log(info->low) && u[k] <= log(info->high)))
             return -INFINITY;
-        sum += -0.5 * (away * away + log(2 * M_PI)) - log(sd) -
-               log(gsl_cdf_ugaussian_P((high - middle) / sd) - gsl_cdf_ugaussian_P((low - middle) / sd));
+        sum -= 0.5 * away * away;
     }
     return sum;
 }

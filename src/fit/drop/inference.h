@@ -30,6 +30,7 @@ typedef struct sf_drop_inference {
     const sf_drop_fit *fit; /* borrowed */
     int parameters;         /* unknowns of the foam, then z of tau and z of kappa (sf_half_normal) */
     int data;
+    double prior_norm;                             /* ln; of the priors, cut at the parameters' bounds */
     int *data_row;                                 /* [data] response that was measured; owned */
     double *offset;                                /* [responses] of all drops, at u = 0 speeds; owned */
     double *jacobian;                              /* [responses][SF_DISCREPANCY_PLACES] J; owned */

@@ -76,15 +76,13 @@ static sf_status match(work *w, sf_error *err) {
     return err->status;
 }
 
-static sf_status burn_in(work *w, sf_error *err) {
-    if (place_all(w, err) != SF_OK)
-        return err->status;
-    for (int k = 0; k < w->options->burn_in_rounds; k++) {
+/* Rounds whose states teach proposals and emulator. */
+static sf_status burn_in(work *w, int rounds, sf_error *err) {
+    for (int k = 0; k < rounds; k++) {
         walk_all(w);
         if (match(w, err) != SF_OK || sf_walk_learn(&w->walk, w->options->chains, w->walker, err) != SF_OK)
             return err->status;
     }
-    w->walk.noting = false;
     for (int c = 0; c < w->options->chains; c++)
         w->walker[c].accepted = w->walker[c].proposed = 0;
     w->out->proposal = w->walk.proposal;
@@ -179,13 +177,23 @@ static bool is_reached(work *w, bool last) {
     return reached;
 }
 
-static void sample(work *w) {
+/* Samples until the criteria are reached; what was sampled in the first quarter, and then in the first half,
+ * of the most steps was burn-in if it does not reach them. */
+static sf_status sample(work *w, sf_error *err) {
     sf_chains *r = w->out;
-    for (int steps = 0; steps < w->options->most_steps && !r->converged; steps += w->options->round) {
+    int round = w->options->round, rounds = w->options->most_steps / round, since = 0;
+    for (int k = 1; k <= rounds && !r->converged && err->status == SF_OK; k++) {
         walk_all(w);
-        keep(w, steps);
-        r->converged = is_reached(w, steps + w->options->round >= w->options->most_steps);
+        keep(w, since);
+        since += round;
+        r->converged = is_reached(w, k == rounds);
+        if (!r->converged && k < rounds && (k == rounds / 4 || k == rounds / 2)) {
+            burn_in(w, 1, err);
+            r->kept = since = 0;
+            r->thinning = 1;
+        }
     }
+    return err->status;
 }
 
 /* ---- the whole ---- */
@@ -218,8 +226,8 @@ static sf_status allocate(work *w, sf_error *err) {
     r->rhat = sf_alloc(err, n + q, sizeof(double), "Markov chains");
     r->effective = sf_alloc(err, n + q, sizeof(double), "Markov chains");
     for (int c = 0; c < r->chains && err->status == SF_OK; c++)
-        sf_walker_init(w->target, o->burn_in_rounds, o->round, sf_seed_of(o->seed, (uint64_t)c),
-                       &w->walker[c], err);
+        sf_walker_init(w->target, o->burn_in_rounds * o->round + o->most_steps, o->round,
+                       sf_seed_of(o->seed, (uint64_t)c), &w->walker[c], err);
     return err->status;
 }
 
@@ -237,13 +245,13 @@ sf_status sf_chains_run(const sf_target *target, const double *start, const doub
                      .quantities = target->quantities,
                      .chains = options->chains,
                      .thinning = 1};
-    work w = {.target = target, .options = options, .out = r, .walk = {.target = target, .noting = true}};
+    work w = {.target = target, .options = options, .out = r, .walk = {.target = target}};
     if (sf_mixture_single(target->parameters, start, covariance, FREEDOM, &w.walk.proposal, err) != SF_OK)
         return err->status;
     w.walk.jump = w.walk.proposal;
-    if (allocate(&w, err) == SF_OK && burn_in(&w, err) == SF_OK) {
+    if (allocate(&w, err) == SF_OK && place_all(&w, err) == SF_OK &&
+        burn_in(&w, options->burn_in_rounds, err) == SF_OK && sample(&w, err) == SF_OK) {
         long long accepted = 0, proposed = 0;
-        sample(&w);
         pack(&w);
         for (int c = 0; c < r->chains; c++) {
             accepted += w.walker[c].accepted;

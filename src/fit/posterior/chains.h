@@ -9,10 +9,11 @@
  *     target itself (delayed acceptance: Christen and Fox, J. Comput. Graph. Stat. 14, 2005, 795-810). So the
  *     chains are those of the target, however good the emulator is.
  *
- * All are matched during burn-in, round by round, and fixed from then on. Chains start at draws of a
- * t-distribution about the point and with the covariance that the caller gives. Every chain has its own
- * generator, and what chains share is computed between rounds in the chains' order: the result has the same
- * bits for any number of threads. */
+ * All are matched during burn-in, round by round, and fixed from then on; chains that do not reach the
+ * criteria within a quarter of the most steps, and then within half of them, begin anew with what they
+ * learnt. Chains start at draws of a t-distribution about the point and with the covariance that the caller
+ * gives. Every chain has its own generator, and what chains share is computed between rounds in the chains'
+ * order: the result has the same bits for any number of threads. */
 #ifndef SF_FIT_POSTERIOR_CHAINS_H
 #define SF_FIT_POSTERIOR_CHAINS_H
 

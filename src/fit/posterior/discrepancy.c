@@ -82,6 +82,20 @@ static sf_status whiten(sf_discrepancy *d, const double *jacobian, const double 
     return SF_OK;
 }
 
+/* H H^T of delta and of x. */
+static sf_status fill_spread(sf_discrepancy *d, sf_error *err) {
+    for (int of = 0; of < 2; of++) {
+        int first = of == 0 ? 0 : d->bins, last = of == 0 ? d->bins : d->latent;
+        d->spread[of] = sf_alloc(err, (unsigned long)(d->data * d->data), sizeof(double), "a discrepancy");
+        for (int i = 0; i < d->data && d->spread[of]; i++)
+            for (int j = 0; j < d->data; j++)
+                for (int k = first; k < last; k++)
+                    d->spread[of][i * d->data + j] +=
+                        d->white[i * d->latent + k] * d->white[j * d->latent + k];
+    }
+    return err->status;
+}
+
 sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const double *kernel, int effects,
                                const double *effect, const double *base, sf_discrepancy *d, sf_error *err) {
     *d = (sf_discrepancy){.data = data, .bins = bins, .effects = effects, .latent = bins + effects};
@@ -94,7 +108,9 @@ sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const
     if (err->status != SF_OK || find_root(kernel, bins, d->root, err) != SF_OK || data == 0)
         return err->status;
     memcpy(d->base_root, base, (size_t)(data * data) * sizeof *base);
-    return factorise(d, err) == SF_OK ? whiten(d, jacobian, effect, err) : err->status;
+    if (factorise(d, err) != SF_OK || whiten(d, jacobian, effect, err) != SF_OK)
+        return err->status;
+    return d->data < d->latent ? fill_spread(d, err) : err->status;
 }
 
 void sf_discrepancy_free(sf_discrepancy *d) {
@@ -102,6 +118,8 @@ void sf_discrepancy_free(sf_discrepancy *d) {
     free(d->base_root);
     free(d->white);
     free(d->gram);
+    free(d->spread[0]);
+    free(d->spread[1]);
     *d = (sf_discrepancy){0};
 }
 
@@ -153,16 +171,46 @@ static double project(const sf_discrepancy *d, const double *r, sf_discrepancy_s
     return sum;
 }
 
-double sf_discrepancy_log_density(const sf_discrepancy *d, const double *residual, sf_discrepancy_size size) {
+/* With variables fewer than the data: of the variables' matrix. */
+static double density_of_many(const sf_discrepancy *d, const double *residual, sf_discrepancy_size size) {
     double c[SF_DISCREPANCY_MOST * SF_DISCREPANCY_MOST], q[SF_DISCREPANCY_MOST];
-    double sum = d->data * log(2 * M_PI) + d->log_determinant;
-    if (d->data == 0)
-        return 0;
-    sum += factor(d, size, c);
+    double sum = factor(d, size, c);
     sum += project(d, residual, size, c, q);
     for (int k = 0; k < d->latent; k++)
         sum -= q[k] * q[k];
-    return -0.5 * sum;
+    return sum;
+}
+
+/* Else of the whitened data's covariance, row by row of its Cholesky factor. */
+static double density_of_few(const sf_discrepancy *d, const double *r, sf_discrepancy_size size) {
+    int n = d->data;
+    double c[SF_DISCREPANCY_MOST * SF_DISCREPANCY_MOST], w[SF_DISCREPANCY_MOST], q[SF_DISCREPANCY_MOST],
+        sum = 0;
+    for (int i = 0; i < n; i++) {
+        w[i] = r[i];
+        for (int j = 0; j < i; j++)
+            w[i] -= d->base_root[i * n + j] * w[j];
+        w[i] /= d->base_root[i * n + i];
+        q[i] = w[i];
+        for (int j = 0; j <= i; j++) {
+            double a = (i == j) + size.tau * size.tau * d->spread[0][i * n + j] +
+                       size.kappa * size.kappa * d->spread[1][i * n + j];
+            for (int k = 0; k < j; k++)
+                a -= c[i * n + k] * c[j * n + k];
+            c[i * n + j] = i == j ? sqrt(a) : a / c[j * n + j];
+            q[i] -= j < i ? c[i * n + j] * q[j] : 0;
+        }
+        q[i] /= c[i * n + i];
+        sum += q[i] * q[i] + 2 * log(c[i * n + i]);
+    }
+    return sum;
+}
+
+double sf_discrepancy_log_density(const sf_discrepancy *d, const double *residual, sf_discrepancy_size size) {
+    if (d->data == 0)
+        return 0;
+    double sum = d->data * log(2 * M_PI) + d->log_determinant;
+    return -0.5 * (sum + (d->spread[0] ? density_of_few : density_of_many)(d, residual, size));
 }
 
 /* z ~ N(C^-T q, (C C^T)^-1), then delta = tau R z and x = kappa z. */

@@ -5,7 +5,8 @@
  *
  * J the data's derivatives by a function at `bins` places, from which the truth differs by delta; G those by
  * `effects` independent errors x. Both are integrated in closed form: with their `latent` standard variables
- * z and the whitened derivatives H, one evaluation factorises 1 + S H^T H S, S the sizes. */
+ * z and the whitened derivatives H, one evaluation factorises 1 + S H^T H S, S the sizes, or 1 + H S S H^T
+ * where the data are fewer than the variables. */
 #ifndef SF_FIT_POSTERIOR_DISCREPANCY_H
 #define SF_FIT_POSTERIOR_DISCREPANCY_H
 
@@ -20,7 +21,8 @@ typedef struct sf_discrepancy {
     double *base_root;               /* [data][data] Cholesky factor L of D */
     double *white;                   /* [data][latent] H = L^-1 (J R, G) */
     double *gram;                    /* [latent][latent] H^T H */
-    double log_determinant;          /* of D */
+    double *spread[2];      /* [data][data] H H^T of delta and of x; NULL: more data than variables */
+    double log_determinant; /* of D */
 } sf_discrepancy;
 
 typedef struct sf_discrepancy_size {

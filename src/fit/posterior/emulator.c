@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { N = SF_POSTERIOR_MOST, DEGREE = 3, POINTS_OF_A_TERM = 3 };
+enum { N = SF_POSTERIOR_MOST, DEGREE = 4, POINTS_OF_A_TERM = 3 };
+static const double REACH = 2;     /* of the squared distance of the farthest point */
 static const double RIDGE = 1e-10; /* of the columns' squares */
 
 /* (n + degree) over degree. */
@@ -140,7 +141,7 @@ sf_status sf_emulator_fit(int parameters, int responses, int count, const double
 
 bool sf_emulator_at(const sf_emulator *e, const double *u, double *y) {
     double z[N], term[SF_EMULATOR_MOST_TERMS];
-    if (!(standardise(e, u, z) <= e->most_distance))
+    if (!(standardise(e, u, z) <= REACH * e->most_distance))
         return false;
     fill_terms(e, z, term);
     for (int r = 0; r < e->responses; r++) {

@@ -19,8 +19,8 @@ typedef struct sf_emulator {
     double *coefficient;                  /* [responses][terms]; owned */
 } sf_emulator;
 
-/* Least squares on `count` points u [count][parameters] with y [count][responses]: of third degree where the
- * points are three times the terms, else of second; without terms where they are too few even for that, or
+/* Least squares on `count` points u [count][parameters] with y [count][responses]: of the degree (4, 3 or 2)
+ * for which the points are three times the terms; without terms where they are too few even for that, or
  * span no volume. Release with sf_emulator_free, also on failure. */
 sf_status sf_emulator_fit(int parameters, int responses, int count, const double *u, const double *y,
                           sf_emulator *emulator, sf_error *err);

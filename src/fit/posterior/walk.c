@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { N = SF_POSTERIOR_MOST, START_TRIES = 50, ERRAND_STEPS = 100 };
-static const double START_STRETCH = 2, INDEPENDENT = 0.6, SHORT = 0.3, ERRANDS = 0.8;
+static const double START_STRETCH = 2, INDEPENDENT = 0.6, SHORT = 0.3, ERRANDS = 0.8, FLATTENED = 0.85;
 static const double FAR = 40; /* of the log density below the best, where the emulator need not know it */
 
 /* ---- steps ---- */
@@ -36,7 +36,7 @@ static double evaluate(const sf_walk *w, sf_walker *c, const double *u) {
     if (!t->respond(t->context, u, y))
         return -INFINITY;
     double density = t->log_density_of(t->context, u, y);
-    if (isfinite(density) && w->noting && c->tried < c->room) {
+    if (isfinite(density) && c->tried < c->room) {
         memcpy(&c->tried_u[c->tried * t->shape], u, (size_t)t->shape * sizeof *u);
         memcpy(&c->tried_y[c->tried * t->responses], y, (size_t)t->responses * sizeof *y);
         c->tried_density[c->tried++] = density;
@@ -44,13 +44,14 @@ static double evaluate(const sf_walk *w, sf_walker *c, const double *u) {
     return density == density ? density : -INFINITY;
 }
 
-/* The same by the emulator. */
+/* The same by the emulator, flattened: its tails, where it knows little, are to be heavier than the target's.
+ */
 static double emulate(const sf_walk *w, sf_walker *c, const double *u) {
     double y[SF_RESPONSES_MOST];
     (void)c;
     if (!sf_emulator_at(&w->emulator, u, y))
         return -INFINITY;
-    double density = w->target->log_density_of(w->target->context, u, y);
+    double density = FLATTENED * w->target->log_density_of(w->target->context, u, y);
     return density == density ? density : -INFINITY;
 }
 
@@ -158,10 +159,10 @@ sf_status sf_walk_learn(sf_walk *w, int count, const sf_walker *walker, sf_error
 
 /* ---- memory ---- */
 
-sf_status sf_walker_init(const sf_target *target, int burn_in_rounds, int round, uint64_t seed, sf_walker *c,
+sf_status sf_walker_init(const sf_target *target, int most, int round, uint64_t seed, sf_walker *c,
                          sf_error *err) {
     unsigned long n = (unsigned long)target->parameters, steps = (unsigned long)round;
-    *c = (sf_walker){.room = target->responses > 0 ? burn_in_rounds * round : 0};
+    *c = (sf_walker){.room = target->responses > 0 ? most : 0};
     unsigned long room = (unsigned long)c->room;
     c->path = sf_alloc(err, steps * n, sizeof(double), "Markov chains");
     c->density = sf_alloc(err, steps, sizeof(double), "Markov chains");

@@ -11,7 +11,6 @@ typedef struct sf_walk {
     const sf_target *target;
     sf_mixture proposal, jump; /* of independence steps; its factor of random walks */
     sf_emulator emulator;      /* owned */
-    bool noting;               /* evaluated states are kept for sf_walk_learn */
 } sf_walk;
 
 /* A state: its place, and log densities of the target and of the proposal there. */
@@ -28,9 +27,10 @@ typedef struct sf_walker {
     double *tried_u, *tried_y, *tried_density;
 } sf_walker;
 
-/* A walker with room for walks of `round` steps. Release with sf_walker_free, also on failure. */
-sf_status sf_walker_init(const sf_target *target, int burn_in_rounds, int round, uint64_t seed,
-                         sf_walker *walker, sf_error *err);
+/* A walker with room for walks of `round` steps, that keeps at most `most` evaluated states for
+ * sf_walk_learn. Release with sf_walker_free, also on failure. */
+sf_status sf_walker_init(const sf_target *target, int most, int round, uint64_t seed, sf_walker *walker,
+                         sf_error *err);
 void sf_walker_free(sf_walker *walker);
 /* Puts it at a draw of the proposal, stretched to twice its scale, or at its centre; at.density is not finite
  * if neither has a density. */
