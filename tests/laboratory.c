@@ -19,17 +19,17 @@ typedef struct model {
     sf_foam_parameter unknown[UNKNOWNS];
 } model;
 
-/* Curve, rate (a Maxwell branch) and unloading. */
+/* Curve, rate (a factor or a Maxwell branch) and unloading. */
 static const model models[LAB_MODELS] = {
     {"gas",
-     {SF_PARAMETER_S0, SF_PARAMETER_P0, SF_PARAMETER_B, SF_PARAMETER_M, SF_PARAMETER_ED, SF_PARAMETER_HU,
-      SF_PARAMETER_SHAPE}},
+     {SF_PARAMETER_S0, SF_PARAMETER_P0, SF_PARAMETER_B, SF_PARAMETER_M, SF_PARAMETER_RATE_FACTOR,
+      SF_PARAMETER_HU, SF_PARAMETER_SHAPE}},
     {"gas_solid",
      {SF_PARAMETER_S0, SF_PARAMETER_P0, SF_PARAMETER_B, SF_PARAMETER_M, SF_PARAMETER_ED, SF_PARAMETER_HU,
       SF_PARAMETER_SHAPE}},
     {"avalle",
      {SF_PARAMETER_AVALLE_A, SF_PARAMETER_AVALLE_M, SF_PARAMETER_AVALLE_B, SF_PARAMETER_AVALLE_N,
-      SF_PARAMETER_ED, SF_PARAMETER_HU, SF_PARAMETER_SHAPE}},
+      SF_PARAMETER_RATE_FACTOR, SF_PARAMETER_HU, SF_PARAMETER_SHAPE}},
 };
 
 /* A hemisphere of 160 mm on a pad; `area` and `thinner` make the simulation differ from the surrogate. */
@@ -43,16 +43,24 @@ static sf_columns columns_of(double v, double pad, double area, double thinner) 
     return c;
 }
 
+static void start_rate(sf_foam_parameter unknown, double *value) {
+    if (unknown == SF_PARAMETER_RATE_FACTOR)
+        sf_foam_form_start_rate(value);
+    if (unknown == SF_PARAMETER_ED) {
+        value[SF_PARAMETER_ED] = 1e6;
+        value[SF_PARAMETER_BETA1] = 3000;
+    }
+}
+
 static void fill_input(const laboratory *lab, int m, sf_fit_input *in) {
     *in = (sf_fit_input){
         .form = {.curve = sf_curve_form_find(models[m].form), .base = lab->start.card, .solid_density = 940},
         .drop_count = LAB_DROPS,
         .unknown_count = UNKNOWNS};
     sf_foam_form_start(&in->form, in->start);
-    in->start[SF_PARAMETER_ED] = 1e6;
-    in->start[SF_PARAMETER_BETA1] = 3000;
     for (int k = 0; k < UNKNOWNS; k++) {
         in->unknown[k] = models[m].unknown[k];
+        start_rate(in->unknown[k], in->start);
         in->prior[k] = in->start[in->unknown[k]];
         in->prior_sd[k] = sf_foam_form_prior_sd(&in->form, in->unknown[k]);
     }
