@@ -301,8 +301,8 @@ static double distance(const sf_mapping_problem *p, const point *a, const point 
     return largest;
 }
 
-/* The end: the free step is short, or would gain nothing that counts, or two steps in a row gained nothing.
- */
+/* The end: the free step is short, or would gain nothing that counts, or two steps in a row changed nothing
+ * that counts. */
 static bool is_settled(const sf_mapping_problem *p, double step, double gain, int idle) {
     return step < p->tolerance || gain < p->tolerance * p->tolerance || idle >= 2;
 }
@@ -331,7 +331,7 @@ static sf_status begin(const sf_mapping_problem *p, const sf_mapping_result *r, 
 static sf_status iterate(const sf_mapping_problem *p, sf_mapping_result *r, point *best, point *trial,
                          sf_error *err) {
     double radius = INFINITY, step = 0, gain = 0;
-    int idle = 0; /* steps in a row that were taken and gained nothing that counts */
+    int idle = 0; /* steps in a row, taken or not, that changed the objective by nothing that counts */
     if (begin(p, r, best, err) != SF_OK)
         return err->status;
     for (r->iterations = 1;; r->iterations++) {
@@ -348,8 +348,8 @@ static sf_status iterate(const sf_mapping_problem *p, sf_mapping_result *r, poin
             return err->status;
         if (isfinite(trial->objective) && step > LEAST_UPDATE)
             update_matrix(p, best, trial, r->matrix);
+        idle = fabs(best->objective - trial->objective) < 2 * p->tolerance ? idle + 1 : 0;
         if (trial->objective < best->objective) {
-            idle = best->objective - trial->objective < 2 * p->tolerance * p->tolerance ? idle + 1 : 0;
             swap_points(best, trial);
             radius *= 2;
         } else {

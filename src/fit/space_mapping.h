@@ -33,8 +33,8 @@ typedef struct sf_mapping_problem {
     void *context;
     int max_iterations; /* simulations at most */
     double tolerance; /* in standard deviations. Converged: the free next step is below it in every parameter,
-                         or would lower the objective by less than its square, or two steps in a row did by
-                         less than twice that */
+                         or would lower the objective by less than its square, or two steps in a row, taken or
+                         not, changed it by less than twice the tolerance */
     /* called after each simulation; may be NULL */
     void (*progress)(void *context, int iteration, const double *u, const double *y, double objective);
 } sf_mapping_problem;
