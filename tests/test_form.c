@@ -223,6 +223,27 @@ static void the_solid_density_must_be_plausible(void **state) {
     }
 }
 
+/* A fine table in place of curve and densification holds no stress that the reader of a material file refuses,
+ * with a densification that is next to a wall. */
+static void a_fine_table_ends_at_1_gpa(void **state) {
+    (void)state;
+    const sf_foam_form form = {.base = {.density = DENSITY, .modulus = MODULUS, .densification_limit = 1},
+                               .curve = &sf_form_avalle};
+    double value[SF_PARAMETER_COUNT];
+    sf_foam_card card;
+    sf_error err = SF_ERROR_INIT;
+    sf_foam_form_start(&form, value);
+    value[SF_PARAMETER_E] = MODULUS;
+    value[SF_PARAMETER_AVALLE_N] = 5;
+    assert_int_equal(sf_foam_form_card(&form, value, &card, &err), SF_OK);
+    assert_int_equal(sf_foam_card_resample(&card, &err), SF_OK);
+    int64_t last = card.curve_points - 1;
+    assert_true(card.curve_stress[last] <= 1e9 && card.curve_stress[last] > 1e8);
+    assert_true(card.curve_stress[last] - card.curve_stress[last - 1] <
+                1e12 * (card.curve_strain[last] - card.curve_strain[last - 1]));
+    sf_foam_card_free(&card);
+}
+
 /* Every parameter of the card comes from its value, with every form; the table scales its curve. */
 static void a_card_has_the_values(void **state) {
     (void)state;
@@ -271,6 +292,7 @@ int main(void) {
         cmocka_unit_test(the_spline_bends_where_its_parameter_says),
         cmocka_unit_test(values_that_make_no_curve_are_refused),
         cmocka_unit_test(the_solid_density_must_be_plausible),
+        cmocka_unit_test(a_fine_table_ends_at_1_gpa),
         cmocka_unit_test(a_card_has_the_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

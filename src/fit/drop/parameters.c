@@ -125,9 +125,20 @@ sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARA
     return err->status;
 }
 
+/* The end of a fine table of the curve: 0.975 of the strain limit, or where the stress is as high as a table
+ * holds. */
+static double table_end(const sf_curve *curve, double limit) {
+    static const double MOST_STRESS = 1e9, STEP = 0.005; /* Pa; of the limit */
+    double part = 0.975 + STEP, stress, slope, energy;
+    do {
+        part -= STEP;
+        sf_curve_evaluate(curve, part * limit, &stress, &slope, &energy);
+    } while (stress > MOST_STRESS && part > 0.5);
+    return part * limit;
+}
+
 sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
     enum { POINTS = 196 };
-    double last = 0.975 * card->densification_limit;
     int64_t n = card->curve_count;
     double *strain = sf_alloc(err, (unsigned long)n * POINTS, sizeof *strain, "curves"),
            *stress = sf_alloc(err, (unsigned long)n * POINTS, sizeof *stress, "curves");
@@ -135,6 +146,7 @@ sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
         sf_curve curve;
         if (sf_curve_build(card, c, &curve, err) != SF_OK)
             break;
+        double last = table_end(&curve, card->densification_limit);
         for (int k = 0; k < POINTS; k++) {
             double slope, energy;
             strain[c * POINTS + k] = last * k / (POINTS - 1);
