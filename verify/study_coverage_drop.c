@@ -71,8 +71,8 @@ int main(int argc, char **argv) {
         "%d foams whose loading curve is a gas curve bent at random, whose stress grows with a power of the "
         "strain rate and which unload with another exponent than the models assume: of none of the forms. Three drops on 70 mm at 4.5, "
         "5.2 and 6.2 m/s are measured, with a noise of 1.5 %% in a_max and 3 %% in HIC and windows rounded to 0.5 ms. The simulation has 15 %% "
-        "more area and 3 %% less thickness than the surrogate. Three models (gas, gas_solid, avalle; each with a Maxwell branch and "
-        "unknown unloading) are identified and averaged, with short chains. The truth lies in the 95 %% interval:\n\n"
+        "more area and 3 %% less thickness than the surrogate. Three models (gas and avalle with a rate factor, gas_solid with a "
+        "Maxwell branch; unknown unloading) are identified and averaged, with short chains. The truth lies in the 95 %% interval:\n\n"
         "| held out | average of the models | half width | median off by | on average by | model of the largest weight alone |\n|---|---|---|---|---|---|\n",
         all.foams);
     for (int d = LAB_MEASURED; d < LAB_DROPS; d++)
