@@ -266,7 +266,7 @@ static void bounds_and_extrapolation_are_said(void **state) {
     assert_null(strstr(report, "extrapolated curve"));
     assert_non_null(strstr(report, "m: valid with remarks: ")); /* the mesh of 20 mm is coarse */
     free(report);
-    program_shell(p, "sed '/^0.[6-9]/d' '%s' > short.csv", fixture_source("examples/materials/eva35.csv"));
+    program_shell(p, "sed '/^0.[6-9]/d' '%s' > short.csv", fixture_source("tests/materials/eva35_first.csv"));
     r = program_succeed(p, "cfh",
                         "'%s' -o short -t 1 --max-height '50 cm' %s --set material.curve=\"$PWD/short.csv\"",
                         fixture_source(EXAMPLE), program_coarse(20));

@@ -25,7 +25,8 @@ static int set_up(void **state) {
     const program_place *p = program_group_set_up(state);
     program_result made = program_shell(
         p, "mkdir examples && cp -r \"$SF_SOURCE_DIR/geo\" . && "
-           "cp -r \"$SF_SOURCE_DIR/examples/layers\" \"$SF_SOURCE_DIR/examples/materials\" examples");
+           "cp -r \"$SF_SOURCE_DIR/examples/layers\" \"$SF_SOURCE_DIR/examples/materials\" examples && "
+           "cp \"$SF_SOURCE_DIR\"/tests/materials/* examples/materials");
     assert_int_equal(made.code, 0);
     program_succeed(p, "pre", "examples/layers/case.cfg -o m.h5 %s", COARSE);
     program_succeed(p, "solve", "m.h5 -o r.h5 --threads 1");
@@ -274,9 +275,9 @@ static void contact_on_seams_gives_no_energy(void **state) {
         "\"mm\"; missile_parameters = { diameter = 160.0; element_size = 15.0; quarter = 0; }; };\n"
         "pad: { mesh_error_limit = 10.0; };\nmissile: { mass = \"4.6 kg\"; velocity = \"3.5 m/s\"; };\n"
         "solver: { end_time = \"40 ms\"; };\nmaterials: {\n"
-        "left: {\n@include \"../materials/eva35.cfg\"\n};\n"
-        "front: {\n@include \"../materials/eva35.cfg\"\n};\n"
-        "back: {\n@include \"../materials/eva35.cfg\"\n};\n};\n");
+        "left: {\n@include \"../materials/eva35_first.cfg\"\n};\n"
+        "front: {\n@include \"../materials/eva35_first.cfg\"\n};\n"
+        "back: {\n@include \"../materials/eva35_first.cfg\"\n};\n};\n");
     for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
         program_succeed(p, "pre", "examples/layers/seams.cfg -o seams.m.h5 --force %s", words[k]);
         program_succeed(p, "solve", "seams.m.h5 -o seams.h5 --threads 1 --no-checkpoint --force");

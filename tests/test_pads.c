@@ -57,7 +57,7 @@ static const char CASE[] =
     "  parameters = { kind = 0; size = 20.0; };\n"
     "  missile_parameters = { diameter = 160.0; element_size = 20.0; quarter = 0; }; };\n"
     "pad: { mesh_error_limit = 1.0; };\n"
-    "material: {\n@include \"materials/eva35.cfg\"\n};\n"
+    "material: {\n@include \"materials/eva35_first.cfg\"\n};\n"
     "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
     "solver: { end_time = \"40 ms\"; };\n"
     "output: { frame_interval = \"20 ms\"; };\n";
@@ -67,7 +67,7 @@ static int set_up(void **state) {
     program_write_text(*state, "blocks.geo", GEOMETRY);
     program_write_text(*state, "blocks.cfg", CASE);
     return program_shell(*state, "cp -r '%s' '%s' .", fixture_source("geo"),
-                         fixture_source("examples/materials"))
+                         fixture_source("tests/materials"))
         .code;
 }
 

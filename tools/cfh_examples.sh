@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Computes the critical fall heights of the 50 mm and the 70 mm pad of examples/ into out/cfh50 and out/cfh70, and prints
-# the table of docs/cfh.md.
+# the table of docs/cfh.md and docs/validation.md.
 #
 #     tools/cfh_examples.sh            some minutes; finished drops of an earlier call are used again
-#     tools/cfh_examples.sh --docs     the same, and writes table and picture into docs/
+#     tools/cfh_examples.sh --docs     the same, and writes tables and picture into docs/
 #
 # The intervals come from the draws of the foam in $POSTERIOR (default out/eva35/posterior, if that is there).
 # The programs are those in build/bin, or in $SF_BIN_DIR.
@@ -60,9 +60,10 @@ rows = [HEAD, ["---:", "---"] + ["---:"] * (len(HEAD) - 2), row_of(50), row_of(7
 table = ["| " + " | ".join(row) + " |" for row in rows]
 print("\n".join(table))
 if sys.argv[1] == "--docs":
-    with open("docs/cfh.md") as stream:
-        lines = stream.read().split("\n")
-    begin = next(k for k, line in enumerate(lines) if line.startswith("| %s |" % HEAD[0]))
-    with open("docs/cfh.md", "w") as stream:
-        stream.write("\n".join(lines[:begin] + table + lines[begin + len(rows):]))
+    for path in ("docs/cfh.md", "docs/validation.md"):
+        with open(path) as stream:
+            lines = stream.read().split("\n")
+        begin = next(k for k, line in enumerate(lines) if line.startswith("| %s |" % HEAD[0]))
+        with open(path, "w") as stream:
+            stream.write("\n".join(lines[:begin] + table + lines[begin + len(rows):]))
 PYTHON
