@@ -6,6 +6,7 @@
 
 #include "sweep/analysis.h"
 #include "sweep/campaign.h"
+#include "sweep/cost.h"
 #include "sweep/inputs.h"
 #include <math.h>
 #include <setjmp.h>
@@ -552,6 +553,18 @@ static void the_probability_is_over_what_is_uncertain(void **state) {
     sf_plan_free(&plan);
 }
 
+static void a_disk_that_is_too_small_is_refused(void **state) {
+    const program_place *p = *state;
+    sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
+    sf_error err = SF_ERROR_INIT;
+    char folder[600];
+    snprintf(folder, sizeof folder, "%s/not/there/yet", p->folder);
+    assert_int_equal(sf_sweep_cost_check_disk(&cost, folder, 2, &err), SF_OK);
+    cost.open = INT64_C(1000000000000);
+    assert_int_equal(sf_sweep_cost_check_disk(&cost, folder, 2, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "the runs need about 1e+09 GB and the disk of "));
+}
+
 static double seconds(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -613,6 +626,7 @@ int main(void) {
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),
+        cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
