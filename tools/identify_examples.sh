@@ -19,4 +19,5 @@ cp "$out/eva35.cfg" "$out/eva35.csv" examples/materials/
 cp "$out/fit.png" docs/images/eva35_fit.png
 tools/report_sections.py "$out/report.html" docs/validation.md
 POSTERIOR=$out/posterior tools/cfh_examples.sh --docs
+tools/compare_prediction.py docs/validation.md
 echo "written: examples/materials/eva35.cfg, docs/validation.md, docs/cfh.md"
