@@ -88,6 +88,48 @@ static void a_moved_project_keeps_its_drops(void **state) {
     assert_int_equal(chdir("/"), 0);
 }
 
+static uint64_t key_of(const char *case_path, const char *override) {
+    sf_run_folder at;
+    sf_error err = SF_ERROR_INIT;
+    if (sf_run_folder_name("runs", "drop", case_path, override ? 1 : 0, &override, &at, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    return at.key;
+}
+
+/* Values and contents make the key: not the names of files, nor what cannot change a drop. Names of our own
+ * keys may not be taken for those of files. */
+static void the_key_is_of_values_and_contents(void **state) {
+    const program_place *p = *state;
+    program_shell(p, "mkdir keys && cp -r examples geo keys");
+    char path[1024];
+    snprintf(path, sizeof path, "%s", program_path(p, "keys/examples/compression/case.cfg"));
+    uint64_t key = key_of(path, NULL);
+    assert_true(key == key_of(program_path(p, "examples/compression/case.cfg"), NULL));
+    assert_true(key == key_of(path, "geometry.time_limit=100 s"));
+    static const char *const overrides[] = {"material.density=36 kg/m3", "geometry.parameters.side=51",
+                                            "kernel.support_ratio=1.9", "missile.friction=0.4",
+                                            "geometry.length_unit=cm"};
+    for (size_t k = 0; k < sizeof overrides / sizeof overrides[0]; k++)
+        if (key == key_of(path, overrides[k]))
+            fail_msg("%s: the same key", overrides[k]);
+    static const char *const changes[][2] = {
+        {"sed -i 's/density *= *\"[^\"]*\"/density = \"37 kg\\/m3\"/' materials/eva35.cfg", "included"},
+        {"sed -i '$s/$/1/' materials/eva35.csv", "curve"},
+        {"sed -i '$s/^/1/' compression/motion.csv", "motion"},
+        {"echo '// changed' >> ../geo/platen.geo", "missile"},
+    };
+    for (size_t k = 0; k < sizeof changes / sizeof changes[0]; k++) {
+        program_shell(p, "rm -r keys && mkdir keys && cp -r examples geo keys && cd keys/examples && %s",
+                      changes[k][0]);
+        if (key == key_of(path, NULL))
+            fail_msg("changed %s: the same key", changes[k][1]);
+    }
+    program_shell(
+        p, "rm -r keys && mkdir keys && cp -r examples geo keys && mv keys/geo/cube.geo keys/geo/c.geo "
+           "&& sed -i 's/cube.geo/c.geo/' keys/examples/compression/case.cfg");
+    assert_true(key == key_of(path, NULL));
+}
+
 /* An orphan that finished after its campaign was killed leaves model and checkpoint: a drop that is used
  * again has them no longer. */
 static void what_an_orphan_left_goes(void **state) {
@@ -137,6 +179,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_was_included_or_merged_counts),
         cmocka_unit_test(a_copied_project_is_compared_with_its_own_files),
+        cmocka_unit_test(the_key_is_of_values_and_contents),
         cmocka_unit_test(a_changed_geometry_is_simulated_again),
         cmocka_unit_test(what_an_orphan_left_goes),
         cmocka_unit_test(a_moved_project_keeps_its_drops),

@@ -18,5 +18,7 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
  * list. */
 bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
                                   bool unlisted);
+/* That list, from malloc; NULL if there is none. */
+char *sf_campaign_geometry_list(const char *path, const char *text);
 
 #endif

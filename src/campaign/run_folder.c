@@ -6,7 +6,9 @@
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/process.h"
+#include "io/replace.h"
 #include "post/results.h"
+#include "pre/mesh/geometry_files.h"
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -30,21 +32,28 @@ static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err
     return SF_OK;
 }
 
+void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *at) {
+    at->key = key;
+    at->pad_folder[0] = at->missile_folder[0] = '\0';
+    snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
+    snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
+    snprintf(at->results, sizeof at->results, "%s/results.h5", at->path);
+    snprintf(at->checkpoint, sizeof at->checkpoint, "%s/results.h5.restart", at->path);
+    snprintf(at->log, sizeof at->log, "%s/log.txt", at->path);
+    snprintf(at->failed, sizeof at->failed, "%s/failed.txt", at->path);
+}
+
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *at, sf_error *err) {
     sf_case c;
     uint64_t key = 0;
     if (sf_case_read(case_path, count, overrides, NULL, &c, err) != SF_OK)
         return err->status;
-    if (name_folder(c.pad.path, at->pad_folder, err) == SF_OK &&
-        name_folder(c.missile.path, at->missile_folder, err) == SF_OK)
-        sf_campaign_key(&c, &key, err);
+    sf_campaign_key(&c, &key, err);
+    sf_run_folder_name_key(parent, label, key, at);
+    if (err->status == SF_OK && name_folder(c.pad.path, at->pad_folder, err) == SF_OK)
+        name_folder(c.missile.path, at->missile_folder, err);
     sf_case_free(&c);
-    snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
-    snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
-    snprintf(at->results, sizeof at->results, "%s/results.h5", at->path);
-    snprintf(at->checkpoint, sizeof at->checkpoint, "%s/results.h5.restart", at->path);
-    snprintf(at->log, sizeof at->log, "%s/log.txt", at->path);
     return err->status;
 }
 
@@ -61,6 +70,37 @@ bool sf_run_folder_is_finished(const sf_run_folder *at) {
     bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;
     sf_results_close(&r);
     return finished && is_geometry_same(at, at->results, "/provenance/model/geometry_files", false);
+}
+
+/* ---- failures ---- */
+
+/* failed.txt: the status, the sentence, the list of what the geometry read (geometry_files). */
+static void keep_failure(const sf_run_folder *at, const char *files, const sf_error *failure) {
+    sf_replacement text;
+    sf_error none = SF_ERROR_INIT;
+    if (!sf_replace_open(at->failed, &text, &none))
+        return;
+    fprintf(text.file, "%d\n%s\n%s", (int)failure->status, failure->text, files);
+    sf_replace_close(&text, &none);
+}
+
+bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
+    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    sf_error none = SF_ERROR_INIT;
+    char *text = NULL;
+    if (access(at->failed, R_OK) != 0 ||
+        sf_plain_read(at->failed, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
+        return false;
+    char *rest = text, *status = strsep(&rest, "\n"), *sentence = rest ? strsep(&rest, "\n") : NULL;
+    bool failed = rest && atoi(status) == SF_ERR_NUMERIC && sf_geometry_files_are_same(folder, rest);
+    if (failed)
+        SF_FAIL(failure, SF_ERR_NUMERIC, "%s", sentence);
+    free(text);
+    return failed;
+}
+
+void sf_run_folder_forget_failure(const sf_run_folder *at) {
+    sf_folder_remove_file(at->failed);
 }
 
 /* The last line of a log that says something, for an error's sentence. */
@@ -96,18 +136,22 @@ static sf_status run_program(const char *const *arguments, const char *log, sf_e
                    "%s (exit code %d; see %s)", said, code, log);
 }
 
-/* A campaign that was killed may have left its solver at work, which holds the folder of its run
- * (solver/run/output.c): its drop is waited for. */
-static sf_status wait_for_orphan(const sf_run_folder *at, sf_error *err) {
-    const struct timespec pause = {0, 100000000};
+/* Is the folder of its run locked (solver/run/output.c)? */
+bool sf_run_folder_is_running(const sf_run_folder *at) {
     char folder[SF_RUN_PATH_SIZE + 8];
     snprintf(folder, sizeof folder, "%s.run", at->results);
     int handle = open(folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    while (handle >= 0 && !sf_process_stopped() && flock(handle, LOCK_EX | LOCK_NB) != 0 &&
-           errno == EWOULDBLOCK)
-        nanosleep(&pause, NULL);
+    bool locked = handle >= 0 && flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (handle >= 0)
         close(handle); /* and the lock with it */
+    return locked;
+}
+
+/* A campaign that was killed may have left its solver at work: its drop is waited for. */
+static sf_status wait_for_orphan(const sf_run_folder *at, sf_error *err) {
+    const struct timespec pause = {0, 100000000};
+    while (!sf_process_stopped() && sf_run_folder_is_running(at))
+        nanosleep(&pause, NULL);
     return sf_process_stopped() ? sf_run_folder_interrupted(err) : SF_OK;
 }
 
@@ -133,10 +177,12 @@ void sf_run_folder_clean(const sf_run_folder *at) {
 
 sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err) {
-    char pre[PATH_MAX], solve[PATH_MAX], thread_text[16];
-    const char *build[MAX_ARGUMENTS] = {pre, case_path, "-o", at->model, "--force"};
-    assert(5 + 2 * count < MAX_ARGUMENTS);
-    int n = 5;
+    char pre[PATH_MAX], solve[PATH_MAX], thread_text[16], share[SF_RUN_PATH_SIZE];
+    const char *build[MAX_ARGUMENTS] = {pre, case_path, "-o", at->model, "--force", "--share", share};
+    assert(7 + 2 * count < MAX_ARGUMENTS);
+    int n = 7;
+    snprintf(share, sizeof share, "%.*s" SF_RUN_SHARED, (int)(strrchr(at->path, '/') + 1 - at->path),
+             at->path);
     for (int k = 0; k < count; k++) {
         build[n++] = "--set";
         build[n++] = overrides[k];
@@ -152,8 +198,15 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
         wait_for_orphan(at, err) == SF_OK &&
         !sf_run_folder_is_finished(at)) { /* it may have begun meanwhile */
         sf_folder_remove_file(at->log);
+        sf_folder_remove_file(at->model); /* the failure of softfall-pre is none of an earlier model */
         if (run_program(build, at->log, err) == SF_OK)
             run_program(run, at->log, err);
+    }
+    if (err->status == SF_ERR_NUMERIC && access(at->model, R_OK) == 0) {
+        char *files = sf_campaign_geometry_list(at->model, "/provenance/geometry_files");
+        if (files)
+            keep_failure(at, files, err);
+        free(files);
     }
     if (err->status != SF_INTERRUPTED)
         sf_run_folder_clean(at);

@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "campaign/runner.h"
 
+#include "campaign/engine.h"
+#include "campaign/manifest.h"
 #include "campaign/run_folder.h"
 #include "io/folder.h"
 #include "io/process.h"
 #include "post/figures.h"
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { MATERIAL_SIZE = PATH_MAX + 64 };
 
@@ -89,53 +93,130 @@ static sf_status read_result(const char *path, sf_runner_result *out, sf_error *
     return err->status;
 }
 
-/* ---- batches ---- */
+/* ---- drops ---- */
 
-/* A drop of a batch, with its overrides and its folder. */
-typedef struct request {
-    const sf_runner_drop *drop;
+/* A drop with its overrides and its folder. */
+typedef struct located {
     char material[MATERIAL_SIZE];
     int count;
     const char *overrides[SF_RUNNER_OVERRIDES + 1 + LEAN];
     sf_run_folder at;
+} located;
+
+static sf_status locate(const sf_runner *runner, const sf_runner_drop *drop, located *l, sf_error *err) {
+    l->count = list_overrides(drop, l->material, l->overrides);
+    return sf_run_folder_name(runner->folder, drop->label, drop->case_path, l->count, l->overrides, &l->at,
+                              err);
+}
+
+sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
+                         sf_error *failure, sf_error *err) {
+    located l;
+    if (locate(runner, drop, &l, err) != SF_OK)
+        return err->status;
+    *state = sf_run_folder_is_finished(&l.at)           ? SF_RUN_DONE
+             : sf_run_folder_is_running(&l.at)          ? SF_RUN_RUNNING
+             : sf_run_folder_has_failed(&l.at, failure) ? SF_RUN_FAILED
+                                                        : SF_RUN_OPEN;
+    return SF_OK;
+}
+
+const char *sf_runner_state_name(sf_runner_state state) {
+    static const char *const names[] = {"open", "running", "done", "failed"};
+    return names[state];
+}
+
+sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uint64_t *key, sf_error *err) {
+    located l;
+    if (locate(runner, drop, &l, err) == SF_OK)
+        *key = l.at.key;
+    return err->status;
+}
+
+sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
+                         sf_error *err) {
+    located l;
+    memset(result, 0, sizeof *result);
+    return locate(runner, drop, &l, err) == SF_OK ? read_result(l.at.results, result, err) : err->status;
+}
+
+/* ---- batches ---- */
+
+/* What is known of a drop of a batch; small, as there may be very many. */
+typedef struct request {
+    uint64_t key;
     bool reused;
+    int first; /* the first drop of the batch with the same folder */
 } request;
 
 typedef struct batch {
     const sf_runner *runner;
+    int count;
+    const sf_runner_drop *drop;
     request *request;
     int *pending; /* those that must be simulated */
-    int threads;  /* of each */
+    int pending_count, threads /* of each */, failed;
+    double start, told; /* s */
 } batch;
 
-static sf_status prepare(const sf_runner *runner, const sf_runner_drop *drop, request *r, sf_error *err) {
-    r->drop = drop;
-    r->count = list_overrides(drop, r->material, r->overrides);
-    if (sf_run_folder_name(runner->folder, drop->label, drop->case_path, r->count, r->overrides, &r->at,
-                           err) == SF_OK)
-        r->reused = sf_run_folder_is_finished(&r->at);
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Finds the drop's folder and whether it is finished, or has failed earlier. */
+static sf_status prepare(const sf_runner *runner, const sf_runner_drop *drop, request *r, sf_error *failure,
+                         sf_error *err) {
+    located l;
+    if (locate(runner, drop, &l, err) != SF_OK)
+        return err->status;
+    r->key = l.at.key;
+    r->reused = sf_run_folder_is_finished(&l.at);
     if (r->reused)
-        sf_run_folder_clean(&r->at);
-    return err->status;
+        sf_run_folder_clean(&l.at);
+    else if (runner->engine.retry)
+        sf_run_folder_forget_failure(&l.at);
+    else
+        sf_run_folder_has_failed(&l.at, failure);
+    return SF_OK;
 }
 
 static sf_status simulate(void *context, int index, sf_error *err) {
     const batch *b = context;
-    const request *r = &b->request[b->pending[index]];
-    return sf_run_folder_simulate(&r->at, r->drop->case_path, r->count, r->overrides, b->threads, err);
+    const sf_runner_drop *drop = &b->drop[b->pending[index]];
+    located l;
+    if (locate(b->runner, drop, &l, err) != SF_OK)
+        return err->status;
+    if (l.at.key != b->request[b->pending[index]].key)
+        return SF_FAIL(err, SF_ERR_INPUT, "a file that %s leads to has changed while the batch ran",
+                       drop->case_path);
+    return sf_run_folder_simulate(&l.at, drop->case_path, l.count, l.overrides, b->threads, err);
 }
 
-/* The drops that are not there, each once. */
-static int list_pending(batch *b, int count) {
-    int pending = 0;
-    for (int k = 0; k < count; k++) {
-        bool twice = b->request[k].reused;
-        for (int j = 0; j < k && !twice; j++)
-            twice = strcmp(b->request[j].at.path, b->request[k].at.path) == 0;
-        if (!twice)
-            b->pending[pending++] = k;
+static int compare(const void *p, const void *q, void *context) {
+    const batch *b = context;
+    int j = *(const int *)p, k = *(const int *)q;
+    uint64_t one = b->request[j].key, other = b->request[k].key;
+    int order = one != other ? (one > other) - (one < other) : strcmp(b->drop[j].label, b->drop[k].label);
+    return order ? order : j - k;
+}
+
+/* The drops that are not there, each once, in the order of the batch. */
+static void list_pending(batch *b, const sf_error *failure) {
+    int *order = b->pending; /* for now */
+    for (int k = 0; k < b->count; k++)
+        order[k] = k;
+    qsort_r(order, (size_t)b->count, sizeof *order, compare, b);
+    for (int k = 0; k < b->count; k++) {
+        const request *before = k > 0 ? &b->request[order[k - 1]] : NULL;
+        bool same = before && before->key == b->request[order[k]].key &&
+                    strcmp(b->drop[order[k - 1]].label, b->drop[order[k]].label) == 0;
+        b->request[order[k]].first = same ? before->first : order[k];
     }
-    return pending;
+    for (int k = 0; k < b->count; k++)
+        if (!b->request[k].reused && failure[k].status == SF_OK && b->request[k].first == k)
+            b->pending[b->pending_count++] = k;
 }
 
 /* The failure that decides: an interruption, another that is not numerical, the first. */
@@ -154,15 +235,18 @@ static sf_status decide(int count, const sf_error *failure, sf_error *err) {
 }
 
 /* Which drop, and what to do about it. */
-static void name_killed(const batch *b, int pending, sf_error *failure) {
-    for (int k = 0; k < pending; k++) {
+static void name_killed(const batch *b, sf_error *failure) {
+    for (int k = 0; k < b->pending_count; k++) {
         sf_error before = failure[k];
+        sf_run_folder at;
         if (strncmp(before.text, SF_PROCESS_KILLED, strlen(SF_PROCESS_KILLED)) != 0)
             continue;
         failure[k] = (sf_error)SF_ERROR_INIT;
+        sf_run_folder_name_key(b->runner->folder, b->drop[b->pending[k]].label, b->request[b->pending[k]].key,
+                               &at);
         SF_FAIL(&failure[k], before.status,
-                "%.700s: %.100s; finished drops are kept: run the same command again to resume",
-                b->request[b->pending[k]].at.path, before.text);
+                "%.700s: %.100s; finished drops are kept: run the same command again to resume", at.path,
+                before.text);
     }
 }
 
@@ -179,62 +263,174 @@ static int count_abreast(const sf_runner *runner, int pending) {
     return abreast;
 }
 
-/* One drop alone has all threads and needs no process of its own. `failure` by the request. */
-static sf_status simulate_pending(batch *b, int pending, sf_error *failure, sf_error *err) {
-    if (pending == 0)
-        return SF_OK;
-    int threads = b->runner->threads, abreast = count_abreast(b->runner, pending);
+/* A line every ten seconds, with the time that is left at the pace so far. */
+static void tell_progress(void *context, int index, int ended, const sf_error *result) {
+    enum { EVERY = 10 };
+    batch *b = context;
+    double time = now(), left = (time - b->start) / ended * (b->pending_count - ended);
+    (void)index;
+    b->failed += result->status != SF_OK;
+    if (!b->runner->log || time < b->told + EVERY || ended == b->pending_count)
+        return;
+    b->told = time;
+    fprintf(b->runner->log, "  %d of %d drops, %d failed, %.3g drops per hour, %d h %02d min to go\n", ended,
+            b->pending_count, b->failed, 3600 * ended / (time - b->start), (int)(left / 3600),
+            (int)fmod(left / 60, 60));
+    fflush(b->runner->log);
+}
+
+/* One drop alone has all threads and needs no process of its own. `failure` by the pending ones. */
+static sf_status simulate_here(batch *b, sf_error *failure, sf_error *err) {
+    int threads = b->runner->threads, abreast = count_abreast(b->runner, b->pending_count);
     b->threads = threads > abreast ? threads / abreast : 1;
+    b->start = b->told = now();
+    if (b->pending_count == 1)
+        simulate(b, 0, failure);
+    else if (sf_process_pool_watched(b->pending_count, abreast, simulate, tell_progress, b, failure, err) ==
+             SF_OK)
+        name_killed(b, failure);
+    return err->status;
+}
+
+/* What the engine left: a drop without results and without a sentence was not run to its end. */
+static void look_again(const batch *b, const sf_manifest *m, const char *manifest, int code,
+                       sf_error *failure) {
+    char path[SF_RUN_PATH_SIZE];
+    for (int k = 0, last; k < m->count; k = last) {
+        for (last = k + 1; last < m->count && strcmp(m->run[last].group, m->run[k].group) == 0;)
+            last++;
+        sf_manifest_outcome_path(manifest, m->run[k].group, path, sizeof path);
+        bool done = sf_manifest_read_outcome(path, last - k, &m->run[k], &failure[k]);
+        for (int j = k; j < last && !done; j++) {
+            located l;
+            if (locate(b->runner, &m->run[j].drop, &l, &failure[j]) == SF_OK &&
+                !sf_run_folder_is_finished(&l.at))
+                SF_FAIL(&failure[j], SF_ERR_LIBRARY,
+                        "snakemake (exit code %d) left the drop %s undone; see %.*slog.txt; run the same "
+                        "command again to resume",
+                        code, m->run[j].drop.label, (int)(strrchr(manifest, '/') + 1 - manifest), manifest);
+        }
+        sf_folder_remove_file(path);
+    }
+}
+
+/* By the engine, group by group. `failure` by the pending ones. */
+static sf_status simulate_elsewhere(const batch *b, sf_error *failure, sf_error *err) {
+    const sf_runner *runner = b->runner;
+    char folder[SF_RUN_PATH_SIZE], path[SF_RUN_PATH_SIZE + 32];
+    sf_manifest m = {0};
+    uint64_t *key = sf_alloc(err, (unsigned long)b->count, sizeof *key, "keys");
+    int code = 0, size = sf_manifest_group_size(b->pending_count, runner->engine.per_job);
+    for (int k = 0; key && k < b->count; k++)
+        key[k] = b->request[k].key;
+    snprintf(folder, sizeof folder, "%s/" SF_MANIFEST_FOLDER, runner->folder);
+    snprintf(path, sizeof path, "%s/" SF_MANIFEST_NAME, folder);
+    if (err->status == SF_OK && sf_folder_own(folder, err) == SF_OK &&
+        sf_manifest_write(path, runner->folder, b->pending_count, b->pending, b->drop, key, size, err) ==
+            SF_OK &&
+        sf_manifest_read(path, &m, err) == SF_OK) {
+        for (int k = 0; k < m.count; k++) { /* of an earlier try: what they say is not so */
+            char outcome[SF_RUN_PATH_SIZE];
+            sf_manifest_outcome_path(path, m.run[k].group, outcome, sizeof outcome);
+            if (k == 0 || strcmp(m.run[k].group, m.run[k - 1].group) != 0)
+                sf_folder_remove_file(outcome);
+        }
+        if (runner->log) {
+            fprintf(runner->log, "  %d drops in jobs of %d by snakemake; its words are in %s/log.txt\n",
+                    b->pending_count, size, folder);
+            fflush(runner->log);
+        }
+        if (sf_engine_run(&runner->engine, runner->threads, path, &code, err) == SF_OK)
+            look_again(b, &m, path, code, failure);
+    }
+    sf_manifest_free(&m);
+    free(key);
+    return err->status;
+}
+
+static sf_status simulate_pending(batch *b, sf_error *failure, sf_error *err) {
+    if (b->pending_count == 0)
+        return SF_OK;
     if (sf_folder_own(b->runner->folder, err) != SF_OK)
         return err->status;
-    sf_error *own = sf_alloc(err, (unsigned long)pending, sizeof *own, "failures");
-    if (own && pending == 1)
-        simulate(b, 0, own);
-    else if (own && sf_process_pool(pending, abreast, simulate, b, own, err) == SF_OK)
-        name_killed(b, pending, own);
-    for (int k = 0; k < pending && own && err->status == SF_OK; k++)
+    sf_error *own = sf_alloc(err, (unsigned long)b->pending_count, sizeof *own, "failures");
+    for (int k = 0; own && k < b->pending_count; k++)
+        own[k] = (sf_error)SF_ERROR_INIT;
+    if (own && sf_engine_is_local(&b->runner->engine))
+        simulate_here(b, own, err);
+    else if (own)
+        simulate_elsewhere(b, own, err);
+    for (int k = 0; k < b->pending_count && own && err->status == SF_OK; k++)
         failure[b->pending[k]] = own[k];
     free(own);
     return err->status;
 }
 
-static sf_status take_result(sf_runner *runner, const request *r, sf_runner_result *result, sf_error *err) {
-    if (read_result(r->at.results, result, err) != SF_OK)
+static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, const request *r,
+                             sf_runner_result *result, sf_error *err) {
+    sf_run_folder at;
+    sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
+    if (read_result(at.results, result, err) != SF_OK)
         return err->status;
     result->reused = r->reused;
     *(r->reused ? &runner->reused : &runner->simulated) += 1;
     if (runner->log) {
         fprintf(runner->log, "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s\n",
-                r->drop->label, result->v0, result->a_max_g, result->hic, result->max_local_strain,
+                drop->label, result->v0, result->a_max_g, result->hic, result->max_local_strain,
                 result->reused ? "  (was there)" : "");
         fflush(runner->log);
     }
     return SF_OK;
 }
 
-sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
-                             sf_runner_result *result, sf_error *failure, sf_error *err) {
-    unsigned long n = (unsigned long)count;
-    batch b = {.runner = runner,
-               .request = sf_alloc(err, n, sizeof *b.request, "drops"),
-               .pending = sf_alloc(err, n, sizeof *b.pending, "drops")};
-    memset(result, 0, (size_t)count * sizeof *result);
-    for (int k = 0; k < count; k++)
+/* `b` holds runner, count and drop; what it gets here is released by release_batch. */
+static sf_status run_batch(batch *b, sf_error *failure, sf_error *err) {
+    unsigned long n = (unsigned long)b->count;
+    b->request = sf_alloc(err, n, sizeof *b->request, "drops");
+    b->pending = sf_alloc(err, n, sizeof *b->pending, "drops");
+    for (int k = 0; k < b->count; k++)
         failure[k] = (sf_error)SF_ERROR_INIT;
-    for (int k = 0; k < count && err->status == SF_OK; k++)
-        prepare(runner, &drop[k], &b.request[k], err);
+    if (err->status == SF_OK)
+        sf_engine_check(&b->runner->engine, err);
+    for (int k = 0; k < b->count && err->status == SF_OK; k++)
+        prepare(b->runner, &b->drop[k], &b->request[k], &failure[k], err);
     if (err->status == SF_OK && sf_process_stopped())
         sf_run_folder_interrupted(err);
-    if (err->status == SF_OK)
-        simulate_pending(&b, list_pending(&b, count), failure, err);
-    for (int k = 0; k < count && err->status == SF_OK; k++)
+    if (err->status == SF_OK) {
+        list_pending(b, failure);
+        simulate_pending(b, failure, err);
+    }
+    for (int k = 0; k < b->count && err->status == SF_OK; k++) {
+        if (failure[k].status == SF_OK)
+            failure[k] = failure[b->request[k].first];
         if (failure[k].status == SF_INTERRUPTED)
             sf_run_folder_interrupted(err);
+    }
+    return err->status;
+}
+
+static void release_batch(batch *b) {
+    free(b->request);
+    free(b->pending);
+}
+
+sf_status sf_runner_simulate_each(sf_runner *runner, int count, const sf_runner_drop *drop, sf_error *failure,
+                                  sf_error *err) {
+    batch b = {.runner = runner, .count = count, .drop = drop};
+    run_batch(&b, failure, err);
+    release_batch(&b);
+    return err->status;
+}
+
+sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
+                             sf_runner_result *result, sf_error *failure, sf_error *err) {
+    batch b = {.runner = runner, .count = count, .drop = drop};
+    memset(result, 0, (size_t)count * sizeof *result);
+    run_batch(&b, failure, err);
     for (int k = 0; k < count && err->status == SF_OK; k++)
         if (failure[k].status == SF_OK)
-            take_result(runner, &b.request[k], &result[k], &failure[k]);
-    free(b.request);
-    free(b.pending);
+            take_result(runner, &drop[k], &b.request[k], &result[k], &failure[k]);
+    release_batch(&b);
     return err->status;
 }
 

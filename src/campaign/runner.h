@@ -7,6 +7,7 @@
 #ifndef SF_CAMPAIGN_RUNNER_H
 #define SF_CAMPAIGN_RUNNER_H
 
+#include "campaign/drop.h"
 #include "core/error.h"
 #include "post/signal.h"
 #include "post/verdict.h"
@@ -22,18 +23,8 @@ typedef struct sf_runner {
     FILE *log;          /* a line for each drop; borrowed; NULL: silent */
     int64_t simulated;  /* drops so far, out */
     int64_t reused;     /* drops whose results were there, out */
+    sf_runner_engine engine;
 } sf_runner;
-
-enum { SF_RUNNER_OVERRIDES = 16 };
-
-/* One drop. Strings are borrowed. */
-typedef struct sf_runner_drop {
-    const char *label;     /* begins the name of its folder */
-    const char *case_path; /* case file */
-    const char *material;  /* file that replaces the case's group material, NULL: none */
-    int override_count;
-    const char *overrides[SF_RUNNER_OVERRIDES]; /* "group.key=value" */
-} sf_runner_drop;
 
 /* The results of a drop for a campaign; figures of the CFC 1000 curve. */
 typedef struct sf_runner_result {
@@ -71,5 +62,24 @@ sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop
 sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
                              sf_runner_result *result, sf_error *failure, sf_error *err);
 void sf_runner_result_free(sf_runner_result *result);
+
+/* The same as sf_runner_run_each, but no results are read: for many drops. Counts neither simulated nor
+ * reused. sf_runner_read then reads those of one drop. */
+sf_status sf_runner_simulate_each(sf_runner *runner, int count, const sf_runner_drop *drop, sf_error *failure,
+                                  sf_error *err);
+/* The results of a finished drop; SF_ERR_IO if there are none. */
+sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
+                         sf_error *err);
+
+/* The key of the drop's inputs: its folder is runner->folder/label-<key, 16 hexadecimal digits>. */
+sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uint64_t *key, sf_error *err);
+
+typedef enum sf_runner_state { SF_RUN_OPEN, SF_RUN_RUNNING, SF_RUN_DONE, SF_RUN_FAILED } sf_runner_state;
+
+/* How a drop stands; `*failure` of one that failed. Nothing is changed. Errors: of its inputs. */
+sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
+                         sf_error *failure, sf_error *err);
+/* open, running, done, failed */
+const char *sf_runner_state_name(sf_runner_state state);
 
 #endif

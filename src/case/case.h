@@ -39,10 +39,13 @@ typedef struct sf_case {
     char *path;       /* as given */
     char *text;       /* the case file with its includes in place, --set lines appended as comments; owned */
     char *parameters; /* one line per key that exists: name, value, SI value, given|default; owned */
+    uint64_t values;  /* hash of the values of all keys that can change a drop, but those that name files */
     sf_geo_source pad;
     sf_geo_source missile;
     double length_unit;     /* m per unit of the geometry */
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */
+    const char *store;      /* folder in which meshes and domains are kept for other drops (io/store.h); NULL:
+                               they are not; borrowed, not of the case file */
     char *geometry_files;   /* what the geometries read (sf_gmsh_files), set when they are meshed; owned */
     char pad_group[SF_CASE_NAME_SIZE]; /* physical volume group of the pad; of layers, for sentences: all */
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */

@@ -29,7 +29,7 @@ static const sf_key keys[] = {
     {"geometry", "missile_parameters", SF_KEY_PARAMETERS, "", AT(missile),
      "the same for `missile_file`"},
     {"geometry", "time_limit", SF_KEY_QUANTITY, "\"600 s\"", AT(mesh_time_limit),
-     "processor time that gmsh may take for each geometry", .quantity = SF_TIME, .low = 1.0, .high = 1e7},
+     "processor time that gmsh may take for each geometry", .quantity = SF_TIME, .low = 1.0, .high = 1e7, .idle = true},
     /* pad */
     {"pad", "group", SF_KEY_NAME, "\"pad\"", AT(pad_group), "physical volume of a pad of one material"},
     {"pad", "contact", SF_KEY_NAME, "\"top\"", AT(contact_group), "physical surface that the missile may touch"},

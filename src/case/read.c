@@ -11,6 +11,7 @@
 #include "case/response_error.h"
 #include "case/value.h"
 
+#include "core/hash.h"
 #include "core/mat3.h"
 #include "solver/material/law.h"
 #include <math.h>
@@ -91,6 +92,20 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
     return u.count > 0 ? refuse_unknown(reader, &u, err) : SF_OK;
 }
 
+/* What stands in the files that a key names is hashed where they are read (campaign/key.c). */
+static bool names_files(const sf_key *key) {
+    return key->kind == SF_KEY_PATH || key->kind == SF_KEY_CURVE || key->kind == SF_KEY_CURVES ||
+           key->kind == SF_KEY_MOTION;
+}
+
+/* `detail`: the value in SI. Texts end with a zero: no two lists of values look the same. */
+static void hash_value(sf_case *out, const sf_key *key, const char *name, const char *text,
+                       const char *detail) {
+    const char *const part[] = {name, text, detail};
+    for (int k = 0; k < 3 && !names_files(key) && !key->idle; k++)
+        out->values = sf_hash_bytes(out->values, part[k], strlen(part[k]) + 1);
+}
+
 static void list_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                        const char *detail, const char *origin) {
     char *text = NULL;
@@ -106,6 +121,7 @@ static void list_value(sf_case_reader *reader, const sf_key *key, const config_s
     char name[SF_CASE_GROUP_SIZE];
     snprintf(name, sizeof name, "%s.%s", key->group, key->name);
     fprintf(reader->listing, "%-34s %-24s %-24s %s\n", name, text ? text : "", detail, origin);
+    hash_value(reader->out, key, name, text ? text : "", detail);
     free(text);
 }
 
@@ -549,7 +565,7 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
 
 sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                        sf_case *out, sf_error *err) {
-    memset(out, 0, sizeof *out);
+    *out = (sf_case){.values = SF_HASH_START};
     sf_case_reader reader = {
         .path = path, .out = out, .sink = sink, .material = &out->material, .material_group = "material"};
     size_t listing_size = 0;

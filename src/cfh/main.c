@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-cfh CASE -o DIR: critical fall height of a pad, from drops that it simulates. */
+#include "campaign/engine.h"
 #include "cfh/options.h"
 #include "cfh/plot.h"
 #include "cfh/series.h"
@@ -166,7 +167,7 @@ static sf_status simulate(const sf_cfh_options *o, const setting *s, sf_staging 
     char folder[4096];
     if ((size_t)snprintf(folder, sizeof folder, "%s/runs", output->directory) >= sizeof folder)
         return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
-    sf_runner runner = {.folder = folder, .threads = o->threads, .log = stdout};
+    sf_runner runner = {.folder = folder, .threads = o->threads, .log = stdout, .engine = o->engine};
     sf_runner_drop base = {
         .case_path = o->case_path, .material = o->material, .override_count = o->override_count};
     memcpy(base.overrides, o->overrides, sizeof base.overrides);
@@ -197,7 +198,8 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
     sf_cfh_result result;
     sf_cfh_spread spread = {0};
     int lock = -1; /* until the program ends */
-    if (sf_staging_check(o->directory, output_names, o->force, err) != SF_OK ||
+    if (sf_engine_check(&o->engine, err) != SF_OK ||
+        sf_staging_check(o->directory, output_names, o->force, err) != SF_OK ||
         (o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
         return err->status;
     if (rig.understood[0])

@@ -2,6 +2,7 @@
 #include "cfh/options.h"
 
 #include "build_info.h"
+#include "campaign/engine.h"
 #include "cfh/spread.h"
 #include "core/program.h"
 #include "core/units.h"
@@ -101,7 +102,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
             argp_error(state, "give a case, and the output directory with -o");
         break;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return sf_engine_option(key, text, &o->engine, p->err) ? 0 : ARGP_ERR_UNKNOWN;
     }
     return 0;
 }
@@ -207,6 +208,7 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
          4},
         {"check-drops", KEY_CHECKS, "N", 0,
          "simulate N of the draws to check the columns that stand for them (default 5)", 4},
+        SF_ENGINE_OPTIONS(5),
         {0},
     };
     const struct argp parser = {

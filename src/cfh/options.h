@@ -15,6 +15,7 @@ typedef struct sf_cfh_options {
     const char *posterior; /* folder of draws, NULL: none */
     int checks;            /* draws to simulate */
     bool force;
+    sf_runner_engine engine;
     int threads;
     int override_count; /* at most SF_RUNNER_OVERRIDES - 1: one is used for the speed */
     const char *overrides[SF_RUNNER_OVERRIDES];

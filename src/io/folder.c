@@ -147,6 +147,22 @@ void sf_folder_leave(const char *path) {
     rmdir(path);
 }
 
+uint64_t sf_folder_bytes(const char *path) {
+    int handle = sf_folder_open(path);
+    DIR *list = handle >= 0 ? list_folder(handle) : NULL;
+    struct dirent *entry;
+    struct stat info;
+    uint64_t sum = 0;
+    while (list && (entry = readdir(list)) != NULL)
+        if (fstatat(handle, entry->d_name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(info.st_mode))
+            sum += (uint64_t)info.st_size;
+    if (list)
+        closedir(list);
+    if (handle >= 0)
+        close(handle);
+    return sum;
+}
+
 void sf_folder_remove_file(const char *path) {
     struct stat info;
     if (lstat(path, &info) == 0 && S_ISREG(info.st_mode))

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include <stdbool.h>
+#include <stdint.h>
 
 /* Makes the folder, or takes an empty one or one with the mark. SF_ERR_INPUT: it holds files but no mark, or
  * is no folder. */
@@ -30,6 +31,9 @@ sf_status sf_folder_lock(const char *path, int *handle, sf_error *err);
 
 /* Removes the mark and the folder if nothing else is in it. */
 void sf_folder_leave(const char *path);
+
+/* Bytes of the files in the folder. */
+uint64_t sf_folder_bytes(const char *path);
 
 /* In a folder with the mark, one file of this name: removed if it is a plain file. */
 void sf_folder_remove_file(const char *path);

@@ -170,8 +170,8 @@ static void end_job(job *j, int status, sf_error *result) {
     *j = (job){0};
 }
 
-/* Waits for one of the jobs to end. */
-static sf_status await_job(job *jobs, int count, sf_error *result, sf_error *err) {
+/* Waits for one of the jobs to end; *index of its work. */
+static sf_status await_job(job *jobs, int count, sf_error *result, int *index, sf_error *err) {
     int status = 0;
     pid_t child;
     while ((child = waitpid(-1, &status, 0)) < 0 && errno == EINTR)
@@ -179,15 +179,21 @@ static sf_status await_job(job *jobs, int count, sf_error *result, sf_error *err
     for (int k = 0; k < count; k++)
         if (child > 0 && jobs[k].child == child) {
             running[k] = 0;
-            end_job(&jobs[k], status, &result[jobs[k].index]);
+            *index = jobs[k].index;
+            end_job(&jobs[k], status, &result[*index]);
         }
     return child > 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "a process of a batch is lost: %s", strerror(errno));
 }
 
 sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
                           sf_error *err) {
+    return sf_process_pool_watched(count, jobs, work, NULL, context, result, err);
+}
+
+sf_status sf_process_pool_watched(int count, int jobs, sf_process_work work, sf_process_watch watcher,
+                                  void *context, sf_error *result, sf_error *err) {
     job at[SF_PROCESS_JOBS] = {{0}};
-    int next = 0, busy = 0;
+    int next = 0, busy = 0, ended = 0;
     notice_children();
     jobs = jobs < 1 ? 1 : jobs > SF_PROCESS_JOBS ? SF_PROCESS_JOBS : jobs;
     for (int k = 0; k < count; k++)
@@ -200,8 +206,11 @@ sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *conte
                 next++;
             busy += at[k].child != 0;
         }
-        if (busy > 0 && await_job(at, jobs, result, err) != SF_OK)
+        int index = -1;
+        if (busy > 0 && await_job(at, jobs, result, &index, err) != SF_OK)
             return err->status;
+        if (watcher && index >= 0)
+            watcher(context, index, ++ended, &result[index]);
     } while (busy > 0);
     for (int k = next; k < count; k++)
         SF_FAIL(&result[k], SF_INTERRUPTED, "interrupted before it began");

@@ -44,4 +44,11 @@ typedef sf_status (*sf_process_work)(void *context, int index, sf_error *err);
 sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
                           sf_error *err);
 
+/* Called in this process each time that a copy has ended; `ended` of `count` have so far. */
+typedef void (*sf_process_watch)(void *context, int index, int ended, const sf_error *result);
+
+/* The same, with a watch (NULL: none). */
+sf_status sf_process_pool_watched(int count, int jobs, sf_process_work work, sf_process_watch watch,
+                                  void *context, sf_error *result, sf_error *err);
+
 #endif

@@ -8,6 +8,7 @@
 #include "solver/material/law.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/connectivity.h"
+#include "pre/cloud/domain_store.h"
 #include "pre/cloud/domains.h"
 #include "pre/drop_check.h"
 #include "pre/missile_body.h"
@@ -159,7 +160,7 @@ static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dua
     sf_cloud_spacing(mesh, dual, spacing);
     for (int64_t i = 0; i < n; i++)
         support[i] = c->support_ratio * spacing[i];
-    if (sf_domains_build(mesh, dual, c->condition_limit, support, &domains, err) == SF_OK &&
+    if (sf_domain_store_build(c->store, mesh, dual, c->condition_limit, support, &domains, err) == SF_OK &&
         sf_invariants_measure(mesh, dual, &domains, spacing, volume, &invariants, err) == SF_OK &&
         sf_invariants_check(&invariants, err) == SF_OK) {
         for (int64_t i = 0; i < n; i++)

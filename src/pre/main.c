@@ -12,11 +12,12 @@
 #include <omp.h>
 #include <stdlib.h>
 
-enum { MAX_OVERRIDES = 64, KEY_SET = 1, KEY_KEYS = 2 };
+enum { MAX_OVERRIDES = 64, KEY_SET = 1, KEY_KEYS = 2, KEY_SHARE = 3 };
 
 typedef struct options {
     const char *case_path;
     const char *output;
+    const char *store;
     bool force;
     bool keys;
     int overrides;
@@ -34,6 +35,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
         return 0;
     case KEY_KEYS:
         o->keys = true;
+        return 0;
+    case KEY_SHARE:
+        o->store = arg;
         return 0;
     case KEY_SET:
         if (o->overrides == MAX_OVERRIDES)
@@ -63,8 +67,10 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
     SF_TRY(sf_replace_check(o->output, err));
     if (!o->force && sf_replace_exists(o->output))
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it", o->output);
-    if (sf_case_read(o->case_path, o->overrides, o->override, &sink, &c, err) != SF_OK ||
-        sf_replace_check(o->output, err) != SF_OK || /* not one of what the case names */
+    if (sf_case_read(o->case_path, o->overrides, o->override, &sink, &c, err) != SF_OK)
+        goto done;
+    c.store = o->store;
+    if (sf_replace_check(o->output, err) != SF_OK || /* not one of what the case names */
         sf_model_make(&c, &model, &report, libraries, &sink, err) != SF_OK ||
         sf_replace_check(o->output, err) != SF_OK) /* nor of what a geometry names */
         goto done;
@@ -93,6 +99,10 @@ int main(int argc, char **argv) {
          "material=@other_foam.cfg",
          0},
         {"force", 'f', 0, 0, "replace an existing model file", 0},
+        {"share", KEY_SHARE, "DIR", 0,
+         "take the mesh and the smoothing domains from this folder if an earlier drop of the same geometry and "
+         "kernel left them there, and leave them there",
+         0},
         {"keys", KEY_KEYS, 0, 0, "list every key of a case file and end", 0},
         {0},
     };

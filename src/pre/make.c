@@ -21,8 +21,10 @@ static sf_status read_pad(sf_gmsh *session, const sf_case *c, sf_mesh *mesh, sf_
 static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
                                char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
     sf_gmsh *session = NULL;
-    if (sf_gmsh_begin(&session, err) == SF_OK)
+    if (sf_gmsh_begin(&session, err) == SF_OK) {
+        sf_gmsh_share(session, c->store);
         sf_gmsh_limit(session, c->mesh_time_limit, sink);
+    }
     if (session && sf_gmsh_load(session, &c->pad, err) == SF_OK && read_pad(session, c, mesh, err) == SF_OK &&
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK))
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "campaign/engine.h"
 #include "core/program.h"
 #include "fit/drop/command.h"
 
@@ -19,6 +20,7 @@ typedef struct options {
     const char *input, *directory, *command;
     bool force;
     int threads, jobs;
+    sf_runner_engine engine;
 } options;
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
@@ -49,7 +51,11 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
             argp_error(state, "give the input, and the output directory with -o");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        if (!sf_engine_option(key, arg, &o->engine, &err))
+            return ARGP_ERR_UNKNOWN;
+        if (err.status != SF_OK)
+            argp_error(state, "%s", err.text);
+        return 0;
     }
 }
 
@@ -247,14 +253,16 @@ static sf_status run(const options *o, models *all, sf_fit_memory *memory, sf_st
     char columns[PATH_MAX + 16];
     const char *const none[] = {NULL}; /* the names are in the input */
     const sf_fit_input *in = &all->input[0];
-    if (sf_staging_check(o->directory, none, o->force, err) != SF_OK ||
+    if (sf_engine_check(&o->engine, err) != SF_OK ||
+        sf_staging_check(o->directory, none, o->force, err) != SF_OK ||
         read_models(o->input, all, err) != SF_OK)
         return err->status;
     name_files(in, &n);
     if (sf_staging_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
         make_runs(o->directory, runs, err) != SF_OK)
         return err->status;
-    sf_runner runner = {.folder = runs, .threads = o->threads, .jobs = o->jobs, .log = stdout};
+    sf_runner runner = {
+        .folder = runs, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
     snprintf(columns, sizeof columns, "%s/columns.bin", runs);
     sf_fit_memory_open(columns, memory);
     printf("softfall-fit drop: %d unknown parameters, %d drops; finished drops are kept in %s\n",
@@ -283,6 +291,7 @@ int sf_fit_drop_main(int argc, char **argv) {
         {"jobs", 'j', "N", 0,
          "drops that run side by side, 64 at most, each with at least one thread (default: as many as threads)",
          0},
+        SF_ENGINE_OPTIONS(1),
         {0},
     };
     static const struct argp parser = {.options = known,

@@ -3,6 +3,7 @@
 
 #include "pre/mesh/memory.h"
 #include "pre/mesh/mesh_raw.h"
+#include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesher.h"
 #include "pre/mesh/mesher_protocol.h"
 
@@ -21,6 +22,7 @@ struct sf_gmsh {
     char version[64];
     char file[512];
     char *files; /* lines of what all geometries read */
+    const char *store;
 };
 
 const char *sf_gmsh_version(const sf_gmsh *session) {
@@ -38,6 +40,10 @@ sf_status sf_gmsh_begin(sf_gmsh **session, sf_error *err) {
 
 void sf_gmsh_limit(sf_gmsh *session, double seconds, const sf_sink *sink) {
     session->limits = (sf_mesher_limits){seconds, sink};
+}
+
+void sf_gmsh_share(sf_gmsh *session, const char *folder) {
+    session->store = folder;
 }
 
 void sf_gmsh_end(sf_gmsh **session) {
@@ -67,34 +73,60 @@ static void list_file(FILE *out, uint64_t hash, const char *path, const char *ge
                 path);
 }
 
-/* The files that the open geometry read, after those of the earlier ones. */
-static sf_status list_files(sf_gmsh *session, const char *geometry, sf_error *err) {
-    const sf_broker *read = &session->open.broker;
+/* The files that the open geometry read; from malloc. */
+static char *list_files(const sf_meshed *open, const char *geometry, sf_error *err) {
+    const sf_broker *read = &open->broker;
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    if (!out)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
-    fprintf(out, "%s" SF_GMSH_FILES_OF "\n", session->files ? session->files : "");
-    if (!session->open.confined)
+    if (!out) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
+        return NULL;
+    }
+    fprintf(out, SF_GMSH_FILES_OF "\n");
+    if (!open->confined)
         fputs(SF_GMSH_UNKNOWN_FILES "\n", out);
     for (size_t k = 0; k < read->count; k++)
         list_file(out, read->file[k].hash, read->file[k].path, geometry);
     fclose(out);
+    return text;
+}
+
+/* After those of the earlier geometries. */
+static sf_status add_files(sf_gmsh *session, const char *files, sf_error *err) {
+    char *all = NULL;
+    if (asprintf(&all, "%s%s", session->files ? session->files : "", files) < 0)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
     free(session->files);
-    session->files = text;
+    session->files = all;
     return SF_OK;
+}
+
+/* By gmsh. */
+static char *mesh(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
+    if (sf_mesher_run(source, &session->limits, &session->open, err) != SF_OK)
+        return NULL;
+    char *files = list_files(&session->open, source->path, err);
+    if (files)
+        sf_mesh_store_keep(session->store, source, &session->open, files);
+    return files;
 }
 
 sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
     const sf_meshed *open = &session->open;
+    const char *unconfined = getenv("SOFTFALL_UNCONFINED");
+    char *files = NULL;
     sf_meshed_free(&session->open);
     snprintf(session->file, sizeof session->file, "%s", source->path);
-    if (sf_mesher_run(source, &session->limits, &session->open, err) != SF_OK)
+    if ((unconfined && *unconfined) || !sf_mesh_store_find(session->store, source, &session->open, &files))
+        files = mesh(session, source, err);
+    if (!files)
         return err->status;
     snprintf(session->version, sizeof session->version, "%s%s", open->data.version,
              open->confined ? "" : " (unconfined)");
-    return list_files(session, source->path, err);
+    add_files(session, files, err);
+    free(files);
+    return err->status;
 }
 
 static const char *kind_of(int dimension) {

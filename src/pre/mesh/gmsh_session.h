@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "case/case.h"
 #include "core/sink.h"
+#include "pre/mesh/geometry_files.h"
 #include "pre/mesh/mesh.h"
 #include <stdbool.h>
 
@@ -19,6 +20,9 @@ void sf_gmsh_end(sf_gmsh **session);
 /* Processor time that gmsh may take for a geometry (0: SF_MESHER_SECONDS), and a sink (borrowed, may be NULL)
  * that hears of long meshing. */
 void sf_gmsh_limit(sf_gmsh *session, double seconds, const sf_sink *sink);
+
+/* Meshes are taken from this folder (pre/mesh/mesh_store.h; borrowed) if they are there, and kept there. */
+void sf_gmsh_share(sf_gmsh *session, const char *folder);
 
 /* Opens a geometry with its parameters and meshes it. Errors: those of sf_mesher_run. Replaces the mesh that
  * was open. */
@@ -59,8 +63,6 @@ const char *sf_gmsh_version(const sf_gmsh *session);
  * file: hash of its content (16 hexadecimal digits), blank, path as it was asked for, from the folder of that
  * geometry or absolute. The line SF_GMSH_UNKNOWN_FILES stands for files that are not known, because gmsh was
  * not confined. Valid until the next load; NULL: no geometry. */
-#define SF_GMSH_FILES_OF "geometry"
-#define SF_GMSH_UNKNOWN_FILES "unknown"
 const char *sf_gmsh_files(const sf_gmsh *session);
 
 #endif

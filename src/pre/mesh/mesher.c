@@ -379,6 +379,7 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
     free(parameters);
     c.broker.parameters = NULL;
     out->stream = c.stream;
+    out->size = c.size;
     out->broker = c.broker;
     out->confined = c.confined;
     if (err->status != SF_OK)

@@ -20,6 +20,7 @@ enum { SF_MESHER_SECONDS = 600 };
 typedef struct sf_meshed {
     sf_geo_data data;
     void *stream;     /* `data` borrows from it */
+    size_t size;      /* of the stream, bytes */
     sf_broker broker; /* what was read */
     bool confined;
 } sf_meshed;

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "campaign/engine.h"
+
+#include "campaign/run_folder.h"
+#include "io/process.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { WORD_SIZE = PATH_MAX + 64 };
+
+bool sf_engine_is_local(const sf_runner_engine *engine) {
+    return !engine->name || strcmp(engine->name, "local") == 0;
+}
+
+static sf_status missing(sf_error *err) {
+    return SF_FAIL(err, SF_ERR_IO,
+                   "--engine snakemake: Snakemake is not installed (package snakemake of Debian)");
+}
+
+/* Is there a program of this name in PATH? */
+static bool is_in_path(const char *name) {
+    const char *path = getenv("PATH");
+    char copy[8192], file[SF_RUN_PATH_SIZE], *rest = copy, *folder;
+    snprintf(copy, sizeof copy, "%s", path ? path : "/usr/bin:/bin");
+    while ((folder = strsep(&rest, ":")))
+        if (snprintf(file, sizeof file, "%s/%s", *folder ? folder : ".", name) < (int)sizeof file &&
+            access(file, X_OK) == 0)
+            return true;
+    return false;
+}
+
+sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err) {
+    if (sf_engine_is_local(engine))
+        return engine->profile ? SF_FAIL(err, SF_ERR_INPUT,
+                                         "--profile %s: profiles are Snakemake's: add --engine snakemake",
+                                         engine->profile)
+                               : SF_OK;
+    if (strcmp(engine->name, "snakemake") != 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "--engine %s: the engines are local and snakemake", engine->name);
+    return is_in_path("snakemake") ? SF_OK : missing(err);
+}
+
+/* A file that comes with softfall: share/softfall beside the folder of its programs. */
+static sf_status find_shared(const char *name, char path[PATH_MAX], sf_error *err) {
+    char program[PATH_MAX];
+    if (sf_process_find("softfall-batch", program, sizeof program, err) != SF_OK)
+        return err->status;
+    *strrchr(program, '/') = '\0';
+    if (snprintf(path, PATH_MAX, "%s/../share/softfall/%s", program, name) >= PATH_MAX ||
+        access(path, R_OK) != 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s, which comes with softfall, is missing: install it again", path);
+    return SF_OK;
+}
+
+/* The profile as Snakemake is told: a folder of ours, or what was given. */
+static sf_status find_profile(const char *name, char path[PATH_MAX], sf_error *err) {
+    if (strcmp(name, "slurm") == 0)
+        return find_shared("slurm", path, err);
+    snprintf(path, PATH_MAX, "%s", name);
+    return SF_OK;
+}
+
+static sf_status make_absolute(const char *path, char out[PATH_MAX], sf_error *err) {
+    return realpath(path, out) ? SF_OK : SF_FAIL(err, SF_ERR_IO, "%s: %s", path, strerror(errno));
+}
+
+/* --nolock: a killed Snakemake would leave its lock, and the campaign has one of its own; groups may be run
+ * twice. */
+sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const char *manifest, int *code,
+                        sf_error *err) {
+    char snakefile[PATH_MAX], found[PATH_MAX], program[PATH_MAX], file[PATH_MAX], folder[PATH_MAX],
+        profile[PATH_MAX], shared[PATH_MAX], share[PATH_MAX], log[SF_RUN_PATH_SIZE], manifest_word[WORD_SIZE],
+        program_word[WORD_SIZE], cores[32], threads[48];
+    if (sf_engine_check(engine, err) != SF_OK || find_shared("Snakefile", snakefile, err) != SF_OK ||
+        sf_process_find("softfall-batch", found, sizeof found, err) != SF_OK ||
+        make_absolute(found, program, err) != SF_OK || make_absolute(manifest, file, err) != SF_OK ||
+        (engine->profile && find_profile(engine->profile, profile, err) != SF_OK))
+        return err->status;
+    snprintf(folder, sizeof folder, "%.*s", (int)(strrchr(file, '/') - file), file);
+    snprintf(log, sizeof log, "%s/log.txt", folder);
+    snprintf(manifest_word, sizeof manifest_word, "manifest=%s", file);
+    snprintf(program_word, sizeof program_word, "program=%s", program);
+    snprintf(cores, sizeof cores, "%d", processors > 0 ? processors : 1);
+    snprintf(threads, sizeof threads, "threads=%d", engine->job_threads > 0 ? engine->job_threads : 1);
+    if (find_shared("", shared, err) != SF_OK || !realpath(shared, share) ||
+        setenv("SOFTFALL_SHARE", share, 1) != 0)
+        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be named", shared);
+    const char *words[24] = {"snakemake", "--snakefile", snakefile,      "--directory",
+                             folder,      "--nolock",    "--keep-going", "--rerun-incomplete",
+                             "--config",  manifest_word, program_word,   threads};
+    int n = 12;
+    words[n++] = engine->profile ? "--profile" : "--cores";
+    words[n++] = engine->profile ? profile : cores;
+    const sf_process process = {.arguments = words, .log = log, .stoppable = true};
+    int reason = sf_process_run(&process, code);
+    if (reason == ENOENT)
+        return missing(err);
+    if (reason != 0)
+        return SF_FAIL(err, SF_ERR_IO, "snakemake cannot be run: %s", strerror(reason));
+    return sf_process_stopped() ? sf_run_folder_interrupted(err) : SF_OK;
+}
+
+bool sf_engine_option(int key, const char *text, sf_runner_engine *engine, sf_error *err) {
+    char *end = NULL;
+    switch (key) {
+    case SF_ENGINE_KEY:
+        engine->name = text;
+        return true;
+    case SF_ENGINE_KEY_PROFILE:
+        engine->profile = text;
+        return true;
+    case SF_ENGINE_KEY_RETRY:
+        engine->retry = true;
+        return true;
+    case SF_ENGINE_KEY_GROUP:
+        engine->per_job = (int)strtol(text, &end, 10);
+        if (end == text || *end || engine->per_job < 1 || engine->per_job > 100000)
+            SF_FAIL(err, SF_ERR_INPUT, "--per-job %s: not a number from 1 to 100000", text);
+        return true;
+    default:
+        return false;
+    }
+}

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/mesh/mesh_store.h"
+
+#include "core/hash.h"
+#include "io/plain_file.h"
+#include "io/store.h"
+#include "pre/mesh/geometry_files.h"
+#include "pre/mesh/mesher_start.h"
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char KIND[] = "mesh";
+
+/* gmsh tells formats by the name. */
+static const char *name_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+bool sf_mesh_store_key(const sf_geo_source *source, uint64_t *key) {
+    char mesher[PATH_MAX];
+    uint64_t content[2];
+    sf_error none = SF_ERROR_INIT;
+    if (sf_mesher_find(mesher, sizeof mesher, &none) != SF_OK ||
+        sf_plain_hash(mesher, NULL, SF_PLAIN_ANY, &content[0], &none) != SF_OK ||
+        sf_plain_hash(source->path, NULL, SF_PLAIN_ANY, &content[1], &none) != SF_OK)
+        return false;
+    const char *name = name_of(source->path);
+    *key = sf_hash_bytes(SF_HASH_START, content, sizeof content);
+    *key = sf_hash_bytes(*key, name, strlen(name) + 1);
+    for (int k = 0; k < source->parameter_count; k++) {
+        const sf_geo_parameter *p = &source->parameter[k];
+        *key = sf_hash_bytes(*key, p->name, strlen(p->name) + 1);
+        *key = sf_hash_bytes(*key, &p->value, sizeof p->value);
+    }
+    return true;
+}
+
+static bool are_files_same(const sf_geo_source *source, const char *files) {
+    char folder[PATH_MAX];
+    int length = (int)(name_of(source->path) - source->path);
+    if (snprintf(folder, sizeof folder, "%.*s", length > 1 ? length - 1 : length, source->path) >=
+        (int)sizeof folder)
+        return false;
+    const char *const folders[2] = {length > 0 ? folder : ".", ""};
+    return sf_geometry_files_are_same(folders, files);
+}
+
+/* Bytes that a text takes with its zero, in whole words. */
+static size_t padded(size_t length) {
+    return (length + 8) / 8 * 8;
+}
+
+bool sf_mesh_store_find(const char *folder, const sf_geo_source *source, sf_meshed *out, char **files) {
+    sf_stored found;
+    uint64_t key, length;
+    sf_error none = SF_ERROR_INIT;
+    *files = NULL;
+    if (!folder || !sf_mesh_store_key(source, &key) || !sf_store_find(folder, KIND, key, &found))
+        return false;
+    const char *text = found.data + sizeof length;
+    memcpy(&length, found.data, found.size >= sizeof length ? sizeof length : 0);
+    if (found.size >= sizeof length && length < found.size && sizeof length + padded(length) < found.size &&
+        text[length] == '\0' && are_files_same(source, text)) {
+        size_t before = sizeof length + padded(length);
+        if (sf_geo_data_read(found.data + before, found.size - before, source->path, &out->data, &none) ==
+            SF_OK)
+            *files = strdup(text);
+    }
+    if (*files) {
+        out->stream = found.block;
+        out->confined = true;
+    } else {
+        sf_geo_data_free(&out->data);
+        memset(out, 0, sizeof *out);
+        free(found.block);
+    }
+    return *files != NULL;
+}
+
+void sf_mesh_store_keep(const char *folder, const sf_geo_source *source, const sf_meshed *meshed,
+                        const char *files) {
+    static const char zeros[8];
+    uint64_t key, length = strlen(files);
+    if (!folder || !meshed->confined || !sf_mesh_store_key(source, &key))
+        return;
+    const sf_store_part part[] = {{&length, sizeof length},
+                                  {files, length},
+                                  {zeros, padded(length) - length},
+                                  {meshed->stream, meshed->size}};
+    sf_store_keep(folder, KIND, key, 4, part);
+}

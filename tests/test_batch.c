@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Batches of drops: the manifest, its groups, drops that failed, and the engines. */
+#include "program_fixture.h"
+
+#include "campaign/engine.h"
+#include "campaign/manifest.h"
+#include "campaign/runner.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+enum { DROPS = 3 };
+static const char *const COARSE = "geometry.parameters.spacing=25", *const SHORT = "solver.end_time=0.1 ms";
+static const char *const DENSITY[DROPS] = {"material.density=40 kg/m3", "material.density=50 kg/m3",
+                                           "material.density=60 kg/m3"};
+static char bin[512], case_path[1024]; /* the programs themselves; the case */
+
+/* A cube whose .geo merges a file, and programs that count their calls; fail/ makes softfall-solve fail. */
+static int set_up(void **state) {
+    const program_place *p = program_group_set_up(state);
+    snprintf(bin, sizeof bin, "%s", getenv("SF_BIN_DIR"));
+    snprintf(case_path, sizeof case_path, "%s", program_path(p, "examples/compression/case.cfg"));
+    int code = program_shell(
+                   p,
+                   "cp -r '%s/examples' '%s/geo' . && echo 'Merge \"size.geo\";' >> geo/cube.geo && "
+                   "echo '// nothing' > geo/size.geo && mkdir -p tree/bin tree/share && cd tree/bin && "
+                   "ln -s '%s/share' ../share/softfall && ln -s '%s'/softfall-batch '%s'/softfall-mesh . && "
+                   "printf '#!/bin/sh\\necho pre >> \"%s/calls\"\\nexec \"%s/softfall-pre\" \"$@\"\\n' > "
+                   "softfall-pre && printf '#!/bin/sh\\necho solve >> \"%s/calls\"\\n"
+                   "test ! -e \"%s/fail\" || { echo \"softfall-solve: collapsed\"; exit 5; }\\n"
+                   "exec \"%s/softfall-solve\" \"$@\"\\n' > softfall-solve && chmod +x softfall-*",
+                   getenv("SF_SOURCE_DIR"), getenv("SF_SOURCE_DIR"), getenv("SF_SOURCE_DIR"), bin, bin,
+                   p->folder, bin, p->folder, p->folder, bin)
+                   .code;
+    setenv("SF_BIN_DIR", program_path(p, "tree/bin"), 1);
+    return code;
+}
+
+static void list_drops(sf_runner_drop *drop) {
+    static const char *const label[DROPS] = {"first", "second", "third"};
+    for (int k = 0; k < DROPS; k++)
+        drop[k] = (sf_runner_drop){.label = label[k],
+                                   .case_path = case_path,
+                                   .override_count = 3,
+                                   .overrides = {COARSE, SHORT, DENSITY[k]}};
+}
+
+/* Calls of a program since the last look. */
+static int calls(const program_place *p, const char *name) {
+    return atoi(program_shell(p, "grep -c '^%s$' calls", name).out);
+}
+
+static void forget_calls(const program_place *p) {
+    program_shell(p, "rm -f calls; touch calls");
+}
+
+static void run(const char *folder, const sf_runner_engine *engine, int count, const sf_runner_drop *drop,
+                sf_error *failure) {
+    sf_error err = SF_ERROR_INIT;
+    sf_runner runner = {.folder = folder, .threads = 2, .engine = *engine};
+    if (sf_runner_simulate_each(&runner, count, drop, failure, &err) != SF_OK)
+        fail_msg("%s", err.text);
+}
+
+/* A drop that failed is not simulated again, unless that is asked for or a file of its geometry has changed.
+ */
+static void a_failed_drop_is_skipped_until_it_is_asked_for(void **state) {
+    const program_place *p = *state;
+    sf_runner_drop drop[DROPS];
+    sf_error failure[DROPS];
+    char folder[600];
+    const sf_runner_engine skip = {0}, again = {.retry = true};
+    snprintf(folder, sizeof folder, "%s/failed", p->folder);
+    list_drops(drop);
+    program_shell(p, "touch fail");
+    for (int k = 0; k < 2; k++) {
+        forget_calls(p);
+        run(folder, &skip, 1, drop, failure);
+        assert_int_equal(failure[0].status, SF_ERR_NUMERIC);
+        assert_non_null(strstr(failure[0].text, "softfall-solve: collapsed (exit code 5"));
+        assert_int_equal(calls(p, "solve"), k == 0);
+        assert_int_equal(calls(p, "pre"), k == 0);
+    }
+    program_shell(p, "echo '// other' > geo/size.geo");
+    run(folder, &skip, 1, drop, failure);
+    assert_int_equal(calls(p, "solve"), 1);
+    forget_calls(p);
+    program_shell(p, "rm fail");
+    run(folder, &skip, 1, drop, failure);
+    assert_int_equal(failure[0].status, SF_ERR_NUMERIC);
+    assert_int_equal(calls(p, "solve"), 0);
+    run(folder, &again, 1, drop, failure);
+    assert_int_equal(failure[0].status, SF_OK);
+    assert_int_equal(calls(p, "solve"), 1);
+    run(folder, &skip, 1, drop, failure);
+    assert_int_equal(failure[0].status, SF_OK);
+    assert_int_equal(calls(p, "solve"), 1);
+}
+
+static void a_drop_that_is_twice_in_a_batch_fails_twice(void **state) {
+    const program_place *p = *state;
+    sf_runner_drop drop[DROPS];
+    sf_error failure[2];
+    char folder[600];
+    snprintf(folder, sizeof folder, "%s/twice", p->folder);
+    list_drops(drop);
+    const sf_runner_drop twice[2] = {drop[0], drop[0]};
+    forget_calls(p);
+    program_shell(p, "touch fail");
+    run(folder, &(sf_runner_engine){0}, 2, twice, failure);
+    program_shell(p, "rm fail");
+    assert_int_equal(failure[0].status, SF_ERR_NUMERIC);
+    assert_int_equal(failure[1].status, SF_ERR_NUMERIC);
+    assert_int_equal(calls(p, "solve"), 1);
+}
+
+/* Two groups of three drops; their keys. */
+static void write_manifest(const char *path, const char *folder, sf_manifest *m) {
+    sf_runner_drop drop[DROPS];
+    uint64_t key[DROPS];
+    const int index[DROPS] = {0, 1, 2};
+    const sf_runner runner = {.folder = folder};
+    sf_error err = SF_ERROR_INIT;
+    list_drops(drop);
+    for (int k = 0; k < DROPS; k++)
+        sf_runner_key(&runner, &drop[k], &key[k], &err);
+    if (err.status != SF_OK || sf_manifest_write(path, folder, DROPS, index, drop, key, 2, &err) != SF_OK ||
+        sf_manifest_read(path, m, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_int_equal(m->count, DROPS);
+    for (int k = 0; k < DROPS; k++) {
+        assert_true(m->run[k].key == key[k]);
+        assert_string_equal(m->run[k].drop.label, drop[k].label);
+        assert_string_equal(m->run[k].drop.case_path, case_path);
+        assert_null(m->run[k].drop.material);
+        assert_int_equal(m->run[k].drop.override_count, 3);
+        assert_string_equal(m->run[k].drop.overrides[2], DENSITY[k]);
+    }
+    assert_string_equal(m->run[0].group, m->run[1].group);
+    assert_string_not_equal(m->run[0].group, m->run[2].group);
+}
+
+static void a_group_is_run_by_its_name_and_only_once(void **state) {
+    const program_place *p = *state;
+    sf_manifest m;
+    char folder[600], path[700];
+    snprintf(folder, sizeof folder, "%s/grouped", p->folder);
+    snprintf(path, sizeof path, "%s/manifest.tsv", folder);
+    program_shell(p, "mkdir grouped && touch grouped/.softfall-own");
+    write_manifest(path, folder, &m);
+    for (int again = 0; again < 2; again++) {
+        forget_calls(p);
+        program_succeed(p, "batch", "grouped/manifest.tsv --group %s", m.run[0].group);
+        assert_int_equal(calls(p, "solve"), again ? 0 : 2);
+        assert_int_equal(program_shell(p, "test -e grouped/%s.done", m.run[0].group).code, 0);
+    }
+    program_result list = program_succeed(p, "batch", "grouped/manifest.tsv");
+    assert_non_null(strstr(list.out, "1 open, 0 running, 2 done, 0 failed\n"));
+
+    program_shell(p, "touch fail");
+    program_succeed(p, "batch", "grouped/manifest.tsv --group %s", m.run[2].group);
+    program_shell(p, "rm fail");
+    list = program_succeed(p, "batch", "grouped/manifest.tsv");
+    assert_non_null(strstr(list.out, "0 open, 0 running, 2 done, 1 failed\n"));
+    assert_non_null(strstr(list.out, "failed\tthird\tsoftfall-solve: collapsed"));
+
+    program_result none = program_run(p, "batch", "grouped/manifest.tsv --group 00009-0");
+    assert_int_equal(none.code, SF_ERR_INPUT);
+    assert_non_null(strstr(none.err, "has no group 00009-0"));
+    program_shell(p, "cp geo/cube.geo kept && echo '// otherwise' >> geo/cube.geo");
+    none = program_run(p, "batch", "grouped/manifest.tsv --group %s", m.run[0].group);
+    program_shell(p, "mv kept geo/cube.geo");
+    assert_int_equal(none.code, SF_ERR_INPUT);
+    assert_non_null(strstr(none.err, "the drop first is not the one of the manifest"));
+    sf_manifest_free(&m);
+}
+
+/* A batch of 100,000 is at most 1000 jobs. */
+static void groups_are_of_several_drops(void **state) {
+    (void)state;
+    assert_int_equal(sf_manifest_group_size(3, 0), 20);
+    assert_int_equal(sf_manifest_group_size(100000, 0), 100);
+    assert_int_equal(sf_manifest_group_size(100000, 7), 7);
+}
+
+static void what_is_no_manifest_is_refused(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        const char *text, *part;
+    } cases[] = {
+        {"", "is no manifest of a batch"},
+        {"softfall-manifest 1\nfolder\t/\nruns\truns\ncount\t2\nabc\n",
+         "bad.tsv:5: this is no line of a run"},
+        {"softfall-manifest 1\nfolder\t/\nruns\truns\ncount\t1000000000\n", "is no manifest of a batch"},
+        {"softfall-manifest 1\nfolder\t/\nruns\truns\ncount\t1\n0123456789abcdef\tg\t../up\tcase\t\n",
+         "bad.tsv:5: this is no line of a run"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_manifest m;
+        sf_manifest_read(program_write_text(p, "bad.tsv", cases[k].text), &m, &err);
+        sf_manifest_free(&m);
+        assert_int_equal(err.status, SF_ERR_INPUT);
+        if (!strstr(err.text, cases[k].part))
+            fail_msg("%zu: %s", k, err.text);
+    }
+    const sf_runner_drop tab = {.label = "a", .case_path = "case\t.cfg"};
+    sf_error err = SF_ERROR_INIT;
+    sf_manifest_write(program_path(p, "new.tsv"), "runs", 1, &(int){0}, &tab, &(uint64_t){1}, 1, &err);
+    assert_int_equal(err.status, SF_ERR_INPUT);
+    assert_int_not_equal(access(program_path(p, "new.tsv"), F_OK), 0);
+}
+
+static void an_engine_that_is_missing_is_named_with_its_package(void **state) {
+    const program_place *p = *state;
+    char *path = strdup(getenv("PATH"));
+    static const struct {
+        sf_runner_engine engine;
+        const char *part;
+    } cases[] = {
+        {{.name = "snakemake"}, "Snakemake is not installed (package snakemake of Debian)"},
+        {{.name = "make"}, "the engines are local and snakemake"},
+        {{.profile = "slurm"}, "add --engine snakemake"},
+    };
+    setenv("PATH", program_path(p, "tree/bin"), 1);
+    for (size_t k = 0; k < 3; k++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_engine_check(&cases[k].engine, &err);
+        if (!strstr(err.text, cases[k].part))
+            fail_msg("%s", err.text);
+    }
+    setenv("PATH", path, 1);
+    free(path);
+}
+
+/* The history of each drop, byte by byte. */
+static void assert_same_curves(const program_place *p, const char *one, const char *other) {
+    program_result r = program_shell(p,
+                                     "for d in %s/*-*/; do n=$(basename $d); "
+                                     "'%s/softfall-post' %s/$n/results.h5 -o one --force >/dev/null && "
+                                     "'%s/softfall-post' %s/$n/results.h5 -o other --force >/dev/null && "
+                                     "cmp one/history.csv other/history.csv || exit 1; done",
+                                     one, bin, one, bin, other);
+    if (r.code != 0)
+        fail_msg("%s %s", r.out, r.err);
+}
+
+/* A batch begun here is finished by Snakemake, with the same bits; what fails there is told here. */
+static void snakemake_finishes_what_was_begun_here(void **state) {
+    const program_place *p = *state;
+    sf_runner_drop drop[DROPS];
+    sf_error failure[DROPS];
+    char here[600], there[600];
+    const sf_runner_engine local = {0}, snakemake = {.name = "snakemake", .per_job = 2};
+    if (program_shell(p, "command -v snakemake").code != 0) {
+        print_message("snakemake is not installed\n");
+        skip();
+    }
+    snprintf(here, sizeof here, "%s/here", p->folder);
+    snprintf(there, sizeof there, "%s/there", p->folder);
+    list_drops(drop);
+    run(here, &local, DROPS, drop, failure);
+    run(there, &local, 1, drop, failure);
+    program_shell(p, "touch fail");
+    forget_calls(p);
+    run(there, &snakemake, DROPS, drop, failure);
+    program_shell(p, "rm fail");
+    assert_int_equal(calls(p, "solve"), 2);
+    assert_int_equal(failure[0].status, SF_OK);
+    assert_int_equal(failure[2].status, SF_ERR_NUMERIC);
+    assert_non_null(strstr(failure[2].text, "softfall-solve: collapsed"));
+    forget_calls(p);
+    const sf_runner_engine again = {.name = "snakemake", .per_job = 1, .retry = true};
+    run(there, &again, DROPS, drop, failure);
+    assert_int_equal(calls(p, "solve"), 2);
+    for (int k = 0; k < DROPS; k++)
+        assert_int_equal(failure[k].status, SF_OK);
+    assert_same_curves(p, "here", "there");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_failed_drop_is_skipped_until_it_is_asked_for),
+        cmocka_unit_test(a_drop_that_is_twice_in_a_batch_fails_twice),
+        cmocka_unit_test(a_group_is_run_by_its_name_and_only_once),
+        cmocka_unit_test(groups_are_of_several_drops),
+        cmocka_unit_test(what_is_no_manifest_is_refused),
+        cmocka_unit_test(an_engine_that_is_missing_is_named_with_its_package),
+        cmocka_unit_test(snakemake_finishes_what_was_begun_here),
+    };
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+}

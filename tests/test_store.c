@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The mesh and the domains of a geometry are made once for all drops with it: the model is the same, bit by
+ * bit, and nothing is shared where something differs. */
+#include "program_fixture.h"
+
+#include "io/model_io.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+/* A cube that merges a file, and softfall-mesh behind a script that counts its calls. */
+static int set_up(void **state) {
+    const program_place *p = program_group_set_up(state);
+    const char *source = getenv("SF_SOURCE_DIR"), *bin = getenv("SF_BIN_DIR");
+    int code =
+        program_shell(p,
+                      "cp -r '%s/examples' '%s/geo' . && echo 'Merge \"size.geo\";' >> geo/cube.geo && "
+                      "echo '// nothing' > geo/size.geo && mkdir bin && touch calls && "
+                      "ln -s '%s'/softfall-* bin && rm bin/softfall-mesh && "
+                      "printf '#!/bin/sh\\necho mesh >> \"%s/calls\"\\nexec \"%s/softfall-mesh\" \"$@\"\\n' "
+                      "> bin/softfall-mesh && chmod +x bin/softfall-mesh",
+                      source, source, bin, p->folder, bin)
+            .code;
+    setenv("SF_BIN_DIR", program_path(p, "bin"), 1);
+    return code;
+}
+
+/* Runs softfall-pre; how often was a geometry meshed? */
+static int count_meshes(const program_place *p, const char *model, const char *share, const char *more) {
+    program_shell(p, "rm -f calls; touch calls");
+    program_succeed(p, "pre",
+                    "examples/compression/case.cfg -o %s -f %s --set geometry.parameters.spacing=25 %s",
+                    model, share, more);
+    return atoi(program_shell(p, "wc -l < calls").out);
+}
+
+/* The arrays and numbers of both models. */
+static void assert_same_model(const program_place *p, const char *one, const char *other) {
+    sf_error err = SF_ERROR_INIT;
+    sf_model a, b;
+    if (sf_model_read(program_path(p, one), &a, NULL, &err) != SF_OK ||
+        sf_model_read(program_path(p, other), &b, NULL, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_int_equal(a.node_count, b.node_count);
+    size_t n = (size_t)a.node_count;
+    assert_memory_equal(a.position, b.position, 3 * n * sizeof *a.position);
+    assert_memory_equal(a.support, b.support, n * sizeof *a.support);
+    assert_memory_equal(a.volume, b.volume, n * sizeof *a.volume);
+    assert_memory_equal(a.mass, b.mass, n * sizeof *a.mass);
+    assert_int_equal(a.domain_nnz, b.domain_nnz);
+    assert_memory_equal(a.domain_node, b.domain_node, (size_t)a.domain_nnz * sizeof *a.domain_node);
+    assert_memory_equal(a.domain_b, b.domain_b, 3 * (size_t)a.domain_nnz * sizeof *a.domain_b);
+    assert_int_equal(a.phi_nnz, b.phi_nnz);
+    assert_memory_equal(a.phi_value, b.phi_value, (size_t)a.phi_nnz * sizeof *a.phi_value);
+    sf_model_free(&a);
+    sf_model_free(&b);
+}
+
+static void another_foam_or_speed_does_not_mesh_again(void **state) {
+    const program_place *p = *state;
+    const char *foam = "--set material.density='50 kg/m3' --set solver.end_time='1 ms'";
+    assert_int_equal(count_meshes(p, "alone.h5", "", foam), 2); /* pad and platen */
+    assert_int_equal(count_meshes(p, "first.h5", "--share shared", ""), 2);
+    assert_int_equal(count_meshes(p, "second.h5", "--share shared", foam), 0);
+    assert_same_model(p, "alone.h5", "second.h5");
+    assert_string_equal(program_shell(p, "ls shared | grep -c domains").out, "1\n");
+    /* The lists of what was read are those of a meshing too. */
+    program_shell(p, "h5dump -d /provenance/geometry_files alone.h5 | tail -n +2 > a; "
+                     "h5dump -d /provenance/geometry_files second.h5 | tail -n +2 > b");
+    assert_int_equal(program_shell(p, "cmp a b").code, 0);
+}
+
+static void what_differs_is_made_anew(void **state) {
+    const program_place *p = *state;
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", ""), 0);
+    program_shell(p, "echo 'Mesh.RandomFactor = 1e-8;' > geo/size.geo"); /* merged */
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", ""), 1);
+    assert_int_equal(count_meshes(p, "alone.h5", "", ""), 2);
+    assert_same_model(p, "alone.h5", "m.h5");
+    program_shell(p, "touch geo/size.geo.opt");
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", ""), 1);
+    program_shell(p, "rm geo/size.geo.opt");
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", ""), 1);
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", "--set geometry.parameters.side=51"), 1);
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", "--set kernel.support_ratio=1.9"), 0);
+    assert_int_equal(count_meshes(p, "alone.h5", "", "--set kernel.support_ratio=1.9"), 2);
+    assert_same_model(p, "alone.h5", "m.h5");
+}
+
+static void a_damaged_store_counts_as_none(void **state) {
+    const program_place *p = *state;
+    assert_int_equal(count_meshes(p, "alone.h5", "", ""), 2);
+    program_shell(p,
+                  "for f in shared/*.bin; do printf 'x' | dd of=$f bs=1 seek=200 conv=notrunc 2>/dev/null; "
+                  "done");
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", ""), 2);
+    assert_same_model(p, "alone.h5", "m.h5");
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", ""), 0);
+    program_shell(p, "for f in shared/*.bin; do truncate -s 20 $f; done");
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", ""), 2);
+    program_shell(p, "mkdir taken && echo mine > taken/file");
+    assert_int_equal(count_meshes(p, "m.h5", "--share taken", ""), 2); /* not a folder of softfall */
+    assert_string_equal(program_shell(p, "ls -A taken").out, "file\n");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(another_foam_or_speed_does_not_mesh_again),
+        cmocka_unit_test(what_differs_is_made_anew),
+        cmocka_unit_test(a_damaged_store_counts_as_none),
+    };
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+}
