@@ -4,6 +4,7 @@
 #include "campaign/manifest.h"
 #include "campaign/runner.h"
 #include "core/program.h"
+#include "core/units.h"
 #include "io/process.h"
 #include "io/replace.h"
 
@@ -59,7 +60,7 @@ static sf_status find_group(const sf_manifest *m, const options *o, int *first, 
 /* A drop is as the manifest says: the same inputs, and programs of the same revision. */
 static sf_status check_keys(int count, const sf_manifest_run *run, const uint64_t *key, sf_error *err) {
     for (int k = 0; k < count; k++)
-        if (run[k].key != key[k])
+        if (run[k].key != 0 && run[k].key != key[k])
             return SF_FAIL(err, SF_ERR_INPUT,
                            "the drop %s is not the one of the manifest: its inputs or the programs are "
                            "others here",
@@ -164,7 +165,10 @@ int main(int argc, char **argv) {
     sf_process_handle_signals();
     if (sf_program_begin(argv, &err) == SF_OK) {
         argp_parse(&parser, argc, argv, 0, NULL, &o);
-        run(&o, &err);
+        if (sf_units_hold(&err) == SF_OK) {
+            run(&o, &err);
+            sf_units_let_go();
+        }
     }
     return sf_error_report(&err, "softfall-batch");
 }

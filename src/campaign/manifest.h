@@ -16,7 +16,7 @@ enum { SF_MANIFEST_GROUP_SIZE = 32 };
 
 /* A drop, its key and its group. */
 typedef struct sf_manifest_run {
-    uint64_t key;
+    uint64_t key;                       /* 0: not known, in a manifest that somebody wrote */
     char group[SF_MANIFEST_GROUP_SIZE]; /* "00001-<hash of the group's lines>" */
     sf_runner_drop drop;                /* its strings are in sf_manifest.text */
 } sf_manifest_run;

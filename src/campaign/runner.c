@@ -4,6 +4,7 @@
 #include "campaign/engine.h"
 #include "campaign/manifest.h"
 #include "campaign/run_folder.h"
+#include "core/units.h"
 #include "io/folder.h"
 #include "io/process.h"
 #include "post/figures.h"
@@ -384,7 +385,7 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
 }
 
 /* `b` holds runner, count and drop; what it gets here is released by release_batch. */
-static sf_status run_batch(batch *b, sf_error *failure, sf_error *err) {
+static sf_status run_held(batch *b, sf_error *failure, sf_error *err) {
     unsigned long n = (unsigned long)b->count;
     b->request = sf_alloc(err, n, sizeof *b->request, "drops");
     b->pending = sf_alloc(err, n, sizeof *b->pending, "drops");
@@ -405,6 +406,14 @@ static sf_status run_batch(batch *b, sf_error *failure, sf_error *err) {
             failure[k] = failure[b->request[k].first];
         if (failure[k].status == SF_INTERRUPTED)
             sf_run_folder_interrupted(err);
+    }
+    return err->status;
+}
+
+static sf_status run_batch(batch *b, sf_error *failure, sf_error *err) {
+    if (sf_units_hold(err) == SF_OK) {
+        run_held(b, failure, err);
+        sf_units_let_go();
     }
     return err->status;
 }

@@ -36,6 +36,7 @@ struct sf_units {
     ut_system *system;
     ut_unit *si[SF_QUANTITY_COUNT];
     ut_error_message_handler previous;
+    bool borrowed; /* of the one that is held */
 };
 
 const char *sf_quantity_phrase(sf_quantity kind) {
@@ -50,10 +51,35 @@ const char *sf_quantity_example(sf_quantity kind) {
     return quantities[kind].example;
 }
 
+static sf_units *held;
+static int holders;
+
+sf_status sf_units_hold(sf_error *err) {
+    sf_units *units = NULL;
+    if (holders == 0 && sf_units_open(&units, err) != SF_OK)
+        return err->status;
+    if (holders++ == 0)
+        held = units;
+    return SF_OK;
+}
+
+void sf_units_let_go(void) {
+    if (--holders == 0) {
+        sf_units *last = held;
+        held = NULL;
+        sf_units_close(&last);
+    }
+}
+
 sf_status sf_units_open(sf_units **units, sf_error *err) {
     *units = sf_alloc(err, 1, sizeof **units, "the unit system");
     if (!*units)
         return err->status;
+    if (held) {
+        **units = *held;
+        (*units)->borrowed = true;
+        return SF_OK;
+    }
     (*units)->previous = ut_set_error_message_handler(ut_ignore);
     (*units)->system = ut_read_xml(NULL);
     if (!(*units)->system) {
@@ -75,6 +101,11 @@ sf_status sf_units_open(sf_units **units, sf_error *err) {
 void sf_units_close(sf_units **units) {
     if (!*units)
         return;
+    if ((*units)->borrowed) {
+        free(*units);
+        *units = NULL;
+        return;
+    }
     for (int k = 0; k < SF_QUANTITY_COUNT; k++)
         ut_free((*units)->si[k]);
     ut_free_system((*units)->system);
