@@ -32,16 +32,14 @@ enum { SF_ENGINE_KEY = 0x7001, SF_ENGINE_KEY_PROFILE, SF_ENGINE_KEY_RETRY, SF_EN
          0,                                                                                                  \
          "with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall",         \
          (group)},                                                                                           \
-        {"per-job",                                                                                          \
-         SF_ENGINE_KEY_GROUP,                                                                                \
-         "N",                                                                                                \
-         0,                                                                                                  \
-         "with --engine snakemake: drops of a job (default 20, or more so that there are at most 1000 "      \
-         "jobs)",                                                                                            \
-         (group)},                                                                                           \
     {                                                                                                        \
-        "retry", SF_ENGINE_KEY_RETRY, NULL, 0, "simulate drops again that failed earlier", (group)           \
+        "per-job", SF_ENGINE_KEY_GROUP, "N", 0,                                                              \
+            "with --engine snakemake: drops of a job (default 20, or more so that there are at most 1000 "   \
+            "jobs)",                                                                                         \
+            (group)                                                                                          \
     }
+#define SF_ENGINE_RETRY(group)                                                                               \
+    { "retry", SF_ENGINE_KEY_RETRY, NULL, 0, "simulate drops again that failed earlier", (group) }
 bool sf_engine_option(int key, const char *text, sf_runner_engine *engine, sf_error *err);
 
 #endif

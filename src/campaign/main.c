@@ -116,7 +116,7 @@ static sf_status list_runs(const sf_manifest *m, sf_error *err) {
     const sf_runner runner = {.folder = m->runs};
     int number[4] = {0};
     for (int k = 0; k < m->count; k++) {
-        sf_runner_state state = SF_RUN_OPEN;
+        sf_runner_state state = SF_DROP_OPEN;
         sf_error failure = SF_ERROR_INIT;
         if (sf_runner_look(&runner, &m->run[k].drop, &state, &failure, err) != SF_OK)
             return err->status;

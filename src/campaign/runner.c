@@ -115,10 +115,10 @@ sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf
     located l;
     if (locate(runner, drop, &l, err) != SF_OK)
         return err->status;
-    *state = sf_run_folder_is_finished(&l.at)           ? SF_RUN_DONE
-             : sf_run_folder_is_running(&l.at)          ? SF_RUN_RUNNING
-             : sf_run_folder_has_failed(&l.at, failure) ? SF_RUN_FAILED
-                                                        : SF_RUN_OPEN;
+    *state = sf_run_folder_is_finished(&l.at)           ? SF_DROP_DONE
+             : sf_run_folder_is_running(&l.at)          ? SF_DROP_RUNNING
+             : sf_run_folder_has_failed(&l.at, failure) ? SF_DROP_FAILED
+                                                        : SF_DROP_OPEN;
     return SF_OK;
 }
 

@@ -74,7 +74,7 @@ sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf
 /* The key of the drop's inputs: its folder is runner->folder/label-<key, 16 hexadecimal digits>. */
 sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uint64_t *key, sf_error *err);
 
-typedef enum sf_runner_state { SF_RUN_OPEN, SF_RUN_RUNNING, SF_RUN_DONE, SF_RUN_FAILED } sf_runner_state;
+typedef enum sf_runner_state { SF_DROP_OPEN, SF_DROP_RUNNING, SF_DROP_DONE, SF_DROP_FAILED } sf_runner_state;
 
 /* How a drop stands; `*failure` of one that failed. Nothing is changed. Errors: of its inputs. */
 sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,

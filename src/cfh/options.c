@@ -209,6 +209,7 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         {"check-drops", KEY_CHECKS, "N", 0,
          "simulate N of the draws to check the columns that stand for them (default 5)", 4},
         SF_ENGINE_OPTIONS(5),
+        SF_ENGINE_RETRY(5),
         {0},
     };
     const struct argp parser = {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sweep/drops.h"
 
+#include "campaign/engine.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,8 +108,9 @@ static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row
 }
 
 sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
+    int abreast = jobs < 1 ? 1 : jobs < SF_SWEEP_JOBS ? jobs : SF_SWEEP_JOBS;
     return (sf_sweep_engine){.run = run,
                              .context = runner,
-                             .piece = jobs < SF_SWEEP_JOBS ? SF_SWEEP_PIECE * (jobs > 0 ? jobs : 1)
-                                                           : SF_SWEEP_PIECE * SF_SWEEP_JOBS};
+                             .piece = sf_engine_is_local(&runner->engine) ? SF_SWEEP_PIECE * abreast
+                                                                          : SF_SWEEP_ELSEWHERE};
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-sweep PLAN.cfg -o DIR: many drops of one case, by a plan. */
 #include "build_info.h"
+#include "campaign/engine.h"
 #include "core/program.h"
 #include "io/folder.h"
 #include "io/process.h"
@@ -25,6 +26,7 @@ typedef struct options {
     const char *plan, *directory;
     bool dry, yes, retry, force;
     int jobs, threads; /* 0: not given */
+    sf_runner_engine engine;
     sf_error err;
 } options;
 
@@ -44,7 +46,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
         o->dry = true;
         return 0;
     case KEY_RETRY:
-        o->retry = true;
+        o->retry = o->engine.retry = true;
         return 0;
     case 't':
         sf_program_read_threads(text, &o->threads, &o->err);
@@ -63,7 +65,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
             argp_error(state, "give a plan, and the output directory with -o");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return sf_engine_option(key, text, &o->engine, &o->err) ? 0 : ARGP_ERR_UNKNOWN;
     }
 }
 
@@ -81,6 +83,7 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
         {"force", 'f', NULL, 0, "replace what DIR holds of another plan; finished drops are used again", 0},
         {"jobs", 'j', "N", 0, "drops side by side, 64 at most (default: as many as processors)", 0},
         {"threads", 't', "N", 0, "threads of all drops together (default: one for each)", 0},
+        SF_ENGINE_OPTIONS(1),
         {0}};
     static const struct argp parser = {
         .options = known,
@@ -182,14 +185,16 @@ static sf_status estimate(const options *o, job *j, sf_error *err) {
 
 static sf_status run(const options *o, job *j, sf_error *err) {
     bool known = false;
-    if (check(o, j, &known, err) != SF_OK || estimate(o, j, err) != SF_OK || o->dry)
+    if (sf_engine_check(&o->engine, err) != SF_OK || check(o, j, &known, err) != SF_OK ||
+        estimate(o, j, err) != SF_OK || o->dry)
         return err->status;
     sf_runs_free(&j->runs);
     if (sf_staging_begin(o->directory, j->list, o->force || known, &j->output, err) != SF_OK ||
         sf_folder_lock(o->directory, &j->lock, err) != SF_OK ||
         sf_runs_create(&j->plan, &j->runs, err) != SF_OK)
         return err->status;
-    sf_runner runner = {.folder = j->folder, .threads = o->threads, .jobs = o->jobs, .log = stdout};
+    sf_runner runner = {
+        .folder = j->folder, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
     const sf_sweep_engine engine = sf_sweep_drops(&runner, o->jobs);
     j->campaign.log = stdout;
     if (sf_sweep_campaign_run(&j->campaign, &engine, &j->runs, err) != SF_OK)

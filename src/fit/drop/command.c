@@ -292,6 +292,7 @@ int sf_fit_drop_main(int argc, char **argv) {
          "drops that run side by side, 64 at most, each with at least one thread (default: as many as threads)",
          0},
         SF_ENGINE_OPTIONS(1),
+        SF_ENGINE_RETRY(1),
         {0},
     };
     static const struct argp parser = {.options = known,
