@@ -102,6 +102,30 @@ static void what_a_run_reads_is_simulated_again_when_it_changes(void **state) {
     assert_non_null(strstr(r.out, "2 drops simulated, 2 were there"));
 }
 
+/* Of the same folder: the figures are those of runs.csv, in columns. */
+static void runs_are_overlaid(void **state) {
+    const program_place *p = *state;
+    program_shell(
+        p,
+        "python3 -c \"import csv\nfor row in csv.DictReader(open('out/runs.csv')): print(row['folder'])\" | "
+        "head -2 > pair");
+    program_succeed(p, "post", "compare $(sed 's|^|out/runs/|' pair) -o both");
+    program_assert_page(p, "both/report.html", "Comparison of runs");
+    assert_int_equal(program_shell(p, "test -s both/compare.png").code, 0);
+    program_result r = program_shell(
+        p, "python3 -c \"import csv\nwanted = open('pair').read().split()\n"
+           "runs = {row['folder']: row for row in csv.DictReader(open('out/runs.csv'))}\n"
+           "table = list(csv.reader(open('both/compare.csv')))\n"
+           "assert table[0] == ['figure'] + ['out/runs/' + name for name in wanted], table[0]\n"
+           "for row in table[1:]: assert row[1:] == [runs[name][row[0]] for name in wanted], row\n"
+           "print(len(table))\"");
+    assert_int_equal(r.code, 0);
+    assert_true(atoi(r.out) > 50);
+    assert_int_equal(program_run(p, "post", "compare $(sed 's|^|out/runs/|' pair) -o both").code, 2);
+    assert_int_equal(program_run(p, "post", "compare out/runs none.h5 -o third").code, 2);
+    assert_int_equal(program_shell(p, "test -e third").code, 1);
+}
+
 static void assert_refused(const program_place *p, const char *words, const char *part) {
     program_result r = program_run(p, "sweep", "%s", words);
     if (r.code != 2 || !strstr(r.err, part))
@@ -140,6 +164,7 @@ int main(void) {
         cmocka_unit_test(a_dry_run_tells_the_table_and_the_cost_and_writes_nothing),
         cmocka_unit_test(a_sweep_writes_its_table_and_report_and_resumes),
         cmocka_unit_test(what_a_run_reads_is_simulated_again_when_it_changes),
+        cmocka_unit_test(runs_are_overlaid),
         cmocka_unit_test(folders_that_are_not_of_the_plan_or_taken_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);

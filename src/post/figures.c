@@ -30,6 +30,21 @@ const void *sf_figure_place(const sf_figure *figure, const sf_results *results, 
     return (figure->fact ? (const char *)results : (const char *)figures) + figure->offset;
 }
 
+double sf_figure_number(const sf_figure *figure, const sf_results *results, const sf_figures *figures) {
+    const void *place = sf_figure_place(figure, results, figures);
+    switch (figure->type) {
+    case SF_FIGURE_DOUBLE:
+        return isfinite(*(const double *)place) ? *(const double *)place * figure->factor : NAN;
+    case SF_FIGURE_INTEGER:
+        return *(const int64_t *)place < 0 ? NAN : (double)*(const int64_t *)place;
+    case SF_FIGURE_BOOL:
+        return *(const bool *)place;
+    case SF_FIGURE_TEXT:
+        break;
+    }
+    return NAN;
+}
+
 const sf_figure *sf_figure_find(const char *key) {
     size_t count;
     const sf_figure *figure = sf_figure_list(&count);

@@ -133,6 +133,9 @@ const sf_figure *sf_figure_find(const char *key);
 /* Where the value of a line is. */
 const void *sf_figure_place(const sf_figure *figure, const sf_results *results, const sf_figures *figures);
 
+/* The number that summary.json shows, true as 1; NaN: not defined, or a text. */
+double sf_figure_number(const sf_figure *figure, const sf_results *results, const sf_figures *figures);
+
 /* Release with sf_figures_free. */
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *figures, sf_error *err);
 void sf_figures_free(sf_figures *figures);

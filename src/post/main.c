@@ -9,6 +9,7 @@
 #include "post/csv.h"
 #include "post/figures.h"
 #include "io/staging.h"
+#include "post/overlay.h"
 #include "post/plot.h"
 #include "post/report.h"
 #include "post/results.h"
@@ -189,7 +190,7 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     const struct argp parser = {
         .options = known,
         .parser = parse_option,
-        .args_doc = "RESULTS.h5 -o DIR",
+        .args_doc = "RESULTS.h5 -o DIR\ncompare RESULTS RESULTS ... -o DIR",
         .doc =
             "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, summary.json, "
             "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
@@ -325,6 +326,8 @@ static sf_status run(const options *o, job *j, sf_error *err) {
 static const int strict_codes[] = {[SF_GRADE_VALID] = 0, [SF_GRADE_REMARKS] = 8, [SF_GRADE_DO_NOT_USE] = 9};
 
 int main(int argc, char **argv) {
+    if (argc > 1 && strcmp(argv[1], "compare") == 0)
+        return sf_overlay_main(argc, argv);
     options o;
     job j = {0};
     sf_error err = SF_ERROR_INIT;

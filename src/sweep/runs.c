@@ -61,18 +61,12 @@ static double text_number(sf_runs *r, const char *text) {
     return r->text_count++;
 }
 
-static double number_of(sf_runs *r, const sf_figure *figure, const void *place) {
-    switch (figure->type) {
-    case SF_FIGURE_DOUBLE:
-        return *(const double *)place * figure->factor;
-    case SF_FIGURE_INTEGER:
-        return *(const int64_t *)place < 0 ? NAN : (double)*(const int64_t *)place;
-    case SF_FIGURE_BOOL:
-        return *(const bool *)place;
-    case SF_FIGURE_TEXT:
-        break;
-    }
-    return *(const char *)place ? text_number(r, place) : NAN;
+static double number_of(sf_runs *r, const sf_figure *figure, const sf_results *results,
+                        const sf_figures *figures) {
+    const char *text = figure->type == SF_FIGURE_TEXT ? sf_figure_place(figure, results, figures) : NULL;
+    if (text)
+        return *text ? text_number(r, text) : NAN;
+    return sf_figure_number(figure, results, figures);
 }
 
 void sf_runs_take(sf_runs *r, int64_t row, const sf_results *results, const sf_figures *figures) {
@@ -80,7 +74,7 @@ void sf_runs_take(sf_runs *r, int64_t row, const sf_results *results, const sf_f
     const sf_figure *list = sf_figure_list(&count);
     double *place = sf_runs_place(r, row);
     for (size_t k = 0; k < count; k++)
-        place[k] = number_of(r, &list[k], sf_figure_place(&list[k], results, figures));
+        place[k] = number_of(r, &list[k], results, figures);
 }
 
 static double to_nine_digits(double value) {

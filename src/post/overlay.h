@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-post compare A B ... -o DIR: several runs in one picture and one table. */
+#ifndef SF_POST_OVERLAY_H
+#define SF_POST_OVERLAY_H
+
+/* The program with this command; returns its exit code. argv[1] is "compare". */
+int sf_overlay_main(int argc, char **argv);
+
+#endif
