@@ -35,7 +35,7 @@ gas() { # name, DAMP, ALPHA, further keys: the gas curve above
 }
 
 for damp in 0.35 0.1 0.05 0.0; do
-    drop "eva35.cfg, DAMP $damp" --set material.DAMP=$damp
+    drop "first form, DAMP $damp" --set material=@tests/materials/eva35_first.cfg --set material.DAMP=$damp
 done
 maxwell='ED = "5.2 MPa"; BETA1 = "5000 1/s";' rate='rate_factor = 0.15; rate_reference = "1 1/s";'
 slow="$rate rate_filter_time = \"0.5 ms\";"
