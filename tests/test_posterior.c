@@ -323,19 +323,29 @@ static void test_errands(void **state) {
         covariance[i * RIDGE_PARAMETERS + i] = 0.01;
     }
     sf_error err = SF_ERROR_INIT;
-    sf_chains c, blind;
+    sf_chains c, again, blind;
     sf_chains_options options = sf_chains_defaults(5);
     assert_int_equal(sf_chains_run(&target, start, covariance, &options, &c, &err), SF_OK);
     assert_true(c.converged);
     for (int i = 0; i < RIDGE_PARAMETERS; i++) {
-        double mean = 0;
+        double mean = 0, square = 0;
         int count = c.chains * c.kept;
         for (int k = 0; k < count; k++) {
-            double u = c.sample[k * RIDGE_PARAMETERS + i];
-            mean += (i % 2 ? 2 * log(u) : u) / count;
+            double u = c.sample[k * RIDGE_PARAMETERS + i], z = i % 2 ? 2 * log(u) : u;
+            mean += z / count;
+            square += z * z / count;
         }
         assert_close(mean, 0, 4 / sqrt(c.effective[i]));
+        if (i % 2 == 0)
+            assert_close(square, 1, 4 * sqrt(2 / c.effective[i]));
     }
+    omp_set_num_threads(4); /* the same bits */
+    assert_int_equal(sf_chains_run(&target, start, covariance, &options, &again, &err), SF_OK);
+    omp_set_num_threads(1);
+    assert_int_equal(again.kept, c.kept);
+    assert_memory_equal(again.sample, c.sample,
+                        (size_t)(c.chains * c.kept * RIDGE_PARAMETERS) * sizeof(double));
+    sf_chains_free(&again);
     target.responses = 0;
     options.most_steps = (int)(c.evaluations / options.chains);
     assert_int_equal(sf_chains_run(&target, start, covariance, &options, &blind, &err), SF_OK);
@@ -464,6 +474,20 @@ static void test_discrepancy(void **state) {
            s[] = {(c[3] * r[0] - c[1] * r[1]) / det, (c[0] * r[1] - c[2] * r[0]) / det};
     assert_close(sf_discrepancy_log_density(&d, r, size),
                  -0.5 * (r[0] * s[0] + r[1] * s[1] + log(det)) - log(2 * M_PI), 1e-10);
+    /* With as many variables as data, or fewer, the other matrix is factorised: the same density. */
+    sf_discrepancy few;
+    const double none[] = {0};
+    double one = kernel[0] * 0.09, c2[] = {base[0] + one, base[1] + 0.5 * one, base[3] + 0.25 * one},
+           det2 = c2[0] * c2[2] - c2[1] * c2[1];
+    assert_int_equal(sf_discrepancy_build(2, 1, (const double[]){1, 0.5}, kernel, 0, none, base, &few, &err),
+                     SF_OK);
+    assert_null(few.spread[0]);
+    assert_close(
+        sf_discrepancy_log_density(&few, r, size),
+        -0.5 * ((c2[2] * r[0] * r[0] - 2 * c2[1] * r[0] * r[1] + c2[0] * r[1] * r[1]) / det2 + log(det2)) -
+            log(2 * M_PI),
+        1e-10);
+    sf_discrepancy_free(&few);
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int k = 0; k < DRAWS; k++) {
         sf_discrepancy_draw(&d, r, size, random, delta, x);

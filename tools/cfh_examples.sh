@@ -30,7 +30,7 @@ import json
 import sys
 
 HEAD = ("pad (mm)", "decides", "as simulated: free fall (m)", "on the rig (m)", "a_max = 200 g at (m)", "HIC = 1000 at (m)",
-        "median and 95 % interval: free fall (m)", "of it the foam alone (m)", "on the rig, with g_eff (m)", "drops",
+        "median and 95 % interval: free fall (m)", "the foam alone (m)", "on the rig, with g_eff (m)", "drops",
         "largest rms residual (%)", "local strain at the next point above")
 
 

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { SF_POSTERIOR_MOST = 24, SF_RESPONSES_MOST = 64 }; /* parameters; responses of a density in two steps */
+enum { SF_POSTERIOR_MOST = 24, SF_RESPONSES_MOST = 256 }; /* parameters; responses of a density in two steps */
 
 typedef struct sf_target {
     int parameters;

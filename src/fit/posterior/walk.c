@@ -26,7 +26,7 @@ static void propose_jump(const sf_walk *w, gsl_rng *random, const double *from, 
     }
 }
 
-/* The target's log density; its responses are noted during burn-in. */
+/* The target's log density; its responses are noted for the emulator. */
 static double evaluate(const sf_walk *w, sf_walker *c, const double *u) {
     const sf_target *t = w->target;
     double y[SF_RESPONSES_MOST];
