@@ -51,12 +51,18 @@ const char *fixture_source(const char *name) {
 }
 
 void fixture_case(sf_case *c, const char *const *overrides) {
+    enum { MOST = 32 };
     sf_error err = SF_ERROR_INIT;
-    int count = 0;
-    while (overrides && overrides[count])
-        count++;
-    require(sf_case_read(fixture_source("examples/eva50-v4.5/case.cfg"), count, overrides, NULL, c, &err),
-            &err);
+    char material[4200];
+    const char *all[MOST] = {material};
+    int count = 1;
+    snprintf(material, sizeof material, "material=@%s", fixture_source("tests/materials/eva35_first.cfg"));
+    for (; overrides && overrides[count - 1]; count++) {
+        if (count == MOST)
+            fail_msg("more than %d overrides", MOST - 1);
+        all[count] = overrides[count - 1];
+    }
+    require(sf_case_read(fixture_source("examples/eva50-v4.5/case.cfg"), count, all, NULL, c, &err), &err);
     c->mesh_error_limit = 1e6; /* tests run on coarse meshes */
 }
 

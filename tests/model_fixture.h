@@ -34,7 +34,8 @@ double fixture_random(uint64_t *seed);
 /* SF_SOURCE_DIR/name, valid until the fourth call after this one. */
 const char *fixture_source(const char *name);
 
-/* Reads the example case; `overrides` as of --set, up to NULL. */
+/* Reads the example case with the foam tests/materials/eva35_first.cfg, which has a Maxwell branch and no
+ * rate factor; `overrides` as of --set, up to NULL. */
 void fixture_case(sf_case *c, const char *const *overrides);
 
 /* The largest W of a node so far, J m-3. */

@@ -39,8 +39,7 @@ static sf_cfh_pad test_pad(void) {
 static void read_foam(double factor, sf_cfh_draw *draw) {
     sf_error err = SF_ERROR_INIT;
     sf_case c;
-    if (sf_case_read(fixture_source("examples/eva50-v4.5/case.cfg"), 0, NULL, NULL, &c, &err) != SF_OK)
-        fail_msg("%s", err.text);
+    fixture_case(&c, NULL);
     draw->material = c.material;
     c.material = (sf_material){0};
     sf_case_free(&c);

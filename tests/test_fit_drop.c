@@ -578,8 +578,8 @@ static void assert_response_errors(const program_place *place) {
         assert_true(fabs(number_after(file.data, "; HIC_sd = ") - hic_sd[k]) < 1e-8);
         assert_true(fabs(number_after(file.data, " HIC = ") - hic[k]) < 1e-8);
         assert_true(fabs(hic_sd[k] - 0.02 * kappa[k]) < 1e-8 && fabs(a_max_sd[k] - 0.01 * kappa[k]) < 1e-8);
-        least = fmin(least, hic[k]);
-        greatest = fmax(greatest, hic[k]);
+        least = smaller(least, hic[k]);
+        greatest = larger(greatest, hic[k]);
         free(file.data);
     }
     assert_true(least < greatest && kappa[0] > 0);
