@@ -239,6 +239,28 @@ static void more_drops_than_threads_are_said(void **state) {
     }
 }
 
+/* Two geometries of one text in two folders may merge two files: they are not one drop. */
+static void one_text_in_two_folders_is_not_one_drop(void **state) {
+    const program_place *p = *state;
+    char folder[600], path[2][700];
+    sf_runner_result result[2];
+    sf_error failure[2], err = SF_ERROR_INIT;
+    write_program(p, "softfall-pre", "/bin/sh", "echo 'softfall-pre: no pad' >&2; exit 4");
+    program_shell(
+        p, "for d in one two; do mkdir -p $d/examples && cp -r \"$SF_SOURCE_DIR\"/geo $d && cp -r "
+           "\"$SF_SOURCE_DIR\"/examples/eva50-v4.5 \"$SF_SOURCE_DIR\"/examples/materials $d/examples; done");
+    snprintf(folder, sizeof folder, "%s/runs", p->folder);
+    snprintf(path[0], sizeof path[0], "%s/one/%s", p->folder, EXAMPLE);
+    snprintf(path[1], sizeof path[1], "%s/two/%s", p->folder, EXAMPLE);
+    sf_runner runner = {.folder = folder, .threads = 1};
+    const sf_runner_drop drop[2] = {{.label = "drop", .case_path = path[0]},
+                                    {.label = "drop", .case_path = path[1]}};
+    sf_runner_run_each(&runner, 2, drop, result, failure, &err);
+    assert_non_null(strstr(failure[0].text, "no pad"));
+    assert_int_equal(failure[1].status, SF_ERR_INPUT);
+    assert_non_null(strstr(failure[1].text, "the same text in different folders"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_drop_that_fails_is_told_in_the_words_of_its_program),
@@ -247,6 +269,7 @@ int main(void) {
         cmocka_unit_test(a_signal_is_passed_on_to_the_drop_that_runs),
         cmocka_unit_test(a_killed_copy_is_named),
         cmocka_unit_test(more_drops_than_threads_are_said),
+        cmocka_unit_test(one_text_in_two_folders_is_not_one_drop),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -42,6 +42,22 @@ static void read_plan(const program_place *p, const char *factors, sf_plan *plan
         fail_msg("%s", err.text);
 }
 
+/* Values that are the same but for their order, or for two signs, are another plan. */
+static void another_order_is_another_plan(void **state) {
+    static const char *const values[] = {"(-20, -10, 10, 20)", "(20, 10, -10, -20)", "(-20, 10, -10, 20)"};
+    uint64_t hash[3];
+    for (int k = 0; k < 3; k++) {
+        char factors[200];
+        sf_plan plan;
+        snprintf(factors, sizeof factors, "{ key = \"geometry.parameters.thickness\"; values = %s; }",
+                 values[k]);
+        read_plan(*state, factors, &plan);
+        hash[k] = sf_plan_hash(&plan);
+        sf_plan_free(&plan);
+    }
+    assert_true(hash[0] != hash[1] && hash[1] != hash[2] && hash[0] != hash[2]);
+}
+
 static void the_last_block_is_the_fastest_and_zipped_lists_go_together(void **state) {
     sf_plan plan;
     char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
@@ -375,16 +391,20 @@ static void probabilities_have_the_interval_of_their_counts(void **state) {
     (void)state;
     sf_probability none = {.above = 10}, all = {.below = 10}, some = {.below = 3, .above = 7},
                    unknown = {.below = 3, .above = 6, .unknown = 1};
-    sf_probability_judge(&none);
-    sf_probability_judge(&all);
-    sf_probability_judge(&some);
-    sf_probability_judge(&unknown);
+    sf_probability_judge(&none, INFINITY);
+    sf_probability_judge(&all, INFINITY);
+    sf_probability_judge(&some, INFINITY);
+    sf_probability_judge(&unknown, INFINITY);
     assert_close(none.low, 0, 0);
     assert_close(none.high, 1 - pow(0.025, 0.1), 1e-9);
     assert_close(all.low, pow(0.025, 0.1), 1e-9);
     assert_close(all.high, 1, 0);
     assert_close(some.low, 0.06674, 5e-6);
     assert_close(some.high, 0.65245, 5e-6);
+    sf_probability crossed = {.below = 30, .above = 70}; /* ten draws, each with ten others */
+    sf_probability_judge(&crossed, 10);
+    assert_close(crossed.share, 0.3, 1e-12);
+    assert_close(crossed.high, some.high, 1e-12);
     assert_close(unknown.share, 3.0 / 9, 1e-12);
     assert_close(unknown.low, some.low, 1e-12); /* the unknown one above */
     assert_true(unknown.high > some.high);      /* and below */
@@ -607,6 +627,7 @@ static void a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte(void 
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(another_order_is_another_plan),
         cmocka_unit_test(the_last_block_is_the_fastest_and_zipped_lists_go_together),
         cmocka_unit_test(a_material_comes_before_its_keys_and_ranges_hold_both_ends),
         cmocka_unit_test(plans_that_cannot_be_meant_are_refused),

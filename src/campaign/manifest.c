@@ -48,7 +48,7 @@ static void name_group(int number, int count, const int *index, const uint64_t *
                        char name[SF_MANIFEST_GROUP_SIZE]) {
     uint64_t hash = SF_HASH_START;
     for (int k = 0; k < count; k++)
-        hash = sf_hash(hash, &key[index[k]], sizeof key[index[k]]);
+        hash = sf_hash_bytes(hash, &key[index[k]], sizeof key[index[k]]);
     snprintf(name, SF_MANIFEST_GROUP_SIZE, "%05d-%016" PRIx64, number, hash);
 }
 

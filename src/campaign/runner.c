@@ -4,6 +4,7 @@
 #include "campaign/engine.h"
 #include "campaign/manifest.h"
 #include "campaign/run_folder.h"
+#include "core/hash.h"
 #include "core/units.h"
 #include "io/folder.h"
 #include "io/process.h"
@@ -147,7 +148,8 @@ sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf
 typedef struct request {
     uint64_t key;
     bool reused;
-    int first; /* the first drop of the batch with the same folder */
+    uint64_t geometry; /* hash of the folders that the geometries' other files are in */
+    int first;         /* the first drop of the batch with the same folder */
 } request;
 
 typedef struct batch {
@@ -173,6 +175,8 @@ static sf_status prepare(const sf_runner *runner, const sf_runner_drop *drop, re
     if (locate(runner, drop, &l, err) != SF_OK)
         return err->status;
     r->key = l.at.key;
+    r->geometry = sf_hash_bytes(SF_HASH_START, l.at.pad_folder, strlen(l.at.pad_folder) + 1);
+    r->geometry = sf_hash_bytes(r->geometry, l.at.missile_folder, strlen(l.at.missile_folder) + 1);
     r->reused = sf_run_folder_is_finished(&l.at);
     if (r->reused)
         sf_run_folder_clean(&l.at);
@@ -203,8 +207,19 @@ static int compare(const void *p, const void *q, void *context) {
     return order ? order : j - k;
 }
 
+/* The key knows a geometry by its own text. What it merges lies beside it: the same text in two folders may
+ * be two geometries, and both would have one folder of results. */
+static void refuse_double(const batch *b, int one, int other, sf_error *failure) {
+    if (b->request[one].geometry != b->request[other].geometry && failure->status == SF_OK)
+        SF_FAIL(
+            failure, SF_ERR_INPUT,
+            "the drops %s and %s read geometry files of the same text in different folders: they may merge different "
+            "files; make a difference in their text, a comment for example",
+            b->drop[one].label, b->drop[other].label);
+}
+
 /* The drops that are not there, each once, in the order of the batch. */
-static void list_pending(batch *b, const sf_error *failure) {
+static void list_pending(batch *b, sf_error *failure) {
     int *order = b->pending; /* for now */
     for (int k = 0; k < b->count; k++)
         order[k] = k;
@@ -214,6 +229,8 @@ static void list_pending(batch *b, const sf_error *failure) {
         bool same = before && before->key == b->request[order[k]].key &&
                     strcmp(b->drop[order[k - 1]].label, b->drop[order[k]].label) == 0;
         b->request[order[k]].first = same ? before->first : order[k];
+        if (same)
+            refuse_double(b, before->first, order[k], &failure[order[k]]);
     }
     for (int k = 0; k < b->count; k++)
         if (!b->request[k].reused && failure[k].status == SF_OK && b->request[k].first == k)
@@ -306,7 +323,7 @@ static void look_again(const batch *b, const sf_manifest *m, const char *manifes
             located l;
             if (locate(b->runner, &m->run[j].drop, &l, &failure[j]) == SF_OK &&
                 !sf_run_folder_is_finished(&l.at))
-                SF_FAIL(&failure[j], SF_ERR_LIBRARY,
+                SF_FAIL(&failure[j], SF_ERR_IO,
                         "snakemake (exit code %d) left the drop %s undone; see %.*slog.txt; run the same "
                         "command again to resume",
                         code, m->run[j].drop.label, (int)(strrchr(manifest, '/') + 1 - manifest), manifest);

@@ -318,7 +318,7 @@ uint64_t sf_plan_hash(const sf_plan *p) {
         hash = sf_hash_bytes(hash, factor->unit, strlen(factor->unit) + 1);
         hash = sf_hash_bytes(hash, factor->name, strlen(factor->name) + 1);
         hash = sf_hash_bytes(hash, &b->stride, sizeof b->stride);
-        hash = sf_hash(hash, factor->value, (size_t)b->rows * sizeof *factor->value);
+        hash = sf_hash_bytes(hash, factor->value, (size_t)b->rows * sizeof *factor->value);
         for (int64_t k = 0; factor->words && k < factor->count; k++)
             hash = sf_hash_bytes(hash, factor->label[k], strlen(factor->label[k]) + 1);
     }

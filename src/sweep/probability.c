@@ -35,10 +35,26 @@ static int64_t cell_of(const sf_plan *p, int64_t row) {
     return cell;
 }
 
-void sf_probability_judge(sf_probability *p) {
-    double n = (double)(p->below + p->above + p->unknown), certain = (double)p->below,
-           possible = (double)(p->below + p->unknown);
-    p->share = p->below + p->above > 0 ? certain / (double)(p->below + p->above) : NAN;
+/* Rows of a cell that share no draw: of crossed blocks those of the smallest, of a sample for Sobol' indices
+ * its two first matrices. */
+static double count_independent(const sf_plan *p) {
+    double least = INFINITY;
+    for (int k = 0; k < p->block_count; k++) {
+        const sf_block *b = &p->block[k];
+        double rows = (double)b->rows;
+        if (b->kind == SF_BLOCK_SAMPLE && b->method == SF_SAMPLING_SALTELLI)
+            rows *= 2. / (b->count + 2);
+        if (!sf_block_is_chosen(p, k))
+            least = fmin(least, rows);
+    }
+    return least;
+}
+
+void sf_probability_judge(sf_probability *p, double independent) {
+    double all = (double)(p->below + p->above + p->unknown), part = all > independent ? independent / all : 1,
+           n = part * all, certain = part * (double)p->below,
+           possible = part * (double)(p->below + p->unknown);
+    p->share = p->below + p->above > 0 ? (double)p->below / (double)(p->below + p->above) : NAN;
     p->low = certain > 0 ? gsl_cdf_beta_Pinv(TAIL, certain, n - certain + 1) : 0;
     p->high = possible < n ? gsl_cdf_beta_Pinv(1 - TAIL, possible + 1, n - possible) : 1;
 }
@@ -69,7 +85,7 @@ sf_status sf_probabilities_count(const sf_runs *r, sf_probabilities *p, sf_error
             count(r, row, &plan->figure[k], &p->cell[k * p->cells + cell]);
     }
     for (int64_t k = 0; k < plan->figure_count * p->cells && err->status == SF_OK; k++)
-        sf_probability_judge(&p->cell[k]);
+        sf_probability_judge(&p->cell[k], count_independent(plan));
     return err->status;
 }
 

@@ -29,7 +29,8 @@ bool sf_block_is_chosen(const sf_plan *plan, int block);
 
 sf_status sf_probabilities_count(const sf_runs *runs, sf_probabilities *p, sf_error *err);
 void sf_probabilities_free(sf_probabilities *p);
-/* Share and interval from the counts. */
-void sf_probability_judge(sf_probability *p);
+/* Share and interval from the counts, of which `independent` are independent of each other: the interval is
+ * that of so many runs of the same shares. */
+void sf_probability_judge(sf_probability *p, double independent);
 
 #endif

@@ -27,13 +27,13 @@ static bool find_key(const sf_mesh *mesh, double condition_limit, const double *
     size_t n = (size_t)mesh->node_count, cells = (size_t)mesh->cell_count;
     if (sf_plain_hash("/proc/self/exe", NULL, SF_PLAIN_ANY, &program, &none) != SF_OK)
         return false;
-    *key = sf_hash(SF_HASH_START, &program, sizeof program);
-    *key = sf_hash(*key, &condition_limit, sizeof condition_limit);
-    *key = sf_hash(*key, support, n * sizeof *support);
-    *key = sf_hash(*key, mesh->position, 3 * n * sizeof *mesh->position);
-    *key = sf_hash(*key, mesh->cell_type, cells * sizeof *mesh->cell_type);
-    *key = sf_hash(*key, mesh->cell_ptr, (cells + 1) * sizeof *mesh->cell_ptr);
-    *key = sf_hash(*key, mesh->cell_node, (size_t)mesh->cell_ptr[cells] * sizeof *mesh->cell_node);
+    *key = sf_hash_bytes(SF_HASH_START, &program, sizeof program);
+    *key = sf_hash_bytes(*key, &condition_limit, sizeof condition_limit);
+    *key = sf_hash_bytes(*key, support, n * sizeof *support);
+    *key = sf_hash_bytes(*key, mesh->position, 3 * n * sizeof *mesh->position);
+    *key = sf_hash_bytes(*key, mesh->cell_type, cells * sizeof *mesh->cell_type);
+    *key = sf_hash_bytes(*key, mesh->cell_ptr, (cells + 1) * sizeof *mesh->cell_ptr);
+    *key = sf_hash_bytes(*key, mesh->cell_node, (size_t)mesh->cell_ptr[cells] * sizeof *mesh->cell_node);
     return true;
 }
 
