@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Identifies the EVA foam of the paper from its three drops on the 70 mm pad by all models of examples/fit/eva35_forms.cfg, predicts the
 # drops on the 50 mm pad and the critical fall heights of both pads, writes the result as the examples' material, and the tables and
-# pictures of docs/validation.md and docs/cfh.md. About a quarter of an hour on two cores; after an interruption, run it again to
+# pictures of docs/validation.md and docs/cfh.md. About twenty minutes on two cores; after an interruption, run it again to
 # resume. It says how long the identification took.
 #
 #     tools/identify_examples.sh

@@ -220,7 +220,7 @@ static void refuse_double(const batch *b, int one, int other, sf_error *failure)
 
 /* The drops that are not there, each once, in the order of the batch. */
 static void list_pending(batch *b, sf_error *failure) {
-    int *order = b->pending; /* for now */
+    int *order = b->pending; /* its room serves the sorting first */
     for (int k = 0; k < b->count; k++)
         order[k] = k;
     qsort_r(order, (size_t)b->count, sizeof *order, compare, b);
