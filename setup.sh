@@ -70,16 +70,22 @@ install_packages() {
     rm -f "$log"
 }
 
-# build [CMAKE OPTION]...: the preset "default" in build/. Ninja reconfigures when a CMakeLists.txt changes.
+# build [CMAKE OPTION]...: the preset "default" in build/. Ninja reconfigures when a CMakeLists.txt changes. In a copied or
+# moved checkout build/ still names the sources of the old place, and would compile those.
 build() {
-    if [ ! -f build/build.ninja ] || [ CMakePresets.json -nt build/build.ninja ]; then
+    local home
+    home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' build/CMakeCache.txt 2>/dev/null) || true
+    if [ -n "$home" ] && ! [ "$home" -ef . ]; then
+        echo "build/ was configured for the sources in $home: it is configured afresh for those in $PWD."
+        cmake --preset default --fresh
+    elif [ ! -f build/build.ninja ] || [ CMakePresets.json -nt build/build.ninja ]; then
         cmake --preset default
     fi
     cmake --build build --parallel "$(nproc)" "$@"
 }
 
 build_programs() {
-    build --target softfall-pre softfall-solve softfall-post softfall-fit softfall-cfh softfall_api softfall_api_build
+    build --target programs
 }
 
 demo() {
