@@ -125,11 +125,11 @@ static SF_KERNEL void rate_factor(const sf_foam_options *foam, bool compression,
     }
 }
 
-/* The overstress of the rate, and its work. */
+/* The overstress of the rate, and its work: by the mean of its values at both ends of the step. */
 static void rate_stress(const sf_foam_options *foam, const sf_foam_kind *kind, double dt, sf_law_batch *b,
-                        const sf_foam_loading *law, sf_foam_rate *rate) {
-    double before[3][SF_LANES];
-    memcpy(before, rate->part, sizeof before);
+                        const sf_foam_loading *law, double rate_of_e[6][SF_LANES], sf_foam_rate *rate) {
+    double added[3][SF_LANES], tensor[6][SF_LANES];
+    memcpy(added, rate->part, sizeof added);
     if (kind->overstress)
         kind->overstress(kind->numbers, dt, b, law, rate);
     else
@@ -137,7 +137,16 @@ static void rate_stress(const sf_foam_options *foam, const sf_foam_kind *kind, d
     for (int i = 0; i < 3; i++)
 #pragma omp simd
         for (int l = 0; l < SF_LANES; l++)
-            b->work[l] += (rate->part[i][l] - before[i][l]) * rate->green[i][l] * dt;
+            added[i][l] = rate->part[i][l] - added[i][l];
+    compose(added, rate->v, tensor);
+    for (int k = 0; k < 6; k++) {
+        double *restrict held = b->history[SF_FOAM_OVERSTRESS + k], half = (k < 3 ? 0.5 : 1) * dt;
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            b->work[l] += half * (held[l] + tensor[k][l]) * rate_of_e[k][l];
+            held[l] = tensor[k][l];
+        }
+    }
 }
 
 /* The bounds of a step that ends where the curve is steeper than where it begins. No direction shortens
@@ -205,7 +214,7 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
     }
     if ((kind->overstress || foam->rate_factor > 0) && dt > 0) {
         green_rates(rate.v, rate_of_e, rate.green);
-        rate_stress(foam, kind, dt, b, &law, &rate);
+        rate_stress(foam, kind, dt, b, &law, rate_of_e, &rate);
     }
     compose(rate.part, rate.v, s);
     damp_viscosity(foam, b, eta);

@@ -31,9 +31,10 @@ sf_foam_options sf_foam_options_build(const sf_foam_shared *card);
 
 /* Rows of sf_law_batch.history. */
 enum {
-    SF_FOAM_PEAK = 0,    /* J m-3, largest W so far */
-    SF_FOAM_RATE = 1,    /* s-1, filtered rate of compression */
-    SF_FOAM_MAXWELL = 2, /* [6] Pa, second Piola-Kirchhoff stress of the Maxwell branch */
+    SF_FOAM_PEAK = 0,       /* J m-3, largest W so far */
+    SF_FOAM_RATE = 1,       /* s-1, filtered rate of compression */
+    SF_FOAM_MAXWELL = 2,    /* [6] Pa, second Piola-Kirchhoff stress of the Maxwell branch */
+    SF_FOAM_OVERSTRESS = 8, /* [6] Pa, that of the rate factor or of the curves of several rates */
 };
 
 /* The loading law at a batch. */

@@ -167,6 +167,7 @@ static const sf_history_variable history[] = {
     {"peak", "J m-3", SF_FOAM_PEAK, 1, NULL},
     {"rate", "s-1", SF_FOAM_RATE, 1, sf_foam_has_rate_factor},
     {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
+    {"overstress", "Pa", SF_FOAM_OVERSTRESS, 6, sf_foam_has_rate_factor},
 };
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {

@@ -156,6 +156,7 @@ static const sf_history_variable history[] = {
     {"peak", "J m-3", SF_FOAM_PEAK, 1, NULL},
     {"rate", "s-1", SF_FOAM_RATE, 1, has_rates},
     {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
+    {"overstress", "Pa", SF_FOAM_OVERSTRESS, 6, has_rates},
 };
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {
