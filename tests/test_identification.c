@@ -648,6 +648,32 @@ static void without_unloading_there_is_no_hysteresis_and_it_is_said(void **state
     sf_compression_config_free(&config);
 }
 
+/* A curve that rises slowly at its end leaves next to no energy between the tests and full compression. */
+static void an_exponent_below_one_is_said(void **state) {
+    (void)state;
+    static const char *const rules[] = {"H1", "H1_automatic"};
+    sheet s = good_sheet(1);
+    s.unloading = 0;
+    for (int i = 0; i < POINTS; i++)
+        s.stress[i] = 9 * (1 - exp(-410 * s.strain[i] / 9)) + 60 * (pow(1 - s.strain[i], -0.4) - 1);
+    write_sheet("slow.csv", &s);
+    for (int k = 0; k < 2; k++) {
+        char text[300];
+        sf_compression_config config;
+        sf_compression_fit fit;
+        sf_error err = SF_ERROR_INIT;
+        snprintf(text, sizeof text, "density = \"35 kg/m3\";\ndensification = \"%s\";\n" TEST_LIST, rules[k]);
+        if (sf_compression_config_read(program_write_text(&place, "fit.cfg", text), &config, &err) != SF_OK ||
+            sf_compression_fit_run(&config, &fit, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        const sf_estimate *e = &fit.estimate[SF_ESTIMATE_EXPONENT];
+        assert_true(e->value < 1);
+        assert_non_null(strstr(e->note, "below 1"));
+        sf_compression_fit_free(&fit);
+        sf_compression_config_free(&config);
+    }
+}
+
 /* ---- the program ---- */
 
 static void written_material_is_the_card_of_the_fit(void **state) {
@@ -745,6 +771,7 @@ int main(void) {
         cmocka_unit_test(every_form_gives_a_card_that_the_solver_follows),
         cmocka_unit_test(exact_data_give_their_parameters_back),
         cmocka_unit_test(without_unloading_there_is_no_hysteresis_and_it_is_said),
+        cmocka_unit_test(an_exponent_below_one_is_said),
         cmocka_unit_test(written_material_is_the_card_of_the_fit),
         cmocka_unit_test(results_are_replaced_only_by_force),
         cmocka_unit_test(simulated_cube_agrees_with_the_material_point),

@@ -229,12 +229,16 @@ static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e
     e->value = sf_compression_exponent(&fit->model, fit->parameters, gradient);
     e->error = sf_compression_error(fit, gradient);
     set_interval(fit, true, 0, INFINITY, e);
-    if (fit->model.form.rule == SF_H1_AUTO)
-        e->note = "follows from value and slope where densification starts (A = 0)";
-    else if (!(e->error > 0) || e->value > 59.9 || e->value < 0.0501) {
+    bool follows = fit->model.form.rule == SF_H1_AUTO;
+    if (!follows && (!(e->error > 0) || e->value > 59.9 || e->value < 0.0501)) {
         e->note = "at the bound of the search: not identified by these tests";
         e->error = e->low = e->high = NAN;
-    }
+    } else if (e->value < 1)
+        e->note =
+            "below 1: beyond the tests the foam takes little energy up to full compression; do not use it "
+            "for strains beyond theirs";
+    else if (follows)
+        e->note = "follows from value and slope where densification starts (A = 0)";
     free(gradient);
     return SF_OK;
 }
