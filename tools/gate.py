@@ -32,6 +32,7 @@ ALLOWED = {
                   "remove": "makes and removes them"},
     "io/staging": {"open": "its own folder", "list": "of that and of the folders of killed processes",
                    "remove": "of files that --force replaces, and of its own"},
+    "io/tree": {"list": "is the folder that it is to fill empty?", "remove": "makes, moves and removes its own folder"},
     "io/h5": {"library": "opens what has passed the gate (/proc/self/fd), creates new files only"},
     "io/process": {"open": "/dev/null and the log of another program"},
     "io/model_io": {"remove": "its own partial file"},

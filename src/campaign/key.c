@@ -52,15 +52,19 @@ static sf_status hash_programs(uint64_t *hash, sf_error *err) {
     return SF_OK;
 }
 
-sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
+uint64_t sf_campaign_case_hash(const sf_case *c) {
     size_t motion = sf_case_motion_bytes(c);
-    *hash = sf_hash_bytes(SF_HASH_START, &c->values, sizeof c->values);
+    uint64_t hash = sf_hash_bytes(SF_HASH_START, &c->values, sizeof c->values);
     if (c->layer_count == 0)
-        *hash = sf_material_hash(*hash, &c->material);
+        hash = sf_material_hash(hash, &c->material);
     for (int k = 0; k < c->layer_count; k++)
-        *hash = sf_material_hash(*hash, &c->layer[k]);
-    *hash = sf_hash_bytes(*hash, c->motion_time, motion);
-    *hash = sf_hash_bytes(*hash, c->motion_displacement, motion);
+        hash = sf_material_hash(hash, &c->layer[k]);
+    hash = sf_hash_bytes(hash, c->motion_time, motion);
+    return sf_hash_bytes(hash, c->motion_displacement, motion);
+}
+
+sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
+    *hash = sf_campaign_case_hash(c);
     if (hash_file(hash, c->pad.path, err) != SF_OK ||
         (c->missile.path && hash_file(hash, c->missile.path, err) != SF_OK))
         return err->status;

@@ -12,6 +12,9 @@
  * only after it was read: sf_campaign_geometry_is_same. */
 sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 
+/* The part of it that is of the case alone, without geometry files and programs. */
+uint64_t sf_campaign_case_hash(const sf_case *c);
+
 /* Has every file that the geometries read, by the list at `text` of the HDF5 file `path` (docs/formats.md,
  * geometry_files), the content that it had? `folder`: of the pad's and the missile's geometry, where paths in
  * the list begin; "" without a geometry of the missile. `unlisted`: the answer if there is no such file or

@@ -98,11 +98,25 @@ static bool names_files(const sf_key *key) {
            key->kind == SF_KEY_MOTION;
 }
 
+/* Of the parameters of a geometry, in any order: a --set text puts its own behind the others. */
+static void hash_parameters(sf_case *out, const sf_key *key) {
+    const sf_geo_source *source = (const sf_geo_source *)((const char *)out + key->offset);
+    uint64_t sum = 0;
+    for (int k = 0; k < source->parameter_count; k++) {
+        const sf_geo_parameter *p = &source->parameter[k];
+        sum +=
+            sf_hash_bytes(sf_hash_bytes(SF_HASH_START, p->name, strlen(p->name)), &p->value, sizeof p->value);
+    }
+    out->values = sf_hash_bytes(sf_hash_bytes(out->values, key->name, strlen(key->name)), &sum, sizeof sum);
+}
+
 /* `detail`: the value in SI. Texts end with a zero: no two lists of values look the same. */
 static void hash_value(sf_case *out, const sf_key *key, const char *name, const char *text,
                        const char *detail) {
     const char *const part[] = {name, text, detail};
-    for (int k = 0; k < 3 && !names_files(key) && !key->idle; k++)
+    if (key->kind == SF_KEY_PARAMETERS)
+        hash_parameters(out, key);
+    for (int k = 0; k < 3 && key->kind != SF_KEY_PARAMETERS && !names_files(key) && !key->idle; k++)
         out->values = sf_hash_bytes(out->values, part[k], strlen(part[k]) + 1);
 }
 
