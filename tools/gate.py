@@ -48,8 +48,15 @@ ALLOWED = {
     "solver/run/output": {"remove": "its own partial files"},
     "solver/program/solve": {"remove": "results and checkpoint of an earlier run, with --force"},
     "campaign/run_folder": {"open": "the folder of a drop, to ask whether a run has it locked"},
+    "gui/cache": {"remove": "makes the user's folder of caches, which is not softfall's own"},
+    "gui/gmsh/geometry": {"library": "the user's own geometry in the user's own window, as in gmsh"},
+    "gui/gmsh/window": {"library": "a picture, by the script of a test"},
     "campaign/material_file": {"remove": "a material that it has just written and that is refused"},
 }
+
+
+# The only units that may call gmsh: the process that is confined, and the user's own window.
+GMSH = ("mesher/", "gui/gmsh/")
 
 
 def plain(symbol):
@@ -65,12 +72,15 @@ def main():
         sys.exit(__doc__)
     group_of = {name: group for group, names in GROUPS.items() for name in names.split()}
     used = {}
+    wrong = 0
     for unit, symbols in circles.symbols(sys.argv[1])[1].items():
+        if not unit.startswith(GMSH) and any(symbol.startswith("gmsh") for symbol in symbols):
+            wrong += 1
+            print(f"src/{unit}.c calls gmsh, which only the units of {' and '.join(GMSH)} may")
         for symbol in symbols:
             group = group_of.get(plain(symbol))
             if group:
                 used.setdefault(unit, {}).setdefault(group, set()).add(plain(symbol))
-    wrong = 0
     for unit, groups in sorted(used.items()):
         for group, names in sorted(groups.items()):
             if group not in ALLOWED.get(unit, {}):

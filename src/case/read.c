@@ -10,6 +10,7 @@
 #include "case/reader.h"
 #include "case/response_error.h"
 #include "case/value.h"
+#include "case/values.h"
 
 #include "core/hash.h"
 #include "core/mat3.h"
@@ -120,6 +121,51 @@ static void hash_value(sf_case *out, const sf_key *key, const char *name, const 
         out->values = sf_hash_bytes(out->values, part[k], strlen(part[k]) + 1);
 }
 
+static sf_case_value_kind value_kind(const sf_key *key) {
+    switch (key->kind) {
+    case SF_KEY_QUANTITY:
+    case SF_KEY_UNIT:
+    case SF_KEY_NAME:
+        return SF_CASE_VALUE_TEXT;
+    case SF_KEY_NAMES:
+    case SF_KEY_FIELDS:
+    case SF_KEY_TIMES:
+    case SF_KEY_QUANTITIES:
+    case SF_KEY_VECTOR:
+    case SF_KEY_PLACE:
+        return SF_CASE_VALUE_LIST;
+    case SF_KEY_NUMBER:
+        return SF_CASE_VALUE_NUMBER;
+    case SF_KEY_BOOL:
+        return SF_CASE_VALUE_FLAG;
+    case SF_KEY_CHOICE:
+        return SF_CASE_VALUE_WORD;
+    case SF_KEY_PATH:
+    case SF_KEY_MOTION:
+        return SF_CASE_VALUE_FILE;
+    default:
+        return SF_CASE_VALUE_OTHER;
+    }
+}
+
+/* A text without the quotes that its print has. */
+static void tell_value(const sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
+                       const char *text, bool given) {
+    const char *plain = setting ? config_setting_get_string(setting) : NULL;
+    const sf_case_value value = {.group = key->group,
+                                 .name = key->name,
+                                 .text = !setting ? ""
+                                         : plain  ? plain
+                                                  : text,
+                                 .given = given,
+                                 .kind = value_kind(key),
+                                 .of_material = key->in_card || key->kind == SF_KEY_LAW,
+                                 .words = key->words,
+                                 .help = key->description};
+    if (reader->listener && !reader->material_only)
+        reader->listener->hear(reader->listener->user, &value);
+}
+
 static void list_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                        const char *detail, const char *origin) {
     char *text = NULL;
@@ -136,6 +182,7 @@ static void list_value(sf_case_reader *reader, const sf_key *key, const config_s
     snprintf(name, sizeof name, "%s.%s", key->group, key->name);
     fprintf(reader->listing, "%-34s %-24s %-24s %s\n", name, text ? text : "", detail, origin);
     hash_value(reader->out, key, name, text ? text : "", detail);
+    tell_value(reader, key, setting, text ? text : "", strcmp(origin, "given") == 0);
     free(text);
 }
 
@@ -579,9 +626,18 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
 
 sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                        sf_case *out, sf_error *err) {
+    return sf_case_read_values(path, count, overrides, sink, NULL, out, err);
+}
+
+sf_status sf_case_read_values(const char *path, int count, const char *const *overrides, const sf_sink *sink,
+                              const sf_case_listener *listener, sf_case *out, sf_error *err) {
     *out = (sf_case){.values = SF_HASH_START};
-    sf_case_reader reader = {
-        .path = path, .out = out, .sink = sink, .material = &out->material, .material_group = "material"};
+    sf_case_reader reader = {.path = path,
+                             .out = out,
+                             .sink = sink,
+                             .material = &out->material,
+                             .material_group = "material",
+                             .listener = listener};
     size_t listing_size = 0;
     config_init(&reader.config);
     config_set_destructor(&reader.config, free); /* of the hooks */

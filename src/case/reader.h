@@ -18,15 +18,16 @@ typedef struct sf_case_reader {
     sf_units *units;
     sf_case *out;
     config_t config;
-    sf_case_source source;                  /* of the settings without a hook */
-    sf_key_list keys;                       /* of the case's law */
-    const config_setting_t *layers;         /* the group `materials`; NULL: one material */
-    sf_material *material;                  /* under construction */
-    char material_group[SF_KEY_GROUP_SIZE]; /* "material", or "materials.NAME" */
-    bool given[SF_KEY_MAX];                 /* per row of `keys` */
-    bool material_only;                     /* read the keys of the material, and no others */
-    const sf_sink *sink;                    /* borrowed */
-    FILE *listing;                          /* the parameters text under construction */
+    sf_case_source source;                   /* of the settings without a hook */
+    sf_key_list keys;                        /* of the case's law */
+    const config_setting_t *layers;          /* the group `materials`; NULL: one material */
+    sf_material *material;                   /* under construction */
+    char material_group[SF_KEY_GROUP_SIZE];  /* "material", or "materials.NAME" */
+    bool given[SF_KEY_MAX];                  /* per row of `keys` */
+    bool material_only;                      /* read the keys of the material, and no others */
+    const sf_sink *sink;                     /* borrowed */
+    FILE *listing;                           /* the parameters text under construction */
+    const struct sf_case_listener *listener; /* of each value; NULL: nobody; borrowed */
 } sf_case_reader;
 
 enum { SF_CASE_GROUP_SIZE = 200 /* of a text "group.key" */ };

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The keys of a case with their values as texts, for who lets a user change them. Of the table of keys
+ * (case/keys.c), which is internal to src/case. */
+#ifndef SF_CASE_VALUES_H
+#define SF_CASE_VALUES_H
+
+#include "case/case.h"
+
+/* How a value can be entered. */
+typedef enum sf_case_value_kind {
+    SF_CASE_VALUE_TEXT,   /* "4.5 m/s", or a name */
+    SF_CASE_VALUE_LIST,   /* ["10 mm", "0 mm"] */
+    SF_CASE_VALUE_NUMBER, /* 0.5 */
+    SF_CASE_VALUE_FLAG,   /* true or false */
+    SF_CASE_VALUE_WORD,   /* one of `words` */
+    SF_CASE_VALUE_FILE,   /* a path, as the case has it */
+    SF_CASE_VALUE_OTHER,  /* a group, or what cannot be entered in one line */
+} sf_case_value_kind;
+
+/* Strings are valid during the call only, but those of the table: group, name, words, help. */
+typedef struct sf_case_value {
+    const char *group, *name;
+    const char *text; /* as --set takes it; "": absent */
+    bool given;       /* in the case or by an override; else the default */
+    sf_case_value_kind kind;
+    bool of_material; /* a parameter of the law */
+    const char *words, *help;
+} sf_case_value;
+
+typedef struct sf_case_listener {
+    void (*hear)(void *user, const sf_case_value *value);
+    void *user; /* borrowed */
+} sf_case_listener;
+
+/* sf_case_read that tells the listener each value of the table that it has read, in its order, also those
+ * before a failure. */
+sf_status sf_case_read_values(const char *path, int count, const char *const *overrides, const sf_sink *sink,
+                              const sf_case_listener *listener, sf_case *out, sf_error *err);
+
+#endif

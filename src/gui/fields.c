@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gui/fields.h"
+
+#include "case/values.h"
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char WRONG[] = "LightCoral";
+
+/* The branches of the tree, in its order; the groups of the case that are not here (geometry) have none. */
+static const struct {
+    const char *group, *branch;
+    bool closed;
+} branches[] = {
+    {"missile", "2Case/2missile", false}, {"solver", "2Case/3solver", true},
+    {"output", "2Case/4output", true},    {"pad", "2Case/5pad", true},
+    {"kernel", "2Case/6kernel", true},
+};
+
+static int find_branch(const char *group) {
+    for (size_t k = 0; k < sizeof branches / sizeof branches[0]; k++)
+        if (strcmp(branches[k].group, group) == 0)
+            return (int)k;
+    return -1;
+}
+
+static sf_field *find(const sf_fields *fields, const char *key) {
+    for (int k = 0; k < fields->count; k++)
+        if (strcmp(fields->field[k].key, key) == 0)
+            return (sf_field *)&fields->field[k];
+    return NULL;
+}
+
+const sf_field *sf_fields_find(const sf_fields *fields, const char *key) {
+    return find(fields, key);
+}
+
+/* ---- from the table of keys ---- */
+
+static const sf_entry_kind entry_kinds[] = {
+    [SF_CASE_VALUE_TEXT] = SF_ENTRY_TEXT,   [SF_CASE_VALUE_LIST] = SF_ENTRY_TEXT,
+    [SF_CASE_VALUE_NUMBER] = SF_ENTRY_TEXT, [SF_CASE_VALUE_FLAG] = SF_ENTRY_FLAG,
+    [SF_CASE_VALUE_WORD] = SF_ENTRY_WORD,   [SF_CASE_VALUE_FILE] = SF_ENTRY_FILE,
+};
+
+static sf_field *add(sf_fields *fields) {
+    if (fields->count == SF_FIELDS)
+        return NULL;
+    sf_field *f = &fields->field[fields->count++];
+    *f = (sf_field){.kind = SF_ENTRY_TEXT};
+    return f;
+}
+
+static void hear(void *user, const sf_case_value *value) {
+    sf_fields *fields = user;
+    int branch = find_branch(value->group);
+    if (branch < 0 || value->of_material || value->kind == SF_CASE_VALUE_OTHER)
+        return;
+    sf_field *f = add(fields);
+    if (!f)
+        return;
+    f->kind = entry_kinds[value->kind];
+    f->words = value->words;
+    f->help = value->help;
+    snprintf(f->key, sizeof f->key, "%s.%s", value->group, value->name);
+    snprintf(f->name, sizeof f->name, "%s/%02d%s", branches[branch].branch, fields->count, value->name);
+    snprintf(f->given, sizeof f->given, "%s", value->text);
+    memcpy(f->now, f->given, sizeof f->now);
+}
+
+/* The material is a group: a file may stand in its place. */
+static void add_material(sf_fields *fields) {
+    sf_field *f = add(fields);
+    if (!f)
+        return;
+    f->kind = SF_ENTRY_FILE;
+    f->help =
+        "file with the keys of a material, in place of the group material of the case; empty: that of the case";
+    snprintf(f->key, sizeof f->key, "material");
+    snprintf(f->name, sizeof f->name, "2Case/1material");
+}
+
+/* What the user had changed stays changed. */
+static void keep_changes(const sf_fields *before, sf_fields *fields) {
+    for (int k = 0; k < fields->count; k++) {
+        sf_field *f = &fields->field[k];
+        const sf_field *old = find(before, f->key);
+        if (old && strcmp(old->now, old->given) != 0)
+            memcpy(f->now, old->now, sizeof f->now);
+    }
+}
+
+sf_status sf_fields_read(const char *case_path, const sf_sink *sink, sf_fields *fields, sf_case *out,
+                         sf_error *err) {
+    sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
+    const sf_case_listener listener = {hear, fields};
+    if (!before)
+        return err->status;
+    *before = *fields;
+    fields->count = 0;
+    if (sf_case_read_values(case_path, 0, NULL, sink, &listener, out, err) == SF_OK && out->layer_count == 0)
+        add_material(fields);
+    if (err->status == SF_OK)
+        keep_changes(before, fields);
+    else
+        *fields = *before;
+    free(before);
+    return err->status;
+}
+
+/* ---- of geometries ---- */
+
+static const sf_geo_parameter *find_parameter(const sf_geo_source *source, const char *variable) {
+    for (int k = 0; k < source->parameter_count; k++)
+        if (strcmp(source->parameter[k].name, variable) == 0)
+            return &source->parameter[k];
+    return NULL;
+}
+
+void sf_fields_add_geometry(const char *group, const sf_geo_names *names, const sf_geo_source *source,
+                            const sf_fields *before, sf_fields *fields) {
+    int first = fields->count;
+    for (int k = 0; k < names->count; k++) {
+        const sf_geo_parameter *p = find_parameter(source, names->name[k].variable);
+        sf_field *f = add(fields);
+        if (!f)
+            return;
+        f->kind = SF_ENTRY_NUMBER;
+        f->of_geometry = true;
+        f->in_case = p != NULL;
+        snprintf(f->key, sizeof f->key, "%s.%s", group, names->name[k].variable);
+        snprintf(f->name, sizeof f->name, "%s", names->name[k].name);
+        if (p)
+            snprintf(f->given, sizeof f->given, "%.12g", p->value);
+        memcpy(f->now, f->given, sizeof f->now);
+    }
+    if (before && first < fields->count)
+        keep_changes(before, fields);
+}
+
+void sf_fields_take_defaults(sf_fields *fields) {
+    for (int k = 0; k < fields->count; k++) {
+        sf_field *f = &fields->field[k];
+        double value;
+        if (!f->of_geometry || *f->now || !sf_window_number(f->name, &value))
+            continue;
+        snprintf(f->given, sizeof f->given, "%.12g", value);
+        memcpy(f->now, f->given, sizeof f->now);
+    }
+}
+
+/* ---- the tree ---- */
+
+static int find_word(const char *words, const char *word) {
+    int place = 0;
+    for (const char *at = words; *at; place++) {
+        size_t length = strcspn(at, "|");
+        if (strlen(word) == length && strncmp(at, word, length) == 0)
+            return place;
+        at += length + (at[length] == '|');
+    }
+    return 0;
+}
+
+static void name_word(const char *words, int place, char *out, size_t size) {
+    for (; place > 0 && strchr(words, '|'); place--)
+        words = strchr(words, '|') + 1;
+    snprintf(out, size, "%.*s", (int)strcspn(words, "|"), words);
+}
+
+static void show(const sf_field *f) {
+    const char *dot = strchr(f->key, '.');
+    char group[SF_FIELD_KEY_SIZE];
+    snprintf(group, sizeof group, "%.*s", dot ? (int)(dot - f->key) : 0, f->key);
+    int branch = find_branch(group);
+    if (f->of_geometry) {
+        if (*f->now)
+            sf_window_set_number(f->name, strtod(f->now, NULL));
+        else
+            sf_window_remove(f->name); /* the geometry's own default, which may have changed */
+        return;
+    }
+    const sf_entry entry = {.name = f->name,
+                            .kind = f->kind,
+                            .text = f->now,
+                            .number = f->kind == SF_ENTRY_WORD ? find_word(f->words, f->now)
+                                                               : strcmp(f->now, "true") == 0,
+                            .words = f->words,
+                            .help = f->help,
+                            .colour = f->wrong ? WRONG : NULL,
+                            .closed = branch >= 0 && branches[branch].closed};
+    sf_window_put(&entry);
+}
+
+void sf_fields_show(const sf_fields *fields) {
+    for (int k = 0; k < fields->count; k++)
+        show(&fields->field[k]);
+}
+
+/* The value as the tree has it now. */
+static bool read(const sf_field *f, char *text, size_t size) {
+    double value = 0;
+    if (f->kind == SF_ENTRY_TEXT || f->kind == SF_ENTRY_FILE)
+        return sf_window_text(f->name, text, size);
+    if (!sf_window_number(f->name, &value))
+        return false;
+    if (f->kind == SF_ENTRY_WORD)
+        name_word(f->words, (int)lround(value), text, size);
+    else if (f->kind == SF_ENTRY_FLAG)
+        snprintf(text, size, "%s", value != 0 ? "true" : "false");
+    else
+        snprintf(text, size, "%.12g", value);
+    return true;
+}
+
+void sf_fields_take(sf_fields *fields, bool *case_changed, bool *geometry_changed) {
+    *case_changed = *geometry_changed = false;
+    for (int k = 0; k < fields->count; k++) {
+        sf_field *f = &fields->field[k];
+        char text[SF_FIELD_TEXT_SIZE];
+        if (!read(f, text, sizeof text) || strcmp(text, f->now) == 0)
+            continue;
+        memcpy(f->now, text, sizeof text);
+        *(f->of_geometry ? geometry_changed : case_changed) = true;
+    }
+}
+
+bool sf_fields_enter(sf_fields *fields, const char *key, const char *text) {
+    sf_field *f = find(fields, key);
+    if (!f)
+        return false;
+    snprintf(f->now, sizeof f->now, "%s", text);
+    show(f);
+    return true;
+}
+
+/* ---- overrides ---- */
+
+sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_error *err) {
+    *out = (sf_overrides){0};
+    for (int k = 0; k < fields->count; k++) {
+        const sf_field *f = &fields->field[k];
+        if (strcmp(f->now, f->given) == 0)
+            continue;
+        if (out->count == SF_FIELD_OVERRIDES)
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "more than %d values differ from the case: save it, and go on from there",
+                           SF_FIELD_OVERRIDES);
+        if (asprintf(&out->text[out->count], "%s=%s%s", f->key, strcmp(f->key, "material") == 0 ? "@" : "",
+                     f->now) < 0)
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the values of the window");
+        out->count++;
+    }
+    return SF_OK;
+}
+
+void sf_overrides_free(sf_overrides *o) {
+    for (int k = 0; k < o->count; k++)
+        free(o->text[k]);
+    *o = (sf_overrides){0};
+}
+
+/* ---- marks ---- */
+
+static bool is_of_word(int c) {
+    return isalnum(c) || c == '_';
+}
+
+/* The sentence has the word by itself. */
+static bool has_word(const char *sentence, const char *word) {
+    size_t length = strlen(word);
+    for (const char *at = sentence; (at = strstr(at, word)) != NULL; at += length)
+        if ((at == sentence || !is_of_word((unsigned char)at[-1])) && !is_of_word((unsigned char)at[length]))
+            return true;
+    return false;
+}
+
+/* A key in full; of a geometry its variable, as its own checks name it. */
+static bool is_named(const sf_field *f, const char *sentence) {
+    const char *dot = strrchr(f->key, '.');
+    return has_word(sentence, f->key) && dot ? true : f->of_geometry && has_word(sentence, dot + 1);
+}
+
+void sf_fields_mark(sf_fields *fields, const char *sentence) {
+    for (int k = 0; k < fields->count; k++) {
+        sf_field *f = &fields->field[k];
+        bool wrong = sentence && is_named(f, sentence);
+        if (wrong == f->wrong)
+            continue;
+        f->wrong = wrong;
+        if (f->of_geometry)
+            sf_window_colour_number(f->name, wrong ? WRONG : NULL);
+        else
+            show(f);
+    }
+}

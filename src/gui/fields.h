@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The fields of the tree: the keys of the case, from the table of keys, and the parameters of its geometries.
+ * A field that differs from the case is an override, as --set takes it; nothing else of the tree reaches a
+ * run. */
+#ifndef SF_GUI_FIELDS_H
+#define SF_GUI_FIELDS_H
+
+#include "case/case.h"
+#include "gui/geo_names.h"
+#include "gui/gmsh/window.h"
+
+enum {
+    SF_FIELDS = 160,
+    SF_FIELD_KEY_SIZE = 192,
+    SF_FIELD_NAME_SIZE = 288,
+    SF_FIELD_TEXT_SIZE = 512,
+    SF_FIELD_OVERRIDES = 56 /* softfall-pre takes 64 */
+};
+
+typedef struct sf_field {
+    char key[SF_FIELD_KEY_SIZE];    /* "missile.velocity", "geometry.parameters.thickness", "material" */
+    char name[SF_FIELD_NAME_SIZE];  /* of its entry in the tree */
+    char given[SF_FIELD_TEXT_SIZE]; /* as the case (or the default of the key or the geometry) has it */
+    char now[SF_FIELD_TEXT_SIZE];   /* as the tree has it */
+    sf_entry_kind kind;
+    const char *words, *help; /* static */
+    bool of_geometry;         /* an entry that the geometry makes */
+    bool in_case;             /* of a geometry: the case gives it */
+    bool wrong;               /* it is marked */
+} sf_field;
+
+typedef struct sf_fields {
+    int count;
+    sf_field field[SF_FIELDS];
+} sf_fields;
+
+/* An override as a text. */
+typedef struct sf_overrides {
+    int count;
+    char *text[SF_FIELD_OVERRIDES]; /* owned */
+} sf_overrides;
+
+/* Reads the keys of the case without overrides; `now` is kept of the fields that were there before and
+ * differed from their case. Parameters of geometries are gone: sf_fields_add_geometry. The case is the
+ * caller's. */
+sf_status sf_fields_read(const char *case_path, const sf_sink *sink, sf_fields *fields, sf_case *out,
+                         sf_error *err);
+/* Adds the parameters `names` of a geometry, key "group.VARIABLE", with what the case gives; others are known
+ * once the geometry was read: sf_fields_take_defaults. `before`: the fields as they were, for what was
+ * changed; or NULL. */
+void sf_fields_add_geometry(const char *group, const sf_geo_names *names, const sf_geo_source *source,
+                            const sf_fields *before, sf_fields *fields);
+
+/* Puts the fields into the tree: those of the case, and the values of the geometries' parameters that are
+ * known. */
+void sf_fields_show(const sf_fields *fields);
+/* After a geometry was read: what the case does not give is as the tree has it. */
+void sf_fields_take_defaults(sf_fields *fields);
+/* Takes the values that the tree has. *case_changed, *geometry_changed: a field has another value than
+ * before. */
+void sf_fields_take(sf_fields *fields, bool *case_changed, bool *geometry_changed);
+/* As if the user had entered `text` in the field of that key; false: there is none. */
+bool sf_fields_enter(sf_fields *fields, const char *key, const char *text);
+const sf_field *sf_fields_find(const sf_fields *fields, const char *key);
+
+/* The overrides; release with sf_overrides_free, also on failure. SF_ERR_INPUT: too many. */
+sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_error *err);
+void sf_overrides_free(sf_overrides *overrides);
+
+/* Marks the fields that the sentence of an error names (NULL: none), in the tree too. */
+void sf_fields_mark(sf_fields *fields, const char *sentence);
+
+#endif

@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gui/gmsh/window.h"
+
+#include "io/json.h"
+#include <ctype.h>
+#include <gmshc.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ACTION "ONELAB/Action"
+
+void sf_window_option(const char *name, double value) {
+    int ierr = 0;
+    gmshOptionSetNumber(name, value, &ierr);
+}
+
+static int initialize(void) {
+    char name[] = "softfall-gui";
+    char *argv[] = {name, NULL};
+    int ierr = 0;
+#if GMSH_API_VERSION_MAJOR > 4 || GMSH_API_VERSION_MINOR >= 9
+    gmshInitialize(1, argv, 1, 0, &ierr);
+#else
+    gmshInitialize(1, argv, 1, &ierr);
+#endif
+    return ierr;
+}
+
+/* gmsh by itself would leave options in the home folder, and a mesh and a database beside the geometry. */
+static void write_nothing(void) {
+    static const char *const off[] = {"General.SaveOptions",
+                                      "General.SaveSession",
+                                      "Solver.AutoSaveDatabase",
+                                      "Solver.AutoLoadDatabase",
+                                      "Solver.AutoArchiveOutputFiles",
+                                      "Solver.AutoMesh",
+                                      "General.AbortOnError",
+                                      "General.ExpertMode",
+                                      "Mesh.SaveAll"};
+    for (size_t k = 0; k < sizeof off / sizeof off[0]; k++)
+        sf_window_option(off[k], 0);
+    sf_window_option("Solver.AutoCheck", 1);
+}
+
+/* The side view, z upwards: a quarter turn about x. */
+static void look_from_the_side(void) {
+    sf_window_option("General.Trackball", 1);
+    sf_window_option("General.TrackballQuaternion0", 0.70710678);
+    sf_window_option("General.TrackballQuaternion1", 0);
+    sf_window_option("General.TrackballQuaternion2", 0);
+    sf_window_option("General.TrackballQuaternion3", 0.70710678);
+    sf_window_option("General.Orthographic", 1);
+}
+
+sf_status sf_window_start(sf_error *err) {
+    if (initialize() != 0)
+        return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot be started");
+    write_nothing();
+    look_from_the_side();
+    sf_window_option("General.Terminal", 0);
+    sf_window_option("General.MenuWidth", 420);
+    sf_window_option("General.GraphicsWidth", 1240);
+    sf_window_option("General.GraphicsHeight", 900);
+    sf_window_option("Geometry.PointSize", 0);
+    return SF_OK;
+}
+
+sf_status sf_window_open(sf_error *err) {
+    int ierr = 0;
+    const char *display = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
+    if ((!display || !*display) && (!wayland || !*wayland))
+        return SF_FAIL(
+            err, SF_ERR_IO,
+            "there is no display to open a window on (DISPLAY is not set); softfall-pre, softfall-solve and "
+            "softfall-post need none");
+    gmshOnelabSet(
+        "[{\"type\":\"string\",\"name\":\"ONELAB/Button\",\"values\":[\"Run\",\"run\"],\"visible\":false},"
+        "{\"type\":\"string\",\"name\":\"" ACTION "\",\"values\":[\"\"],\"visible\":false}]",
+        "json", &ierr);
+    gmshFltkInitialize(&ierr);
+    if (ierr != 0)
+        return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot open its window");
+    return SF_OK;
+}
+
+bool sf_window_wait(double seconds) {
+    int ierr = 0;
+    if (gmshFltkIsAvailable(&ierr) != 1)
+        return false;
+    gmshFltkWait(seconds, &ierr);
+    return gmshFltkIsAvailable(&ierr) == 1;
+}
+
+void sf_window_end(void) {
+    int ierr = 0;
+    gmshFinalize(&ierr);
+}
+
+void sf_window_say(const char *text) {
+    int ierr = 0;
+    gmshFltkSetStatusMessage(text, 0, &ierr);
+}
+
+void sf_window_refresh(void) {
+    int ierr = 0;
+    gmshFltkUpdate(&ierr);
+    gmshGraphicsDraw(&ierr);
+}
+
+void sf_window_branch(const char *name, bool open) {
+    int ierr = 0;
+    if (open)
+        gmshFltkOpenTreeItem(name, &ierr);
+    else
+        gmshFltkCloseTreeItem(name, &ierr);
+}
+
+/* ---- entries ---- */
+
+bool sf_window_text(const char *name, char *text, size_t size) {
+    char **value = NULL;
+    size_t count = 0;
+    int ierr = 0;
+    gmshOnelabGetString(name, &value, &count, &ierr);
+    snprintf(text, size, "%s", count > 0 ? value[0] : "");
+    for (size_t k = 0; k < count; k++)
+        gmshFree(value[k]);
+    gmshFree(value);
+    return ierr == 0 && count > 0;
+}
+
+bool sf_window_number(const char *name, double *number) {
+    double *value = NULL;
+    size_t count = 0;
+    int ierr = 0;
+    gmshOnelabGetNumber(name, &value, &count, &ierr);
+    if (count > 0)
+        *number = value[0];
+    gmshFree(value);
+    return ierr == 0 && count > 0;
+}
+
+void sf_window_set_text(const char *name, const char *text) {
+    char *copy = strdup(text);
+    int ierr = 0;
+    if (copy)
+        gmshOnelabSetString(name, &copy, 1, &ierr);
+    free(copy);
+}
+
+void sf_window_set_number(const char *name, double number) {
+    int ierr = 0;
+    gmshOnelabSetNumber(name, &number, 1, &ierr);
+}
+
+bool sf_window_take_action(char *action, size_t size) {
+    sf_window_text(ACTION, action, size);
+    if (!*action)
+        return false;
+    sf_window_set_text(ACTION, "");
+    return true;
+}
+
+/* The words of "a|b" with their places. */
+static void put_words(sf_json *json, const char *words, bool labels) {
+    int place = 0;
+    for (const char *at = words; *at; place++) {
+        size_t length = strcspn(at, "|");
+        char word[64];
+        snprintf(word, sizeof word, "%.*s", (int)length, at);
+        if (labels)
+            sf_json_integer(json, word, place);
+        else
+            sf_json_integer(json, NULL, place);
+        at += length + (at[length] == '|');
+    }
+}
+
+static void put_number(sf_json *json, const sf_entry *e) {
+    sf_json_open(json, "values", '[');
+    sf_json_number(json, NULL, e->number);
+    sf_json_close(json, ']');
+    if (e->kind == SF_ENTRY_NUMBER && e->high > e->low) {
+        sf_json_number(json, "min", e->low);
+        sf_json_number(json, "max", e->high);
+        sf_json_number(json, "step", e->step);
+    }
+    if (e->kind == SF_ENTRY_NUMBER)
+        return;
+    sf_json_open(json, "choices", '[');
+    put_words(json, e->kind == SF_ENTRY_WORD ? e->words : "0|1", false);
+    sf_json_close(json, ']');
+    if (e->kind == SF_ENTRY_WORD) {
+        sf_json_open(json, "valueLabels", '{');
+        put_words(json, e->words, true);
+        sf_json_close(json, '}');
+    }
+}
+
+static void put_attributes(sf_json *json, const sf_entry *e) {
+    sf_json_open(json, "attributes", '{');
+    if (e->colour)
+        sf_json_text(json, "Highlight", e->colour);
+    if (e->closed)
+        sf_json_text(json, "Closed", "1");
+    if (e->kind == SF_ENTRY_BUTTON) {
+        sf_json_text(json, "Macro", "Action");
+        sf_json_text(json, "Aspect", e->aspect ? e->aspect : "MiddleButton");
+    }
+    sf_json_close(json, '}');
+}
+
+static void send(const char *json) {
+    int ierr = 0;
+    gmshOnelabSet(json, "json", &ierr);
+}
+
+void sf_window_put(const sf_entry *e) {
+    bool number = e->kind == SF_ENTRY_WORD || e->kind == SF_ENTRY_FLAG || e->kind == SF_ENTRY_NUMBER;
+    char *text = NULL;
+    size_t size = 0;
+    sf_json json = {.file = open_memstream(&text, &size), .empty = true};
+    if (!json.file)
+        return;
+    sf_json_open(&json, NULL, '{');
+    sf_json_text(&json, "type", number ? "number" : "string");
+    sf_json_text(&json, "name", e->name);
+    if (e->help)
+        sf_json_text(&json, "help", e->help);
+    sf_json_bool(&json, "readOnly", e->kind == SF_ENTRY_SHOWN);
+    if (e->kind == SF_ENTRY_FILE)
+        sf_json_text(&json, "kind", "file");
+    if (number) {
+        put_number(&json, e);
+    } else {
+        sf_json_open(&json, "values", '[');
+        sf_json_text(&json, NULL, e->text ? e->text : "");
+        sf_json_close(&json, ']');
+    }
+    put_attributes(&json, e);
+    sf_json_close(&json, '}');
+    fclose(json.file);
+    send(text);
+    free(text);
+}
+
+void sf_window_remove(const char *name) {
+    int ierr = 0;
+    gmshOnelabClear(name, &ierr);
+}
+
+/* Sends an entry of a geometry again, with `addition` at its end: of two members of one name the last counts.
+ */
+static void change(const char *name, const char *addition) {
+    char *json = NULL, *changed = NULL;
+    int ierr = 0;
+    gmshOnelabGet(&json, name, "json", &ierr);
+    char *end = json ? strrchr(json, '}') : NULL;
+    if (ierr == 0 && end && asprintf(&changed, "%.*s, %s }", (int)(end - json), json, addition) >= 0)
+        send(changed);
+    free(changed);
+    gmshFree(json);
+}
+
+void sf_window_colour_number(const char *name, const char *colour) {
+    char attributes[96];
+    snprintf(attributes, sizeof attributes, "\"attributes\":{\"Highlight\":\"%s\"}", colour ? colour : "");
+    change(name, attributes);
+}
+
+void sf_window_lock_number(const char *name) {
+    change(name, "\"readOnly\":true");
+}
+
+void sf_window_visit_numbers(void (*visit)(void *user, const char *name), void *user) {
+    char **names = NULL;
+    size_t count = 0;
+    int ierr = 0;
+    gmshOnelabGetNames(&names, &count, "", &ierr);
+    for (size_t k = 0; k < count; k++) {
+        double value;
+        if (!isdigit((unsigned char)names[k][0]) && strncmp(names[k], "ONELAB", 6) != 0 &&
+            sf_window_number(names[k], &value))
+            visit(user, names[k]);
+        gmshFree(names[k]);
+    }
+    gmshFree(names);
+}
+
+sf_status sf_window_write_picture(const char *path, sf_error *err) {
+    int ierr = 0;
+    gmshWrite(path, &ierr);
+    return ierr == 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "gmsh cannot write the picture %s", path);
+}

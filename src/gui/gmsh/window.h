@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* gmsh's window and its tree of parameters (ONELAB), by gmsh's C API. The folder src/gui/gmsh is the only
+ * part of the window that calls gmsh; nothing in it knows of cases and runs. One thread. */
+#ifndef SF_GUI_GMSH_WINDOW_H
+#define SF_GUI_GMSH_WINDOW_H
+
+#include "core/error.h"
+#include <stdbool.h>
+#include <stddef.h>
+
+/* What stands at an entry of the tree. */
+typedef enum sf_entry_kind {
+    SF_ENTRY_TEXT,   /* a text that can be changed */
+    SF_ENTRY_FILE,   /* the same, with a chooser of files */
+    SF_ENTRY_WORD,   /* one of `words` */
+    SF_ENTRY_FLAG,   /* a check box: number 0 or 1 */
+    SF_ENTRY_NUMBER, /* a number within low and high, by steps */
+    SF_ENTRY_SHOWN,  /* a text that cannot be changed */
+    SF_ENTRY_BUTTON, /* a click puts `text` into the action */
+} sf_entry_kind;
+
+/* An entry of the tree. Strings are borrowed during the call. */
+typedef struct sf_entry {
+    const char *name; /* "/" separates branches; digits in front of a word sort and are not shown */
+    sf_entry_kind kind;
+    const char *text;
+    double number, low, high, step;
+    const char *words;  /* of SF_ENTRY_WORD: "a|b" */
+    const char *help;   /* shown beside the pointer; NULL: none */
+    const char *colour; /* of the field, "LightGreen"; NULL: none */
+    const char *aspect; /* of a button: "LeftButton", "MiddleButton", "RightButton" */
+    bool closed;        /* its branch begins closed */
+} sf_entry;
+
+/* Starts gmsh with the user's options, so set that it writes no file by itself; no window yet. */
+sf_status sf_window_start(sf_error *err);
+/* Opens the window. SF_ERR_IO without a display. */
+sf_status sf_window_open(sf_error *err);
+/* Handles what happens within so many seconds; false once the user has closed the window. */
+bool sf_window_wait(double seconds);
+/* Releases gmsh. */
+void sf_window_end(void);
+
+/* The button or the event ("check": a value has changed) since the last call; false: none. */
+bool sf_window_take_action(char *action, size_t size);
+/* The line below the picture. */
+void sf_window_say(const char *text);
+/* Shows the entries and the picture as they now are. */
+void sf_window_refresh(void);
+/* Opens or closes a branch. */
+void sf_window_branch(const char *name, bool open);
+
+/* Makes the entry, or replaces it with its value. */
+void sf_window_put(const sf_entry *entry);
+void sf_window_remove(const char *name);
+/* Values as they stand in the tree; false: there is no such entry. */
+bool sf_window_text(const char *name, char *text, size_t size);
+bool sf_window_number(const char *name, double *number);
+void sf_window_set_text(const char *name, const char *text);
+void sf_window_set_number(const char *name, double number);
+/* Colours an entry that a geometry has made; NULL: no colour. */
+void sf_window_colour_number(const char *name, const char *colour);
+/* Shows a value of a geometry as one that cannot be changed. */
+void sf_window_lock_number(const char *name);
+/* Calls `visit` with the name of each number whose name does not begin with a digit: those of geometries. */
+void sf_window_visit_numbers(void (*visit)(void *user, const char *name), void *user);
+
+/* An option of gmsh. */
+void sf_window_option(const char *name, double value);
+/* The picture (without the tree) as a PNG file. */
+sf_status sf_window_write_picture(const char *path, sf_error *err);
+
+#endif

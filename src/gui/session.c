@@ -1,0 +1,535 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gui/session.h"
+
+#include "gui/cache.h"
+#include "gui/checks.h"
+#include "gui/outcome.h"
+#include "gui/programs.h"
+#include "io/folder.h"
+#include "io/model_io.h"
+#include "io/plain_file.h"
+#include "io/replace.h"
+#include "post/verdict.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char STATUS[] = "1Drop/7status", FOLDER[] = "1Drop/8run folder", FRAME[] = "1Drop/9frame";
+static const char BAD[] = "LightCoral";
+
+/* ---- what is told ---- */
+
+static void tell(sf_session *s, bool failed, const char *sentence) {
+    if (strcmp(s->sentence, sentence) == 0 && s->failed == failed)
+        return;
+    snprintf(s->sentence, sizeof s->sentence, "%.1099s", sentence);
+    s->failed = failed;
+    sf_window_put(&(sf_entry){.name = STATUS,
+                              .kind = SF_ENTRY_SHOWN,
+                              .text = s->sentence,
+                              .help = s->sentence,
+                              .colour = failed ? BAD : NULL});
+    sf_fields_mark(&s->fields, failed ? s->sentence : NULL);
+    sf_window_say(s->sentence);
+    sf_window_refresh();
+}
+
+static void tell_error(sf_session *s, const sf_error *err) {
+    tell(s, true, err->text);
+}
+
+static void show_buttons(void) {
+    static const char *const button[][3] = {
+        {"1Drop/1Mesh", "mesh", "mesh the geometry and check the model (softfall-pre)"},
+        {"1Drop/2Run", "run", "simulate the drop; one that was stopped goes on"},
+        {"1Drop/3Stop", "stop", "end the run after the present step; Run goes on from there"},
+        {"1Drop/4Report", "report", "open report.html"},
+        {"1Drop/5ParaView", "paraview", "open the frames in ParaView"},
+        {"1Drop/6Save case", "save",
+         "write the case with its geometry and material into a new folder of its own"},
+    };
+    for (size_t k = 0; k < sizeof button / sizeof button[0]; k++)
+        sf_window_put(&(sf_entry){
+            .name = button[k][0], .kind = SF_ENTRY_BUTTON, .text = button[k][1], .help = button[k][2]});
+}
+
+static void show_folder(const sf_session *s) {
+    sf_window_put(
+        &(sf_entry){.name = FOLDER,
+                    .kind = SF_ENTRY_SHOWN,
+                    .text = *s->at.path ? s->at.path : s->cache,
+                    .help = "runs are kept here; nothing is written beside the case and its geometry"});
+}
+
+/* ---- the case and its geometry ---- */
+
+/* Puts the missile above the pad as the case says; softfall-pre does it exactly. */
+static void show_missile(sf_session *s, const sf_triangles *t) {
+    double low[3], high[3], shift[3] = {0};
+    int64_t n = 3 * t->count;
+    const sf_case *c = &s->case_file;
+    sf_body body = {.node_count = n, .position = t->corner, .face_count = t->count};
+    sf_error none = SF_ERROR_INIT;
+    body.face = sf_alloc(&none, 4 * (unsigned long)t->count + 1, sizeof *body.face, "the missile's picture");
+    double *move = sf_alloc(&none, 3 * (unsigned long)n + 1, sizeof *move, "the missile's picture");
+    sf_geometry_box(low, high);
+    shift[2] = high[2] - t->low[2] + c->missile_card.gap / c->length_unit;
+    for (int d = 0; d < 2 && c->position_given; d++)
+        shift[d] = c->missile_position[d] / c->length_unit;
+    for (int64_t k = 0; k < 3 * n && none.status == SF_OK; k++)
+        t->corner[k] += shift[k % 3];
+    for (int64_t k = 0; k < 4 * t->count && none.status == SF_OK; k++)
+        body.face[k] = k % 4 == 3 ? -1 : (int32_t)(3 * (k / 4) + k % 4);
+    if (none.status == SF_OK && sf_view_begin(SF_PICTURE_MISSILE, "missile", &body, &none) == SF_OK)
+        sf_view_add(SF_PICTURE_MISSILE, 0, 0, &body, move, NULL);
+    free(body.face);
+    free(move);
+}
+
+static void forget_results(sf_session *s) {
+    sf_shape_free(&s->shape);
+    s->seen = (sf_watch_stamp){0};
+    s->frames = 0;
+    s->frame = 0;
+    sf_view_remove(SF_PICTURE_PAD);
+    sf_view_remove(SF_PICTURE_MISSILE);
+    sf_view_remove(SF_PICTURE_CURVE);
+    sf_window_remove(FRAME);
+    sf_outcome_clear();
+}
+
+/* Shows the geometries with the parameters of the tree. gmsh shows one model only: the missile is a picture.
+ */
+static sf_status show_geometry(sf_session *s, sf_error *err) {
+    const sf_case *c = &s->case_file;
+    sf_triangles missile = {0};
+    forget_results(s);
+    sf_geometry_clear();
+    if (s->with_missile && sf_geometry_read_surface(c->missile.path, &missile, err) != SF_OK)
+        return err->status;
+    if (sf_geometry_show(c->pad.path, err) == SF_OK) {
+        sf_fields_take_defaults(&s->fields);
+        if (missile.count > 0)
+            show_missile(s, &missile);
+    }
+    free(missile.corner);
+    return err->status;
+}
+
+static sf_status add_geometry(const char *path, const char *group, const sf_geo_source *source,
+                              const sf_fields *before, sf_fields *fields, sf_error *err) {
+    sf_geo_names *names = sf_alloc(err, 1, sizeof *names, "names of parameters");
+    if (names && sf_geo_names_read(path, names, err) == SF_OK)
+        sf_fields_add_geometry(group, names, source, before, fields);
+    free(names);
+    return err->status;
+}
+
+/* Reads the case anew. */
+static sf_status read_case(sf_session *s, sf_error *err) {
+    sf_case fresh;
+    sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
+    if (!before)
+        return err->status;
+    *before = s->fields;
+    if (sf_fields_read(s->case_path, NULL, &s->fields, &fresh, err) == SF_OK) {
+        sf_case_free(&s->case_file);
+        s->case_file = fresh;
+        s->with_missile = fresh.missile.path != NULL;
+        if (add_geometry(fresh.pad.path, "geometry.parameters", &fresh.pad, before, &s->fields, err) ==
+                SF_OK &&
+            s->with_missile)
+            add_geometry(fresh.missile.path, "geometry.missile_parameters", &fresh.missile, before,
+                         &s->fields, err);
+    }
+    free(before);
+    return err->status;
+}
+
+/* The sentence of the case with the values of the window, as the programs would say it. */
+static sf_status check_values(const sf_session *s, sf_error *err) {
+    sf_overrides o;
+    sf_case c;
+    if (sf_fields_overrides(&s->fields, &o, err) == SF_OK &&
+        sf_case_read(s->case_path, o.count, (const char *const *)o.text, NULL, &c, err) == SF_OK)
+        sf_case_free(&c);
+    sf_overrides_free(&o);
+    return err->status;
+}
+
+/* After an edit of the window, or of the files if `reread`. */
+static void begin_anew(sf_session *s, bool reread, bool geometry) {
+    sf_error err = SF_ERROR_INIT;
+    s->activity = sf_activity_next(s->activity, SF_EDIT);
+    s->at.path[0] = '\0';
+    sf_checks_clear();
+    sf_plain_forget();
+    if (reread && read_case(s, &err) == SF_OK)
+        sf_fields_show(&s->fields);
+    if (reread) {
+        s->watch.count = 0;
+        sf_watch_register(&s->watch, 0);
+    }
+    if (err.status == SF_OK && (reread || geometry))
+        show_geometry(s, &err);
+    else if (err.status == SF_OK)
+        forget_results(s);
+    if (err.status == SF_OK)
+        check_values(s, &err);
+    show_folder(s);
+    if (err.status != SF_OK)
+        tell_error(s, &err);
+    else
+        tell(s, false, "ready: Mesh checks the model, Run simulates the drop");
+    sf_window_refresh();
+}
+
+void sf_session_begin(sf_session *s) {
+    sf_error err = SF_ERROR_INIT;
+    sf_cache_find(s->cache, sizeof s->cache, &err);
+    show_buttons();
+    begin_anew(s, true, true);
+    if (err.status != SF_OK)
+        tell_error(s, &err);
+}
+
+/* ---- programs ---- */
+
+/* Finds the run's folder and makes it. */
+static sf_status locate(sf_session *s, sf_overrides *o, sf_error *err) {
+    const char *slash = strrchr(s->case_path, '/');
+    char label[64], absolute[PATH_MAX] = "";
+    if (realpath(s->case_path, absolute))
+        slash = strrchr(absolute, '/');
+    /* the name of the case's folder tells more than case.cfg */
+    const char *end = slash, *begin = end;
+    while (begin && begin > absolute && begin[-1] != '/')
+        begin--;
+    snprintf(label, sizeof label, "%.*s", begin ? (int)(end - begin) : 0, begin ? begin : "");
+    if (sf_fields_overrides(&s->fields, o, err) != SF_OK ||
+        sf_run_folder_name(s->cache, *label ? label : "case", s->case_path, o->count,
+                           (const char *const *)o->text, &s->at, err) != SF_OK ||
+        sf_folder_own(s->at.path, err) != SF_OK)
+        s->at.path[0] = '\0';
+    else
+        show_folder(s);
+    return err->status;
+}
+
+static void close_log(sf_session *s) {
+    if (s->log)
+        fclose(s->log);
+    s->log = NULL;
+}
+
+/* A new log of the program `name` in the run's folder. */
+static sf_status open_log(sf_session *s, sf_error *err) {
+    close_log(s);
+    sf_folder_remove_file(s->at.log);
+    s->log = sf_replace_create(s->at.log, err);
+    return err->status;
+}
+
+static void read_log(const sf_session *s, char **text) {
+    sf_error none = SF_ERROR_INIT;
+    *text = NULL;
+    sf_plain_forget();
+    sf_plain_read(s->at.log, NULL, SF_PLAIN_TEXT, text, NULL, &none);
+}
+
+static sf_status start_pre(sf_session *s, sf_error *err) {
+    sf_overrides o = {0};
+    if (locate(s, &o, err) == SF_OK && open_log(s, err) == SF_OK)
+        sf_programs_pre(&s->child, s->case_path, &s->at, s->cache, o.count, (const char *const *)o.text,
+                        s->log, err);
+    sf_overrides_free(&o);
+    return err->status;
+}
+
+/* A run that was stopped goes on if its model is the same: softfall-solve refuses another one. */
+static sf_status start_solve(sf_session *s, bool resume, sf_error *err) {
+    s->resuming = resume;
+    s->told = false;
+    return open_log(s, err) == SF_OK ? sf_programs_solve(&s->child, &s->at, resume, s->threads, s->log, err)
+                                     : err->status;
+}
+
+static bool is_there(const char *path) {
+    return sf_watch_look(path).inode != 0;
+}
+
+/* Starts the program of the activity that begins. */
+static void start(sf_session *s) {
+    sf_error err = SF_ERROR_INIT;
+    char text[160];
+    switch (s->activity) {
+    case SF_MESHING:
+    case SF_PREPARING:
+        start_pre(s, &err);
+        break;
+    case SF_RUNNING:
+        start_solve(s, is_there(s->at.checkpoint) && is_there(s->at.results), &err);
+        break;
+    case SF_REPORTING:
+        if (open_log(s, &err) == SF_OK)
+            sf_programs_post(&s->child, &s->at, s->log, &err);
+        break;
+    default:
+        return;
+    }
+    snprintf(text, sizeof text, "%s ...%s", sf_activity_name(s->activity),
+             s->activity == SF_RUNNING && s->resuming ? " (from the checkpoint)" : "");
+    if (err.status == SF_OK)
+        tell(s, false, text);
+    else
+        s->activity = SF_FAILED;
+    if (err.status != SF_OK)
+        tell_error(s, &err);
+}
+
+/* ---- results ---- */
+
+static void show_frame(sf_session *s, int frame) {
+    s->frame = frame;
+    sf_window_put(&(sf_entry){.name = FRAME,
+                              .kind = SF_ENTRY_NUMBER,
+                              .number = s->frame,
+                              .low = 0,
+                              .high = s->frames - 1,
+                              .step = 1,
+                              .help = "the frame that is shown; drag it, or play it with the buttons below"});
+    sf_view_show_frame(s->frame);
+}
+
+/* Begins the pictures of a model in place of those before. */
+static sf_status begin_pictures(sf_session *s, sf_error *err) {
+    if (sf_view_begin(SF_PICTURE_PAD, "pad, von Mises stress [kPa]", &s->shape.pad, err) == SF_OK)
+        sf_view_begin(SF_PICTURE_MISSILE, "missile", &s->shape.missile, err);
+    s->frames = 0;
+    return err->status;
+}
+
+/* Pad and missile as softfall-pre has made them. */
+static void show_model(sf_session *s) {
+    sf_error err = SF_ERROR_INIT;
+    sf_model m = {0};
+    double *zero = NULL;
+    forget_results(s);
+    if (sf_model_read(s->at.model, &m, NULL, &err) == SF_OK &&
+        sf_shape_of_model(&m, s->case_file.length_unit, &s->shape, &err) == SF_OK &&
+        begin_pictures(s, &err) == SF_OK) {
+        int64_t most = s->shape.pad.node_count + s->shape.missile.node_count;
+        zero = sf_alloc(&err, 3 * (unsigned long)most, sizeof *zero, "a picture");
+    }
+    if (zero) {
+        sf_view_add(SF_PICTURE_PAD, 0, 0, &s->shape.pad, zero, zero);
+        sf_view_add(SF_PICTURE_MISSILE, 0, 0, &s->shape.missile, zero, NULL);
+    }
+    free(zero);
+    sf_model_free(&m);
+    sf_shape_free(&s->shape);
+}
+
+/* The frame of the largest acceleration. */
+static int find_peak(const sf_results *r) {
+    int best = 0;
+    for (int k = 1; k < r->frame_count; k++)
+        if (r->frames[k].acceleration > r->frames[best].acceleration)
+            best = k;
+    return best;
+}
+
+static void add_frames(sf_session *s, const sf_results *r, sf_error *err) {
+    for (; s->frames < r->frame_count && err->status == SF_OK; s->frames++) {
+        const sf_frame_head *head = &r->frames[s->frames];
+        sf_shape_frame f;
+        if (sf_shape_read_frame(&s->shape, r, head, &f, err) != SF_OK)
+            return;
+        sf_view_add(SF_PICTURE_PAD, s->frames, 1e3 * head->time, &s->shape.pad, f.pad, f.stress);
+        sf_view_add(SF_PICTURE_MISSILE, s->frames, 1e3 * head->time, &s->shape.missile, f.missile, NULL);
+        sf_shape_frame_free(&f);
+    }
+}
+
+/* results.h5 is complete at any instant, but its frames may have moved into a newer one meanwhile: then the
+ * next look finds that. */
+static void show_results(sf_session *s, bool whole) {
+    sf_error err = SF_ERROR_INIT;
+    sf_results r;
+    char line[SF_VERDICT_LINE_SIZE] = "";
+    sf_watch_stamp now = sf_watch_look(s->at.results);
+    if (!*s->at.path || now.inode == 0 || (!whole && sf_watch_same(&now, &s->seen)))
+        return;
+    sf_plain_forget();
+    if (sf_results_open(s->at.results, &r, &err) != SF_OK)
+        return;
+    if (s->shape.pad.node_count == 0 || s->frames > r.frame_count) {
+        sf_shape_free(&s->shape);
+        if (sf_shape_of_results(&r, s->case_file.length_unit, &s->shape, &err) == SF_OK)
+            begin_pictures(s, &err);
+    }
+    add_frames(s, &r, &err);
+    if (s->frames > 0)
+        show_frame(s, whole && err.status == SF_OK ? find_peak(&r) : s->frames - 1);
+    sf_outcome_plot(&r);
+    if (whole && err.status == SF_OK)
+        sf_outcome_show(&r, line, sizeof line, &err);
+    if (err.status == SF_OK)
+        s->seen = now;
+    sf_results_close(&r);
+    sf_window_refresh();
+}
+
+/* ---- the end of a program ---- */
+
+static void tell_done(sf_session *s) {
+    char text[PATH_MAX + 64];
+    switch (s->activity) {
+    case SF_MESHED:
+        tell(s, false, "meshed: see Checks");
+        break;
+    case SF_STOPPED:
+        snprintf(text, sizeof text, "stopped%s",
+                 is_there(s->at.checkpoint) ? ": Run goes on from the checkpoint" : "");
+        tell(s, false, text);
+        break;
+    case SF_DONE:
+        tell(s, false, "done: see Results");
+        break;
+    default:
+        break;
+    }
+}
+
+static void fail(sf_session *s, const char *log, int code) {
+    char sentence[1024];
+    sf_checks_sentence(log ? log : "", sentence, sizeof sentence);
+    if (!*sentence)
+        snprintf(sentence, sizeof sentence, "the program ended with exit code %d; see %.900s", code,
+                 s->at.log);
+    tell(s, true, sentence);
+}
+
+/* What the program that has ended leaves to show. */
+static void take_end(sf_session *s, sf_activity before, const char *log) {
+    if ((before == SF_MESHING || before == SF_PREPARING) && log && s->activity != SF_FAILED) {
+        sf_checks_show(log);
+        show_model(s);
+    }
+    if (before == SF_RUNNING || before == SF_STOPPING || before == SF_REPORTING)
+        show_results(s, true);
+}
+
+static void end_program(sf_session *s, int code) {
+    sf_activity before = s->activity;
+    sf_event event = code == 0                                              ? SF_CHILD_DONE
+                     : code == SF_INTERRUPTED || s->activity == SF_STOPPING ? SF_CHILD_INTERRUPTED
+                                                                            : SF_CHILD_FAILED;
+    char *log = NULL;
+    close_log(s);
+    read_log(s, &log);
+    if (before == SF_RUNNING && event == SF_CHILD_FAILED && s->resuming &&
+        !s->told) { /* it cannot be resumed */
+        sf_error err = SF_ERROR_INIT;
+        free(log);
+        if (start_solve(s, false, &err) != SF_OK)
+            tell_error(s, &err);
+        return;
+    }
+    s->activity = sf_activity_next(before, event);
+    take_end(s, before, log);
+    if (s->activity == SF_FAILED)
+        fail(s, log, code);
+    else if (sf_activity_is_busy(s->activity))
+        start(s);
+    else
+        tell_done(s);
+    free(log);
+}
+
+static void tell_progress(sf_session *s) {
+    char *log = NULL, line[400], text[480];
+    read_log(s, &log);
+    sf_checks_progress(log ? log : "", line, sizeof line);
+    s->told = s->told || *line;
+    snprintf(text, sizeof text, "%s: %s", sf_activity_name(s->activity), line);
+    if (*line)
+        tell(s, false, text);
+    free(log);
+}
+
+void sf_session_look(sf_session *s) {
+    int code;
+    if (s->activity == SF_RUNNING) {
+        tell_progress(s);
+        show_results(s, false);
+    }
+    if (sf_child_poll(&s->child, &code))
+        end_program(s, code);
+    const char *changed = sf_activity_is_busy(s->activity) ? NULL : sf_watch_changed(&s->watch);
+    if (changed)
+        begin_anew(s, true, true);
+}
+
+/* ---- buttons ---- */
+
+static void check_edits(sf_session *s) {
+    bool of_case, of_geometry;
+    double frame;
+    if (s->frames > 0 && sf_window_number(FRAME, &frame) && (int)lround(frame) != s->frame) {
+        s->frame = (int)lround(frame);
+        sf_view_show_frame(s->frame);
+        sf_window_refresh();
+    }
+    if (sf_activity_is_busy(s->activity))
+        return; /* the values of the next run */
+    sf_fields_take(&s->fields, &of_case, &of_geometry);
+    if (of_case || of_geometry)
+        begin_anew(s, false, of_geometry);
+}
+
+static void open_product(sf_session *s, const char *program, const char *name) {
+    sf_error err = SF_ERROR_INIT;
+    char path[SF_RUN_PATH_SIZE + 64];
+    snprintf(path, sizeof path, "%s/report/%s", s->at.path, name);
+    if (!*s->at.path || !is_there(path))
+        SF_FAIL(&err, SF_ERR_INPUT, "there is no %s yet: Run makes it", name);
+    else
+        sf_child_leave((const char *const[]){program, path, NULL}, &err);
+    if (err.status != SF_OK)
+        tell_error(s, &err);
+}
+
+static void press(sf_session *s, sf_event event) {
+    sf_activity before = s->activity;
+    check_edits(s);
+    s->activity = sf_activity_next(s->activity, event);
+    if (s->activity == before && event != SF_PRESS_STOP && sf_activity_is_busy(before))
+        return;
+    if (event == SF_PRESS_STOP)
+        sf_child_ask_to_end(&s->child);
+    else
+        start(s);
+}
+
+void sf_session_act(sf_session *s, const char *action) {
+    if (strcmp(action, "mesh") == 0)
+        press(s, SF_PRESS_MESH);
+    else if (strcmp(action, "run") == 0 || strcmp(action, "compute") == 0)
+        press(s, SF_PRESS_RUN);
+    else if (strcmp(action, "stop") == 0)
+        press(s, SF_PRESS_STOP);
+    else if (strcmp(action, "report") == 0)
+        open_product(s, "xdg-open", "report.html");
+    else if (strcmp(action, "paraview") == 0)
+        open_product(s, "paraview", "pad.xdmf");
+    else
+        check_edits(s);
+}
+
+void sf_session_end(sf_session *s) {
+    sf_child_end(&s->child, 20);
+    close_log(s);
+    sf_shape_free(&s->shape);
+    sf_case_free(&s->case_file);
+}

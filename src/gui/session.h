@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One case in the window: its fields, its geometry, its run, and what is shown of them. */
+#ifndef SF_GUI_SESSION_H
+#define SF_GUI_SESSION_H
+
+#include "campaign/run_folder.h"
+#include "gui/fields.h"
+#include "gui/gmsh/geometry.h"
+#include "gui/shape.h"
+#include "gui/state.h"
+#include "gui/watch.h"
+#include "io/child.h"
+
+typedef struct sf_session {
+    const char *case_path; /* borrowed */
+    int threads;           /* of softfall-solve; 0: as it chooses */
+    char cache[PATH_MAX];  /* its runs are there */
+    sf_case case_file;     /* without the changes of the window */
+    sf_fields fields;
+    sf_watch watch; /* what was read of the case and its geometries */
+    sf_activity activity;
+    char sentence[1100]; /* the last one told */
+    bool failed;         /* it is an error */
+    bool with_missile;   /* the missile has a geometry of its own */
+
+    sf_run_folder at; /* of the present values; path "" until Mesh or Run */
+    sf_child child;
+    FILE *log;     /* its output */
+    bool resuming; /* softfall-solve goes on from a checkpoint */
+    bool told;     /* softfall-solve has told its progress */
+
+    sf_shape shape;      /* that is shown; pad.node_count 0: none */
+    sf_watch_stamp seen; /* of the results.h5 that is shown */
+    int frames;          /* of it that are shown */
+    int frame;           /* shown, as the tree has it */
+} sf_session;
+
+/* Reads the case and shows it in the window. Failures are told there. Release with sf_session_end. */
+void sf_session_begin(sf_session *session);
+/* Ends the program that runs, so that its results can be resumed; releases. */
+void sf_session_end(sf_session *session);
+
+/* A button ("mesh", "run", "stop", "report", "paraview", "save") or "check". */
+void sf_session_act(sf_session *session, const char *action);
+/* Looks after the program that runs, its results and the files that were read. */
+void sf_session_look(sf_session *session);
+
+#endif

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the window is doing, and what a button or the end of a program makes of it. */
+#ifndef SF_GUI_STATE_H
+#define SF_GUI_STATE_H
+
+#include <stdbool.h>
+
+/* Name as it is shown. */
+#define SF_ACTIVITIES(X)                                                                                     \
+    X(IDLE, "ready")                                                                                         \
+    X(MESHING, "meshing") /* softfall-pre for the checks */                                                  \
+    X(MESHED, "meshed")                                                                                      \
+    X(PREPARING, "meshing before the run") /* softfall-pre for a run */                                      \
+    X(RUNNING, "running")                  /* softfall-solve */                                              \
+    X(STOPPING, "stopping")                /* it was asked to end */                                         \
+    X(STOPPED, "stopped")                  /* it can be resumed */                                           \
+    X(REPORTING, "writing the report")     /* softfall-post */                                               \
+    X(DONE, "done")                                                                                          \
+    X(FAILED, "failed")
+
+#define SF_ACTIVITY_CONSTANT(constant, name) SF_##constant,
+typedef enum sf_activity { SF_ACTIVITIES(SF_ACTIVITY_CONSTANT) SF_ACTIVITY_COUNT } sf_activity;
+#undef SF_ACTIVITY_CONSTANT
+
+typedef enum sf_event {
+    SF_PRESS_MESH,
+    SF_PRESS_RUN,
+    SF_PRESS_STOP,
+    SF_CHILD_DONE,        /* the program ended well */
+    SF_CHILD_INTERRUPTED, /* it ended because it was asked to */
+    SF_CHILD_FAILED,
+    SF_EDIT, /* a value or a file has changed */
+    SF_EVENT_COUNT
+} sf_event;
+
+/* "ready", ...; static. */
+const char *sf_activity_name(sf_activity activity);
+/* A program is at work. */
+bool sf_activity_is_busy(sf_activity activity);
+/* The activity after the event; the same one where the event means nothing. */
+sf_activity sf_activity_next(sf_activity activity, sf_event event);
+
+#endif
