@@ -47,6 +47,7 @@ ALLOWED = {
     "solver/run/checkpoint": {"remove": "its own partial file"},
     "solver/run/output": {"remove": "its own partial files"},
     "solver/program/solve": {"remove": "results and checkpoint of an earlier run, with --force"},
+    "new/examples": {"list": "the folder of the examples"},
     "campaign/run_folder": {"open": "the folder of a drop, to ask whether a run has it locked"},
     "gui/cache": {"remove": "makes the user's folder of caches, which is not softfall's own"},
     "gui/gmsh/geometry": {"library": "the user's own geometry in the user's own window, as in gmsh"},

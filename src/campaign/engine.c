@@ -42,22 +42,10 @@ sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err) {
     return is_in_path("snakemake") ? SF_OK : missing(err);
 }
 
-/* A file that comes with softfall: share/softfall beside the folder of its programs. */
-static sf_status find_shared(const char *name, char path[PATH_MAX], sf_error *err) {
-    char program[PATH_MAX];
-    if (sf_process_find("softfall-batch", program, sizeof program, err) != SF_OK)
-        return err->status;
-    *strrchr(program, '/') = '\0';
-    if (snprintf(path, PATH_MAX, "%s/../share/softfall/%s", program, name) >= PATH_MAX ||
-        access(path, R_OK) != 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s, which comes with softfall, is missing: install it again", path);
-    return SF_OK;
-}
-
 /* The profile as Snakemake is told: a folder of ours, or what was given. */
 static sf_status find_profile(const char *name, char path[PATH_MAX], sf_error *err) {
     if (strcmp(name, "slurm") == 0)
-        return find_shared("slurm", path, err);
+        return sf_process_find_shared("slurm", path, PATH_MAX, err);
     snprintf(path, PATH_MAX, "%s", name);
     return SF_OK;
 }
@@ -73,7 +61,8 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
     char snakefile[PATH_MAX], found[PATH_MAX], program[PATH_MAX], file[PATH_MAX], folder[PATH_MAX],
         profile[PATH_MAX], shared[PATH_MAX], share[PATH_MAX], log[SF_RUN_PATH_SIZE], manifest_word[WORD_SIZE],
         program_word[WORD_SIZE], cores[32], threads[48];
-    if (sf_engine_check(engine, err) != SF_OK || find_shared("Snakefile", snakefile, err) != SF_OK ||
+    if (sf_engine_check(engine, err) != SF_OK ||
+        sf_process_find_shared("Snakefile", snakefile, sizeof snakefile, err) != SF_OK ||
         sf_process_find("softfall-batch", found, sizeof found, err) != SF_OK ||
         make_absolute(found, program, err) != SF_OK || make_absolute(manifest, file, err) != SF_OK ||
         (engine->profile && find_profile(engine->profile, profile, err) != SF_OK))
@@ -84,7 +73,7 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
     snprintf(program_word, sizeof program_word, "program=%s", program);
     snprintf(cores, sizeof cores, "%d", processors > 0 ? processors : 1);
     snprintf(threads, sizeof threads, "threads=%d", engine->job_threads > 0 ? engine->job_threads : 1);
-    if (find_shared("", shared, err) != SF_OK || !realpath(shared, share) ||
+    if (sf_process_find_shared("", shared, sizeof shared, err) != SF_OK || !realpath(shared, share) ||
         setenv("SOFTFALL_SHARE", share, 1) != 0)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be named", shared);
     const char *words[24] = {"snakemake", "--snakefile", snakefile,      "--directory",

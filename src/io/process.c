@@ -13,21 +13,35 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *err) {
+/* The folder of the programs. */
+static sf_status find_folder(char folder[PATH_MAX], sf_error *err) {
     const char *given = getenv("SF_BIN_DIR");
-    char self[PATH_MAX];
     if (given && *given) {
-        snprintf(path, size, "%s/%s", given, name);
-    } else {
-        ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
-        if (length < 0)
-            return SF_FAIL(err, SF_ERR_IO, "the folder of this program is unknown: %s", strerror(errno));
-        self[length] = '\0';
-        *strrchr(self, '/') = '\0';
-        snprintf(path, size, "%s/%s", self, name);
+        snprintf(folder, PATH_MAX, "%s", given);
+        return SF_OK;
     }
+    ssize_t length = readlink("/proc/self/exe", folder, PATH_MAX - 1);
+    if (length < 0)
+        return SF_FAIL(err, SF_ERR_IO, "the folder of this program is unknown: %s", strerror(errno));
+    folder[length] = '\0';
+    *strrchr(folder, '/') = '\0';
+    return SF_OK;
+}
+
+sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *err) {
+    char folder[PATH_MAX];
+    SF_TRY(find_folder(folder, err));
+    snprintf(path, size, "%s/%s", folder, name);
     if (access(path, X_OK) != 0)
         return SF_FAIL(err, SF_ERR_IO, "the program %s cannot be run: %s", path, strerror(errno));
+    return SF_OK;
+}
+
+sf_status sf_process_find_shared(const char *name, char *path, size_t size, sf_error *err) {
+    char folder[PATH_MAX];
+    SF_TRY(find_folder(folder, err));
+    if (snprintf(path, size, "%s/../share/softfall/%s", folder, name) >= (int)size || access(path, R_OK) != 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s, which comes with softfall, is missing: install it again", path);
     return SF_OK;
 }
 

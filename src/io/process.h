@@ -11,6 +11,10 @@
  * program. SF_ERR_IO if it is not there. */
 sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *err);
 
+/* A file or folder that comes with softfall: share/softfall/`name` beside the folder of the programs.
+ * SF_ERR_IO if it is not there. */
+sf_status sf_process_find_shared(const char *name, char *path, size_t size, sf_error *err);
+
 typedef struct sf_process {
     const char *const *arguments; /* the program, a path or a name to look for in PATH, and its arguments;
                                      ends with NULL */
