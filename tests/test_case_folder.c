@@ -96,6 +96,7 @@ static void a_case_of_layers_runs_to_the_same_bits(void **state) {
     assert_holds(p, "layers/case.cfg", "@include \"materials/eva35.cfg\"");
     assert_holds(p, "layers/case.cfg", "\npad = { mesh_error_limit = 1; };\n");
     assert_holds(p, "layers/README.md", "softfall-pre case.cfg -o model.h5");
+    assert_holds(p, "layers/README.md", "--set 'missile.velocity=5.2 m/s' --set 'solver.end_time=2 ms'.\n");
     assert_same_drop(p, path, "layers", set);
 }
 

@@ -285,21 +285,33 @@ static void find_title(const char *text, char *out, size_t size) {
         snprintf(out, size, "A drop test");
 }
 
+/* " with --set a=1 --set b=2", or "": the title may be true of the original only. */
+static char *list_overrides(const sf_case_folder_request *q) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    for (int k = 0; out && k < q->override_count; k++)
+        fprintf(out, "%s--set '%.200s'", k ? " " : " with ", q->overrides[k]);
+    if (out)
+        fclose(out);
+    return text;
+}
+
 static sf_status write_readme(folder *f, sf_error *err) {
-    char title[PATH_SIZE], *text = NULL;
+    char title[PATH_SIZE], *text = NULL, *overrides = list_overrides(f->request);
     const char *origin = f->request->origin ? f->request->origin : f->request->case_path;
     find_title(f->parts.part[0].text, title, sizeof title);
     int length = asprintf(
         &text,
         "%s\n\n"
         "This folder holds all that the case needs; it may be moved, packed and sent. softfall " SF_VERSION
-        " made it from %s.\n\n"
-        "    softfall-pre " CASE_NAME " -o model.h5     # mesh the geometry, build and check the model\n"
-        "    softfall-solve model.h5 -o results.h5  # the drop\n"
-        "    softfall-post results.h5 -o out        # figures, out/report.html, files for ParaView\n\n"
-        "Edit " CASE_NAME " and run the three again, each with --force. softfall-pre --keys explains every "
-        "key.\n",
-        title, origin);
+        " made it from %s%s.\n\n"
+        "    softfall-pre case.cfg -o model.h5       # mesh the geometry, build and check the model\n"
+        "    softfall-solve model.h5 -o results.h5   # the drop\n"
+        "    softfall-post results.h5 -o out         # figures, out/report.html, files for ParaView\n\n"
+        "Edit case.cfg and run the three again, each with --force. softfall-pre --keys explains every key.\n",
+        title, origin, overrides ? overrides : "");
+    free(overrides);
     if (length < 0 || !add_file(f, README_NAME, "", text, (size_t)length, err))
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", f->request->folder);
     return SF_OK;
@@ -387,7 +399,7 @@ static sf_status check(const folder *f, sf_error *err) {
                        "%s cannot be given a folder of its own: there it would be refused (%s)",
                        f->request->case_path, inner.text);
     if (sf_campaign_case_hash(&c) != f->hash)
-                SF_FAIL(err, SF_ERR_LIBRARY, "%s cannot be given a folder of its own: there it would be another case",
+        SF_FAIL(err, SF_ERR_LIBRARY, "%s cannot be given a folder of its own: there it would be another case",
                 f->request->case_path);
     else
         check_meshes(f, &c, err);
