@@ -304,7 +304,7 @@ static char *take_value(sf_case_parts *parts, const char *text, sf_error *err) {
 sf_status sf_case_parts_set(sf_case_parts *parts, const char *text, sf_error *err) {
     const char *equals = strchr(text, '=');
     char path[SF_SETTING_PATH_SIZE], group[SF_SETTING_PATH_SIZE];
-    sf_settings settings;
+    sf_settings settings = {0};
     if (!equals || equals - text >= SF_SETTING_PATH_SIZE)
         return SF_FAIL(err, SF_ERR_INPUT, "--set %.100s: expected group.key=value", text);
     text += strspn(text, " \t");
@@ -313,20 +313,22 @@ sf_status sf_case_parts_set(sf_case_parts *parts, const char *text, sf_error *er
         length--;
     snprintf(path, sizeof path, "%.*s", length, text);
     char *value = take_value(parts, text, err);
-    if (value && sf_settings_find(parts, &settings, err) == SF_OK) {
-        const sf_setting *s = sf_settings_get(&settings, path);
-        if (s) {
-            change(parts, s, value, err);
-            free(value);
-        } else {
-            strcpy(group, path);
-            add_setting(parts, &settings, group, value, err);
-            sf_settings_free(&settings);
-            if (err->status == SF_OK && sf_settings_find(parts, &settings, err) == SF_OK &&
-                (s = sf_settings_get(&settings, path)))
-                root_files(parts, s->part, s->begin, s->end, err);
-        }
+    if (!value || sf_settings_find(parts, &settings, err) != SF_OK)
+        goto done;
+    const sf_setting *s = sf_settings_get(&settings, path);
+    if (s) {
+        change(parts, s, value, err);
+        goto done;
     }
+    strcpy(group, path);
+    add_setting(parts, &settings, group, value, err);
+    value = NULL;
+    sf_settings_free(&settings);
+    if (err->status == SF_OK && sf_settings_find(parts, &settings, err) == SF_OK &&
+        (s = sf_settings_get(&settings, path)))
+        root_files(parts, s->part, s->begin, s->end, err);
+done:
+    free(value);
     sf_settings_free(&settings);
     return err->status;
 }
