@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs missing packages, builds, and runs the main example or the tests.
+# Installs missing packages, builds, and runs the main example or the tests, or makes a package.
 set -euo pipefail
 
 usage() {
@@ -11,6 +11,7 @@ usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
   test     build, then run the tests (all but the slow ones)
   slow     build, then run the slow tests
   build    build only: the programs are in build/bin
+  package  build, then make the Debian package build/softfall_VERSION_ARCHITECTURE.deb and check it with lintian
 
     --force        demo: run the drop again even if its results are up to date
   --label LABEL  test: only the tests with this label: unit, pipeline or verify, or several joined by |
@@ -103,6 +104,16 @@ demo() {
     echo "The files are in $PWD. Next: README.md explains how to read the results and change the case."
 }
 
+# The package of this Debian release. Its files are as old as the last commit.
+make_package() {
+    rm -f build/softfall_*.deb
+    SOURCE_DATE_EPOCH=$(git log -1 --format=%ct 2>/dev/null) || SOURCE_DATE_EPOCH=$(date +%s)
+    export SOURCE_DATE_EPOCH
+    (cd build && cpack -G DEB >cpack.log 2>&1) || fail "cpack failed: $(tail -n 5 build/cpack.log)"
+    lintian --allow-root --fail-on error build/softfall_*.deb || fail "lintian finds errors in the package: see above"
+    echo "The package is made; to install it, as root: apt-get install $(echo ./build/softfall_*.deb)"
+}
+
 run_tests() {
     ctest --test-dir build --output-on-failure --no-tests=error --no-label-summary "$@"
 }
@@ -148,6 +159,11 @@ slow)
 build)
     install_packages build run
     build_programs
+    ;;
+package)
+    install_packages build package
+    build_programs
+    make_package
     ;;
 '') usage >&2 && exit 2 ;;
 *) usage >&2 && fail "unknown word $word" ;;

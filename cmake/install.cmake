@@ -2,6 +2,7 @@
 # What `cmake --install` puts where, beside the libraries (library.cmake). Programs find all of it from their own place:
 #   bin, libexec/softfall   the programs; softfall-mesh, which others start
 #   share/softfall          geo and examples, which name each other by relative paths, and what is in share/
+#   share/doc/softfall      documents
 get_property(programs GLOBAL PROPERTY SOFTFALL_PROGRAMS)
 get_property(internal GLOBAL PROPERTY SOFTFALL_INTERNAL)
 install(TARGETS ${programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
@@ -14,9 +15,58 @@ foreach(name ${shared})
 endforeach()
 foreach(name geo examples)
     file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${name} ${CMAKE_BINARY_DIR}/share/softfall/${name} SYMBOLIC)
-    install(DIRECTORY ${CMAKE_SOURCE_DIR}/${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/softfall)
+    install(DIRECTORY ${CMAKE_SOURCE_DIR}/${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/softfall USE_SOURCE_PERMISSIONS)
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/softfall USE_SOURCE_PERMISSIONS)
 
-# Everything but tests, studies and benchmark: what setup.sh builds.
-add_custom_target(programs DEPENDS ${programs} ${internal} softfall_api softfall_api_build)
+# The documents, with the folders that they name beside them.
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${CMAKE_SOURCE_DIR}/packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+file(RELATIVE_PATH data_of_documents /p/${CMAKE_INSTALL_DOCDIR} /p/${CMAKE_INSTALL_DATADIR}/softfall)
+foreach(name geo examples)
+    file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/generated/links)
+    file(CREATE_LINK ${data_of_documents}/${name} ${CMAKE_BINARY_DIR}/generated/links/${name} SYMBOLIC)
+    install(FILES ${CMAKE_BINARY_DIR}/generated/links/${name} DESTINATION ${CMAKE_INSTALL_DOCDIR})
+endforeach()
+
+# The desktop: a case file opens in softfall-gui.
+install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
+install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.svg
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
+if(TARGET softfall-gui)
+    install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+endif()
+
+# Manual pages and bash completions, made from the programs' --help.
+find_program(SOFTFALL_HELP2MAN help2man)
+set(from_help "")
+foreach(program ${programs})
+    set(completion ${CMAKE_BINARY_DIR}/completions/${program})
+    add_custom_command(OUTPUT ${completion}
+        COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/completions
+        COMMAND ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh $<TARGET_FILE:${program}> >${completion}
+        DEPENDS ${program} ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
+    list(APPEND from_help ${completion})
+    if(SOFTFALL_HELP2MAN)
+        set(made ${CMAKE_BINARY_DIR}/manual/${program}.made)
+        add_custom_command(OUTPUT ${made}
+            COMMAND ${CMAKE_SOURCE_DIR}/tools/manual_page.sh $<TARGET_FILE:${program}> ${CMAKE_BINARY_DIR}/manual/man1 ${programs}
+            COMMAND ${CMAKE_COMMAND} -E touch ${made}
+            DEPENDS ${program} ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
+        list(APPEND from_help ${made})
+    endif()
+    install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+endforeach()
+if(SOFTFALL_HELP2MAN)
+    install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
+else()
+    message(STATUS "No manual pages: help2man is missing (packages.txt, section package)")
+endif()
+
+# Everything but tests, studies and benchmark: what setup.sh builds, and what installation needs.
+set(always ALL)
+if(SOFTFALL_SANITIZE OR SOFTFALL_COVERAGE)
+    set(always "") # instrumented programs are not installed, and run for their tests only
+endif()
+add_custom_target(programs ${always} DEPENDS ${programs} ${internal} softfall_api softfall_api_build ${from_help})

@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs a command in a fresh clone of the last commit, in a fresh minimal Debian of the named release.
 #
-#     tools/in_debian.sh [--fetch DIR] RELEASE COMMAND...
+#     tools/in_debian.sh [--fetch DIR] [--with FOLDER] RELEASE COMMAND...
 #     tools/in_debian.sh trixie ./setup.sh demo
 #     tools/in_debian.sh --fetch out/other other ./setup.sh demo
 #
 # RELEASE is bookworm (12), trixie (13), or other: the one of them that this machine does not run. debootstrap installs
 # the system in a temporary folder, from the mirror of this machine's apt sources, in about half a minute. The command
 # runs there by chroot, as root, in the clone's folder. Afterwards the script removes the folder; with --fetch it first
-# copies the clone's out/ to DIR. The exit code is that of the command, or 77 without root. Needs the packages debootstrap
+# copies the clone's out/ to DIR. With --with a copy of FOLDER takes the place of the clone, and git is not installed. The
+# exit code is that of the command, or 77 without root. Needs the packages debootstrap
 # and git.
 set -euo pipefail
 
@@ -18,10 +19,17 @@ fail() {
     exit 1
 }
 
-fetch=
-[ "${1:-}" = --fetch ] && [ $# -ge 2 ] && fetch=$2 && shift 2
+fetch='' with=''
+while [ $# -ge 2 ]; do
+    case $1 in
+    --fetch) fetch=$2 ;;
+    --with) with=$2 ;;
+    *) break ;;
+    esac
+    shift 2
+done
 if [ $# -lt 2 ]; then
-    echo 'usage: tools/in_debian.sh [--fetch DIR] bookworm|trixie|other COMMAND...' >&2
+    echo 'usage: tools/in_debian.sh [--fetch DIR] [--with FOLDER] bookworm|trixie|other COMMAND...' >&2
     exit 2
 fi
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -51,7 +59,7 @@ system=$(mktemp -d "${TMPDIR:-/var/tmp}/softfall-$release-XXXXXX")
 trap 'rm -rf --one-file-system "$system"' EXIT
 trap 'exit 130' INT TERM
 chmod 755 "$system" # the folder "/" of that system: its users pass
-debootstrap --variant=minbase --include=ca-certificates,git "$release" "$system" "$mirror" >"$system.log" 2>&1 ||
+debootstrap --variant=minbase --include="ca-certificates$([ -n "$with" ] || printf ',git')" "$release" "$system" "$mirror" >"$system.log" 2>&1 ||
     fail "debootstrap failed; its last line: $(tail -n 1 "$system.log"); all of them: $system.log"
 rm -f "$system.log"
 cp /etc/resolv.conf "$system/etc/"
@@ -59,10 +67,17 @@ for file in /etc/apt/apt.conf.d/*; do # access to the archive: the lines about i
     ! grep -si '^Acquire::' "$file" >"$system/etc/apt/apt.conf.d/${file##*/}" || continue
     rm "$system/etc/apt/apt.conf.d/${file##*/}"
 done
-git -c safe.directory="$root" -c safe.directory="$root/.git" clone --quiet --no-hardlinks "$root" "$system/softfall"
-[ -z "$(git -C "$root" status --porcelain --untracked-files=no)" ] ||
-    echo "in_debian.sh: the clone does not contain uncommitted changes" >&2
-echo "in_debian.sh: $* in a fresh clone ($(git -C "$root" describe --always)) on Debian $release"
+if [ -n "$with" ]; then
+    cp -r "$with" "$system/softfall"
+    chmod -R go+rX "$system/softfall"
+    content="a copy of $with"
+else
+    git -c safe.directory="$root" -c safe.directory="$root/.git" clone --quiet --no-hardlinks "$root" "$system/softfall"
+    [ -z "$(git -C "$root" status --porcelain --untracked-files=no)" ] ||
+        echo "in_debian.sh: the clone does not contain uncommitted changes" >&2
+    content="a fresh clone ($(git -C "$root" describe --always))"
+fi
+echo "in_debian.sh: $* in $content on Debian $release"
 # The mounts are in a separate mount namespace, which ends with the command in every case.
 status=0
 # shellcheck disable=SC2016 # $1 and $@ belong to the inner shell

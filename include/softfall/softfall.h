@@ -66,7 +66,7 @@ typedef struct softfall_sink {
     void *user; /* passed to `tell` */
 } softfall_sink;
 
-/* "0.1.0" and the git revision; static storage. */
+/* The version, such as "1.2.0", and the git revision; static storage. */
 SOFTFALL_API const char *softfall_version(void);
 SOFTFALL_API const char *softfall_revision(void);
 

@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# check_installation.sh SOURCE BUILD: installs the build, moves the installed tree, and looks there: every program has a
+# manual page and a completion that knows its options, the programs find their files, and the desktop's files are sound.
+set -euo pipefail
+source=$1 build=$2
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+prefix=$place/moved
+unset SF_BIN_DIR # the programs find each other
+
+fail() {
+    printf 'check_installation: %s\n' "$*" >&2
+    exit 1
+}
+
+cmake --install "$build" --prefix "$place/first" >"$place/log" || fail "$(tail -n 3 "$place/log")"
+mv "$place/first" "$prefix"
+share=$prefix/share
+
+# complete PROGRAM WORD...: what bash offers in place of the last word.
+complete() {
+    bash -c '
+        compopt() { :; }
+        . "$1"
+        shift
+        COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+        "_${1//-/_}"
+        printf "%s\n" "${COMPREPLY[@]}"' bash "$share/bash-completion/completions/$1" "$@" | sort | xargs
+}
+
+programs=$(find "$prefix/bin" -type f -printf '%f\n' | sort)
+for name in $programs; do
+    [ -f "$share/bash-completion/completions/$name" ] || fail "$name has no completion"
+    "$prefix/bin/$name" --version | grep -q "^$name [0-9]" || fail "$name does not tell its version"
+    if command -v help2man >/dev/null; then
+        [ -f "$share/man/man1/$name.1.gz" ] || fail "$name has no manual page"
+        said=$(zcat "$share/man/man1/$name.1.gz" | grep -A1 '^\.SH NAME' | tail -n 1)
+        [[ $said =~ ^"$name \\- "[A-Za-z].{15} ]] || fail "the manual page of $name says of it: $said"
+    fi
+done
+[ "$(complete softfall-pre --ke)" = --keys ] || fail "softfall-pre --ke: $(complete softfall-pre --ke)"
+[ "$(complete softfall-pre --se)" = --set= ] || fail "softfall-pre --se: $(complete softfall-pre --se)"
+[ "$(complete softfall-solve --on-failure = r)" = remove ] || fail "softfall-solve --on-failure=r is not completed"
+[ "$(complete softfall-fit '')" = 'compression drop' ] || fail "the words of softfall-fit: $(complete softfall-fit '')"
+[ "$(complete softfall-fit drop --jo)" = --jobs= ] || fail "softfall-fit drop --jo is not completed"
+[ "$(cd "$share/softfall/examples/eva50-v4.5" && complete softfall-pre ca)" = case.cfg ] || fail "no files are offered"
+
+# The programs find softfall-mesh, the geometries and examples, and share/softfall, from a folder elsewhere.
+mkdir "$place/empty"
+cd "$place/empty"
+"$prefix/bin/softfall-pre" "$share/softfall/examples/compression/case.cfg" -o model.h5 \
+    --set geometry.parameters.spacing=25 >pre.log 2>&1 || fail "$(cat pre.log)"
+! strings -a "$prefix"/bin/* "$prefix"/libexec/softfall/* | grep -F "$build/" || fail "a program names the build folder"
+cmp "$source/share/Snakefile" "$share/softfall/Snakefile"
+
+# The links of the documents lead somewhere: to docs, examples and geo.
+for link in "$share/doc/softfall/examples/eva50-v4.5/case.cfg" "$share/doc/softfall/geo/pad.geo" \
+    "$share/doc/softfall/docs/case.md"; do
+    [ -f "$link" ] || fail "$link is missing"
+done
+
+# The desktop's files, as far as their tools are here.
+mime=$share/mime
+[ -f "$mime/packages/softfall.xml" ] && [ -f "$share/icons/hicolor/scalable/apps/softfall.svg" ] ||
+    fail "the file type or the icon is missing"
+if command -v update-mime-database >/dev/null; then
+    update-mime-database "$mime" 2>mime.log || fail "$(cat mime.log)"
+    for pattern in case.cfg '*.softfall.cfg'; do
+        grep -qF ":application/x-softfall-case:$pattern" "$mime/globs2" || fail "$pattern is no case file"
+    done
+fi
+desktop=$share/applications/softfall.desktop
+if [ -x "$prefix/bin/softfall-gui" ]; then
+    [ -f "$desktop" ] || fail "softfall-gui has no desktop entry"
+    ! command -v desktop-file-validate >/dev/null || desktop-file-validate "$desktop"
+    for name in $(sed -n 's/^Exec=\([^ ]*\).*/\1/p' "$desktop"); do
+        [ -x "$prefix/bin/$name" ] || fail "the desktop entry starts $name, which is not installed"
+    done
+fi

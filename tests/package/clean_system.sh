@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# clean_system.sh PACKAGE.deb: as root in a clean Debian (tools/check_package.sh starts it there): installs the package,
+# uses it as a user without rights, removes it, and looks for what is left.
+set -euo pipefail
+package=$PWD/$1
+stage=$PWD
+mkdir -p out
+export DEBIAN_FRONTEND=noninteractive
+
+fail() {
+    printf 'clean_system: %s\n' "$*" >&2
+    exit 1
+}
+
+said() {
+    printf '%4d s  %s\n' "$SECONDS" "$*"
+}
+
+# quietly COMMAND...: what it prints is shown only if it fails.
+quietly() {
+    "$@" >"$stage/out/log" 2>&1 || { tail -n 30 "$stage/out/log" >&2 && fail "failed: $*"; }
+}
+
+# as_user COMMAND...: in the folder /home/drop/empty.
+as_user() {
+    (cd /home/drop/empty && setpriv --reuid=drop --regid=drop --init-groups \
+        env HOME=/home/drop USER=drop PATH=/usr/local/bin:/usr/bin:/bin "$@")
+}
+
+installed_packages() {
+    dpkg-query -W -f '${Package} ${db:Status-Abbrev}\n' | sort
+}
+
+# The tools of this test are there before, so that what the package brings and leaves is seen.
+quietly apt-get update
+quietly apt-get install -y --no-install-recommends xvfb xauth xdotool x11-apps netpbm shared-mime-info desktop-file-utils man-db
+useradd --create-home drop
+install -d -o drop -g drop /home/drop/empty
+installed_packages >out/packages-before
+said "clean system with the tools of this test"
+
+quietly apt-get install -y --no-install-recommends "$package"
+dpkg-query -L softfall | sort >out/files
+said "installed: $(dpkg-query -W -f '${Version}, ${Installed-Size} kB' softfall), with $(installed_packages | comm -13 out/packages-before - | wc -l) packages"
+! grep -vE '^/(\.|usr($|/))' out/files || fail "it has files outside /usr"
+for name in $(sed -n 's|^/usr/bin/||p' out/files); do
+    as_user "$name" --version | grep -q "^$name [0-9]" || fail "$name does not start"
+    as_user man -w "$name" >/dev/null || fail "$name has no manual page"
+done
+ldconfig -p | grep -q 'libsoftfall\.so' || fail "ld.so does not find libsoftfall"
+desktop-file-validate /usr/share/applications/softfall*.desktop
+for pattern in case.cfg '*.softfall.cfg'; do
+    grep -qF ":application/x-softfall-case:$pattern" /usr/share/mime/globs2 || fail "$pattern is no case file"
+done
+grep -q 'application/x-softfall-case=softfall' /usr/share/applications/mimeinfo.cache || fail "no program opens a case file"
+said "programs start, manual pages, library and file type are known"
+
+# README's case of one's own, from an empty folder.
+case=/home/drop/empty/my-pad/case.cfg
+as_user softfall-new my-pad --from eva50-v4.5 >out/demo.txt
+as_user softfall-pre "$case" -o model.h5 >>out/demo.txt
+as_user softfall-solve model.h5 -o results.h5 >>out/demo.txt
+as_user softfall-post results.h5 -o out >>out/demo.txt
+for name in report.html summary.json acceleration.png pad.xdmf; do
+    [ -s "/home/drop/empty/out/$name" ] || fail "the demo did not write $name"
+done
+grep -q '"grade": "valid' /home/drop/empty/out/summary.json || fail "the demo is not valid: $(cat out/demo.txt)"
+said "demo: $(grep -m1 'a_max' out/demo.txt)"
+
+# The window, on a display of its own: it runs the same case to the same figures, and ends when told to.
+cat >/tmp/drop.script <<'TEXT'
+wait ready 120
+press run
+wait done 900
+print 4Results/2a_max
+TEXT
+cat >/tmp/look <<'TEXT'
+softfall-gui "$1" --script /tmp/drop.script >figures.txt &
+program=$!
+for second in $(seq 960); do
+    sleep 1
+    kill -0 $program || exit 3
+    [ -s figures.txt ] && break
+done
+xdotool search --onlyvisible --name . || exit 4
+xwd -silent -root | xwdtopnm 2>/dev/null | pnmtopng >window.png
+kill -TERM $program
+wait $program
+[ $? -lt 128 ] || exit 5
+! xdotool search --onlyvisible --name .
+TEXT
+as_user xvfb-run -a -s "-screen 0 1280x900x24" sh /tmp/look "$case" >out/window.log 2>&1 ||
+    fail "the window fails ($?): $(tail -n 5 out/window.log)"
+cp /home/drop/empty/window.png out/
+[ "$(stat -c %s out/window.png)" -gt 5000 ] || fail "the window is empty: out/window.png"
+a_max=$(sed -n 's/^ *"a_max_g": \([^,]*\),*$/\1/p' /home/drop/empty/out/summary.json | head -n 1)
+grep -q "^4Results/2a_max = $a_max g" /home/drop/empty/figures.txt ||
+    fail "a_max of the window: $(cat /home/drop/empty/figures.txt); of the command line: $a_max"
+as_user softfall-pre /usr/share/softfall/examples/compression/case.cfg -o example.h5 >>out/demo.txt # from where it is
+[ -z "$(find /usr/share/softfall -newer out/packages-before -print -quit)" ] || fail "something was written into /usr/share/softfall"
+said "window: $(cat /home/drop/empty/figures.txt), as on the command line"
+
+# Removed, nothing of it is left; nor are the packages that it brought.
+quietly apt-get purge -y softfall
+while read -r path; do
+    [ -d "$path" ] && dpkg-query -S "$path" >/dev/null 2>&1 && continue
+    [ ! -e "$path" ] && [ ! -L "$path" ] || fail "$path is left after the removal"
+done <out/files
+left=$(find / -xdev \( -path /proc -o -path /softfall -o -path /home/drop -o -path /var/log \) -prune -o -iname '*softfall*' -print)
+[ -z "$left" ] || fail "left after the removal: $left"
+! grep -rqs softfall /usr/share/mime /usr/share/applications /etc || fail "the removed package is still named in /usr/share or /etc"
+! ldconfig -p | grep -q softfall || fail "ld.so still knows the library"
+# (Recommendations of this test's own tools would keep some.)
+quietly apt-get autoremove --purge -y -o APT::AutoRemove::RecommendsImportant=false -o APT::AutoRemove::SuggestsImportant=false
+installed_packages | diff out/packages-before - >out/packages-left || fail "packages are left: $(cat out/packages-left)"
+said "removed, and nothing is left"
