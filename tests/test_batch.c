@@ -5,14 +5,19 @@
 #include "campaign/engine.h"
 #include "campaign/manifest.h"
 #include "campaign/runner.h"
+#include "io/folder.h"
+#include "io/process.h"
 
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 #include <cmocka.h>
 
@@ -22,7 +27,8 @@ static const char *const DENSITY[DROPS] = {"material.density=40 kg/m3", "materia
                                            "material.density=60 kg/m3"};
 static char bin[512], case_path[1024]; /* the programs themselves; the case */
 
-/* A cube whose .geo merges a file, and programs that count their calls; fail/ makes softfall-solve fail. */
+/* A cube whose .geo merges a file, and programs that count their calls; the file fail makes softfall-solve
+ * fail, the file wait makes it wait. */
 static int set_up(void **state) {
     const program_place *p = program_group_set_up(state);
     snprintf(bin, sizeof bin, "%s", getenv("SF_BIN_DIR"));
@@ -35,9 +41,10 @@ static int set_up(void **state) {
                    "printf '#!/bin/sh\\necho pre >> \"%s/calls\"\\nexec \"%s/softfall-pre\" \"$@\"\\n' > "
                    "softfall-pre && printf '#!/bin/sh\\necho solve >> \"%s/calls\"\\n"
                    "test ! -e \"%s/fail\" || { echo \"softfall-solve: collapsed\"; exit 5; }\\n"
+                   "while test -e \"%s/wait\"; do sleep 0.05; done\\n"
                    "exec \"%s/softfall-solve\" \"$@\"\\n' > softfall-solve && chmod +x softfall-*",
                    getenv("SF_SOURCE_DIR"), getenv("SF_SOURCE_DIR"), getenv("SF_SOURCE_DIR"), bin, bin,
-                   p->folder, bin, p->folder, p->folder, bin)
+                   p->folder, bin, p->folder, p->folder, p->folder, bin)
                    .code;
     setenv("SF_BIN_DIR", program_path(p, "tree/bin"), 1);
     return code;
@@ -240,6 +247,70 @@ static void an_engine_that_is_missing_is_named_with_its_package(void **state) {
     free(path);
 }
 
+static void assert_profile(const char *profile, sf_status status, const char *part) {
+    const sf_runner_engine engine = {.name = "snakemake", .profile = profile};
+    sf_error err = SF_ERROR_INIT;
+    if (sf_engine_check(&engine, &err) != status || !strstr(err.text, part))
+        fail_msg("--profile %s: status %d: %s", profile, (int)err.status, err.text);
+}
+
+/* With a Snakemake that only lies there, and then with such an sbatch. */
+static void a_profile_is_looked_for_before_anything_is_started(void **state) {
+    const program_place *p = *state;
+    char *path = strdup(getenv("PATH"));
+    program_shell(
+        p, "mkdir -p only config/snakemake/known copy folder && touch config/snakemake/known/config.yaml "
+           "'copy/config.v8+.yaml' && ln -s /bin/true only/snakemake");
+    setenv("PATH", program_path(p, "only"), 1);
+    setenv("XDG_CONFIG_HOME", program_path(p, "config"), 1);
+    assert_profile("slurm", SF_ERR_IO, "(package slurm-client of Debian)");
+    assert_profile("none", SF_ERR_INPUT, "--profile none: there is no such profile of Snakemake");
+    assert_profile(program_path(p, "folder"), SF_ERR_INPUT, "no such profile");
+    assert_profile(program_path(p, "copy"), SF_OK, "");
+    assert_profile("known", SF_OK, "");
+    unsetenv("XDG_CONFIG_HOME");
+    assert_profile("known", SF_ERR_INPUT, "no such profile");
+    setenv("PATH", path, 1);
+    program_shell(p, "ln -s /bin/true only/sbatch");
+    setenv("PATH", program_path(p, "only"), 1);
+    assert_profile("slurm", SF_OK, "");
+    setenv("PATH", path, 1);
+    free(path);
+}
+
+/* What status.sh of the profile makes of the words of squeue. */
+static void the_state_of_a_job_of_slurm_is_understood(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        const char *squeue, *says;
+    } cases[] = {
+        {"echo COMPLETED", "success\n"},
+        {"echo RUNNING", "running\n"},
+        {"echo PENDING", "running\n"},
+        {"echo COMPLETING", "running\n"},
+        {"echo REQUEUED", "running\n"},
+        {"echo SUSPENDED", "running\n"},
+        {"echo CANCELLED", "failed\n"},
+        {"echo FAILED", "failed\n"},
+        {"echo TIMEOUT", "failed\n"},
+        {"echo NODE_FAIL", "failed\n"},
+        {"echo OUT_OF_MEMORY", "failed\n"},
+        {"echo PREEMPTED", "failed\n"},
+        {"true", "failed\n"},
+        {"echo slurm_load_jobs error: Invalid job id specified >&2; exit 1", "failed\n"},
+        {"echo slurm_load_jobs error: Unable to contact slurm controller >&2; exit 1", "running\n"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        program_result r = program_shell(p,
+                                         "mkdir -p fake && printf '#!/bin/sh\n%s\n' > fake/squeue && "
+                                         "chmod +x fake/squeue && "
+                                         "PATH=\"$PWD/fake:$PATH\" '%s/share/slurm/status.sh' 7",
+                                         cases[k].squeue, getenv("SF_SOURCE_DIR"));
+        if (r.code != 0 || strcmp(r.out, cases[k].says) != 0)
+            fail_msg("%s: %d, %s%s", cases[k].squeue, r.code, r.out, r.err);
+    }
+}
+
 /* The history of each drop, byte by byte. */
 static void assert_same_curves(const program_place *p, const char *one, const char *other) {
     program_result r = program_shell(p,
@@ -285,6 +356,106 @@ static void snakemake_finishes_what_was_begun_here(void **state) {
     assert_same_curves(p, "here", "there");
 }
 
+static void pause_briefly(void) {
+    nanosleep(&(struct timespec){0, 50000000}, NULL);
+}
+
+/* Two drops that wait, by Snakemake from a process of its own with a lock of the folder; returns when one of
+ * them is at work. */
+static pid_t begin_elsewhere(const program_place *p, const char *folder) {
+    sf_runner_drop drop[DROPS];
+    sf_error failure[2], err = SF_ERROR_INIT;
+    int lock = -1;
+    forget_calls(p);
+    program_shell(p, "touch wait; mkdir -p '%s'; touch '%s/.softfall-own'", folder, folder);
+    pid_t child = fork();
+    if (child == 0) {
+        sf_runner runner = {
+            .folder = folder, .threads = 2, .engine = {.name = "snakemake", .per_job = 1, .lock = &lock}};
+        list_drops(drop);
+        sf_process_handle_signals();
+        if (sf_folder_lock(folder, &lock, &err) == SF_OK)
+            sf_runner_simulate_each(&runner, 2, drop, failure, &err);
+        _exit((int)err.status);
+    }
+    for (int k = 0; child > 0 && calls(p, "solve") == 0 && k < 2400; k++)
+        pause_briefly();
+    assert_int_not_equal(calls(p, "solve"), 0);
+    return child;
+}
+
+/* Nobody else has the folder, at the latest in two minutes. */
+static void wait_for_folder(const char *folder) {
+    int lock = -1;
+    for (int k = 0; lock < 0 && k < 120; k++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_folder_lock(folder, &lock, &err);
+    }
+    assert_true(lock >= 0);
+    close(lock);
+}
+
+/* A Snakemake whose campaign was killed goes on and holds its folder; what it did is found. One that is
+ * interrupted with its campaign ends at once. */
+static void snakemake_holds_the_folder_until_it_ends(void **state) {
+    const program_place *p = *state;
+    sf_runner_drop drop[DROPS];
+    sf_error failure[DROPS], err = SF_ERROR_INIT;
+    char folder[600];
+    int lock = -1, status;
+    if (program_shell(p, "command -v snakemake").code != 0) {
+        print_message("snakemake is not installed\n");
+        skip();
+    }
+    snprintf(folder, sizeof folder, "%s/interrupted", p->folder);
+    pid_t child = begin_elsewhere(p, folder);
+    kill(child, SIGTERM);
+    assert_true(waitpid(child, &status, 0) == child);
+    assert_int_equal(WEXITSTATUS(status), SF_INTERRUPTED);
+    wait_for_folder(folder);
+
+    snprintf(folder, sizeof folder, "%s/orphaned", p->folder);
+    child = begin_elsewhere(p, folder);
+    kill(child, SIGKILL);
+    assert_true(waitpid(child, &status, 0) == child);
+    assert_int_equal(sf_folder_lock(folder, &lock, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "another campaign is at work in"));
+    program_shell(p, "rm wait");
+    wait_for_folder(folder);
+    forget_calls(p);
+    list_drops(drop);
+    run(folder, &(sf_runner_engine){0}, 2, drop, failure);
+    assert_int_equal(calls(p, "solve"), 0);
+    assert_int_equal(failure[0].status, SF_OK);
+    assert_int_equal(failure[1].status, SF_OK);
+}
+
+/* As when a scheduler starts a job again before its first process has ended. */
+static void two_processes_of_one_group_simulate_it_once(void **state) {
+    const program_place *p = *state;
+    sf_manifest m;
+    char folder[600], path[700];
+    snprintf(folder, sizeof folder, "%s/doubled", p->folder);
+    snprintf(path, sizeof path, "%s/manifest.tsv", folder);
+    program_shell(p, "mkdir doubled && touch doubled/.softfall-own");
+    write_manifest(path, folder, &m);
+    for (int turn = 0; turn < 4; turn += 2) { /* both begin at once, or one while the other simulates */
+        forget_calls(p);
+        program_result r = program_shell(
+            p,
+            "rm -rf doubled/first-* doubled/second-* doubled/shared; "
+            "'%s/softfall-batch' doubled/manifest.tsv --group %s > first.log 2>&1 & sleep 0.%d; "
+            "'%s/softfall-batch' doubled/manifest.tsv --group %s > second.log 2>&1; code=$?; wait $! && cat first.log second.log && "
+            "exit $code",
+            getenv("SF_BIN_DIR"), m.run[0].group, turn, getenv("SF_BIN_DIR"), m.run[0].group);
+        if (r.code != 0 || strstr(r.out, " failed: "))
+            fail_msg("exit code %d: %s", r.code, r.out);
+        assert_int_equal(calls(p, "solve"), 2);
+        assert_int_equal(calls(p, "pre"), 2);
+    }
+    sf_manifest_free(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_failed_drop_is_skipped_until_it_is_asked_for),
@@ -293,6 +464,10 @@ int main(void) {
         cmocka_unit_test(groups_are_of_several_drops),
         cmocka_unit_test(what_is_no_manifest_is_refused),
         cmocka_unit_test(an_engine_that_is_missing_is_named_with_its_package),
+        cmocka_unit_test(a_profile_is_looked_for_before_anything_is_started),
+        cmocka_unit_test(the_state_of_a_job_of_slurm_is_understood),
+        cmocka_unit_test(two_processes_of_one_group_simulate_it_once),
+        cmocka_unit_test(snakemake_holds_the_folder_until_it_ends),
         cmocka_unit_test(snakemake_finishes_what_was_begun_here),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);

@@ -7,6 +7,7 @@
 #include "fit/form/gas.h"
 #include "fit/space_mapping.h"
 #include "foam_fixture.h"
+#include "io/folder.h"
 #include "post/hic.h"
 #include "program_fixture.h"
 
@@ -700,6 +701,27 @@ static void hidden_foam_is_found(void **state) {
     program_tear_down(&place);
 }
 
+static void a_second_fit_in_the_folder_is_refused(void **state) {
+    (void)state;
+    program_place place;
+    sf_error err = SF_ERROR_INIT;
+    int lock = -1;
+    program_set_up(&place);
+    put_case(&place);
+    program_write_text(&place, "fit.cfg",
+                       "material = \"start.cfg\";\nunknown = ( { name = \"E\"; } );\n"
+                       "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = 50.0; } );\n");
+    program_shell(&place, "mkdir taken");
+    assert_int_equal(sf_folder_lock(program_path(&place, "taken"), &lock, &err), SF_OK);
+    program_result r = program_run(&place, "fit", "drop fit.cfg -o taken");
+    assert_int_equal(r.code, SF_ERR_INPUT);
+    if (!strstr(r.err, "another campaign is at work in taken"))
+        fail_msg("%s", r.err);
+    assert_int_equal(program_shell(&place, "test -e taken/runs").code, 1);
+    close(lock);
+    program_tear_down(&place);
+}
+
 /* ---- kills ---- */
 
 /* s of processor time of a process and of the children that it has waited for; 0: it has ended. */
@@ -833,6 +855,7 @@ int main(void) {
         cmocka_unit_test(every_unknown_is_identified),
         cmocka_unit_test(measured_curves_are_filtered_like_the_simulated),
         cmocka_unit_test(hidden_foam_is_found),
+        cmocka_unit_test(a_second_fit_in_the_folder_is_refused),
         cmocka_unit_test(killed_fit_ends_with_the_same_material),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

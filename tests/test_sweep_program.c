@@ -153,6 +153,12 @@ static void folders_that_are_not_of_the_plan_or_taken_are_refused(void **state) 
     close(lock);
     program_shell(p, "mkdir used; touch used/report.html");
     assert_refused(p, "plan.cfg -o used", "used already holds report.html");
+    char *path = strdup(getenv("PATH"));
+    program_shell(p, "mkdir -p only && ln -s /bin/true only/snakemake");
+    setenv("PATH", program_path(p, "only"), 1);
+    assert_refused(p, "plan.cfg -o new --engine snakemake --profile none", "no such profile of Snakemake");
+    setenv("PATH", path, 1);
+    free(path);
     write_plan(p, "wrong.cfg", "[\"3 kg\"]");
     assert_refused(p, "wrong.cfg -o new", "wrong.cfg:5: ");
     assert_refused(p, "none.cfg -o new", "none.cfg");

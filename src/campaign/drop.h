@@ -23,6 +23,8 @@ typedef struct sf_runner_engine {
     int per_job;         /* drops of a job; 0: sf_manifest_group_size */
     int job_threads;     /* of a job; 0: one */
     bool retry;          /* drops that failed earlier are simulated again; else they fail as they did */
+    const int *lock;     /* of the campaign (sf_folder_lock): an engine that outlives this process keeps it;
+                            NULL: none */
 } sf_runner_engine;
 
 #endif

@@ -31,17 +31,6 @@ static bool is_in_path(const char *name) {
     return false;
 }
 
-sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err) {
-    if (sf_engine_is_local(engine))
-        return engine->profile ? SF_FAIL(err, SF_ERR_INPUT,
-                                         "--profile %s: profiles are Snakemake's: add --engine snakemake",
-                                         engine->profile)
-                               : SF_OK;
-    if (strcmp(engine->name, "snakemake") != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "--engine %s: the engines are local and snakemake", engine->name);
-    return is_in_path("snakemake") ? SF_OK : missing(err);
-}
-
 /* The profile as Snakemake is told: a folder of ours, or what was given. */
 static sf_status find_profile(const char *name, char path[PATH_MAX], sf_error *err) {
     if (strcmp(name, "slurm") == 0)
@@ -50,12 +39,71 @@ static sf_status find_profile(const char *name, char path[PATH_MAX], sf_error *e
     return SF_OK;
 }
 
+/* Is it one of Snakemake's profiles: a folder with one of the files that it reads? */
+static bool is_profile(const char *folder) {
+    char file[SF_RUN_PATH_SIZE];
+    for (int version = 7; version < 10; version++) {
+        char infix[8] = "";
+        if (version > 7)
+            snprintf(infix, sizeof infix, ".v%d+", version);
+        if (snprintf(file, sizeof file, "%s/config%s.yaml", folder, infix) < (int)sizeof file &&
+            access(file, R_OK) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* In Snakemake's folder below one of configurations: `parent`, as far as the first colon, and `rest`. */
+static bool is_profile_below(const char *parent, const char *rest, const char *name) {
+    char folder[SF_RUN_PATH_SIZE];
+    return parent &&
+           snprintf(folder, sizeof folder, "%.*s%s/snakemake/%s", (int)strcspn(parent, ":"), parent, rest,
+                    name) < (int)sizeof folder &&
+           is_profile(folder);
+}
+
+/* Where Snakemake looks for a name that is no path: the user's profiles, the machine's. */
+static bool is_profile_name(const char *name) {
+    const char *user = getenv("XDG_CONFIG_HOME"), *machine = getenv("XDG_CONFIG_DIRS");
+    return (user && *user ? is_profile_below(user, "", name)
+                          : is_profile_below(getenv("HOME"), "/.config", name)) ||
+           is_profile_below(machine && *machine ? machine : "/etc/xdg", "", name);
+}
+
+static sf_status check_profile(const char *name, sf_error *err) {
+    char path[PATH_MAX];
+    if (strcmp(name, "slurm") == 0)
+        return is_in_path("sbatch") ? find_profile(name, path, err)
+                                    : SF_FAIL(err, SF_ERR_IO,
+                                              "--profile slurm: Slurm's commands (sbatch) are not installed "
+                                              "(package slurm-client of Debian)");
+    if (is_profile(name) || is_profile_name(name))
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "--profile %s: there is no such profile of Snakemake: neither this folder nor one of this "
+                   "name in ~/.config/snakemake or /etc/xdg/snakemake has a config.yaml",
+                   name);
+}
+
+sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err) {
+    if (sf_engine_is_local(engine))
+        return engine->profile ? SF_FAIL(err, SF_ERR_INPUT,
+                                         "--profile %s: profiles are Snakemake's: add --engine snakemake",
+                                         engine->profile)
+                               : SF_OK;
+    if (strcmp(engine->name, "snakemake") != 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "--engine %s: the engines are local and snakemake", engine->name);
+    if (!is_in_path("snakemake"))
+        return missing(err);
+    return engine->profile ? check_profile(engine->profile, err) : SF_OK;
+}
+
 static sf_status make_absolute(const char *path, char out[PATH_MAX], sf_error *err) {
     return realpath(path, out) ? SF_OK : SF_FAIL(err, SF_ERR_IO, "%s: %s", path, strerror(errno));
 }
 
 /* --nolock: a killed Snakemake would leave its lock, and the campaign has one of its own; groups may be run
- * twice. */
+ * twice. On SIGTERM it would wait for its jobs, on SIGINT it cancels them: so it is apart. */
 sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const char *manifest, int *code,
                         sf_error *err) {
     char snakefile[PATH_MAX], found[PATH_MAX], program[PATH_MAX], file[PATH_MAX], folder[PATH_MAX],
@@ -82,7 +130,8 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
     int n = 12;
     words[n++] = engine->profile ? "--profile" : "--cores";
     words[n++] = engine->profile ? profile : cores;
-    const sf_process process = {.arguments = words, .log = log, .stoppable = true};
+    const sf_process process = {
+        .arguments = words, .log = log, .stoppable = true, .apart = true, .held = engine->lock};
     int reason = sf_process_run(&process, code);
     if (reason == ENOENT)
         return missing(err);

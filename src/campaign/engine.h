@@ -11,8 +11,8 @@
 /* This process runs the drops. */
 bool sf_engine_is_local(const sf_runner_engine *engine);
 
-/* Can the engine be used? SF_ERR_INPUT: it is unknown, a profile without it; SF_ERR_IO: it is
- * not installed, with the name of its package. */
+/* Can the engine be used? SF_ERR_INPUT: it is unknown, a profile without it, no such profile; SF_ERR_IO: it
+ * is not installed, or Slurm's commands are not, with the name of the package. */
 sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err);
 
 /* Runs every group of the manifest by Snakemake, without a profile on `threads` processors of this machine;

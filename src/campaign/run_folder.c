@@ -175,8 +175,8 @@ void sf_run_folder_clean(const sf_run_folder *at) {
     sf_folder_remove_file(at->checkpoint);
 }
 
-sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path, int count,
-                                 const char *const *overrides, int threads, sf_error *err) {
+static sf_status simulate(const sf_run_folder *at, const char *case_path, int count,
+                          const char *const *overrides, int threads, sf_error *err) {
     char pre[PATH_MAX], solve[PATH_MAX], thread_text[16], share[SF_RUN_PATH_SIZE];
     const char *build[MAX_ARGUMENTS] = {pre, case_path, "-o", at->model, "--force", "--share", share};
     assert(7 + 2 * count < MAX_ARGUMENTS);
@@ -192,7 +192,7 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
     const char *restart[] = {solve, "--restart", at->results, at->model, "-t", thread_text, NULL};
     if (sf_process_find("softfall-pre", pre, sizeof pre, err) != SF_OK ||
         sf_process_find("softfall-solve", solve, sizeof solve, err) != SF_OK ||
-        sf_folder_own(at->path, err) != SF_OK || wait_for_orphan(at, err) != SF_OK)
+        wait_for_orphan(at, err) != SF_OK)
         return err->status;
     if (!sf_run_folder_is_finished(at) && !resume(run, restart, at, err) &&
         wait_for_orphan(at, err) == SF_OK &&
@@ -210,5 +210,21 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
     }
     if (err->status != SF_INTERRUPTED)
         sf_run_folder_clean(at);
+    return err->status;
+}
+
+/* A scheduler may start a job again whose first process has not ended yet: one of them waits for the other.
+ */
+sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path, int count,
+                                 const char *const *overrides, int threads, sf_error *err) {
+    int lock = -1;
+    if (sf_folder_own(at->path, err) != SF_OK)
+        return err->status;
+    if (sf_folder_wait_lock(at->path, &lock))
+        simulate(at, case_path, count, overrides, threads, err);
+    else
+        sf_run_folder_interrupted(err);
+    if (lock >= 0)
+        close(lock);
     return err->status;
 }

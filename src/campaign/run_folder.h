@@ -49,7 +49,8 @@ void sf_run_folder_clean(const sf_run_folder *folder);
 
 /* Simulates the drop by softfall-pre and softfall-solve on `threads` threads, with their output in the log. A
  * drop that was interrupted or killed resumes from its model and its checkpoint, or starts anew if it cannot;
- * one whose campaign was killed, but whose solver still runs, is waited for. Errors: the last line that the
+ * one whose campaign was killed, but whose solver still runs, is waited for, as is another process that
+ * simulates it. Errors: the last line that the
  * program printed, with its exit code and the log; SF_INTERRUPTED (io/process.h), which keeps model and
  * checkpoint. */
 sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,

@@ -27,6 +27,7 @@ typedef struct setting {
     sf_material material;    /* with --posterior: the case's own; owned, as its law and the draws */
     sf_material_law law;
     sf_cfh_draws draws;
+    int lock; /* of the directory, until the program ends */
 } setting;
 
 static void list_foams(const sf_case *c, sf_cfh_foams *out) {
@@ -168,6 +169,7 @@ static sf_status simulate(const sf_cfh_options *o, const setting *s, sf_staging 
     if ((size_t)snprintf(folder, sizeof folder, "%s/runs", output->directory) >= sizeof folder)
         return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
     sf_runner runner = {.folder = folder, .threads = o->threads, .log = stdout, .engine = o->engine};
+    runner.engine.lock = &s->lock;
     sf_runner_drop base = {
         .case_path = o->case_path, .material = o->material, .override_count = o->override_count};
     memcpy(base.overrides, o->overrides, sizeof base.overrides);
@@ -197,7 +199,6 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
     sf_cfh_points points = {0};
     sf_cfh_result result;
     sf_cfh_spread spread = {0};
-    int lock = -1; /* until the program ends */
     if (sf_engine_check(&o->engine, err) != SF_OK ||
         sf_staging_check(o->directory, output_names, o->force, err) != SF_OK ||
         (o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
@@ -219,7 +220,7 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
                             .mass = s->mass,
                             .foams = &s->foams};
     if (sf_staging_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
-        sf_folder_lock(o->directory, &lock, err) != SF_OK ||
+        sf_folder_lock(o->directory, &s->lock, err) != SF_OK ||
         simulate(o, s, output, &report, &points, &result, &spread, err) != SF_OK)
         ;
     else if (write_output(output, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)
@@ -231,7 +232,7 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
 int main(int argc, char **argv) {
     sf_cfh_options options;
     sf_staging output = {0};
-    setting s = {0};
+    setting s = {.lock = -1};
     sf_error err = SF_ERROR_INIT;
     char *command = sf_command_line(argc, argv);
     sf_process_handle_signals();

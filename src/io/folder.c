@@ -2,6 +2,7 @@
 #include "io/folder.h"
 
 #include "io/plain_file.h"
+#include "io/process.h"
 #include "io/replace.h"
 #include <dirent.h>
 #include <errno.h>
@@ -9,6 +10,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 static const char MARK[] = ".softfall-own";
@@ -123,14 +125,32 @@ sf_status sf_folder_own(const char *path, sf_error *err) {
     return err->status;
 }
 
-/* The lock belongs to the open folder: a program that is started does not get it, and it ends with the
- * process and its copies. */
+/* The lock belongs to the open folder: a program that is started does not get it (but sf_process.held), and
+ * it ends with the process and its copies. Asks `tries` times in vain, below 0 without end. */
+static bool is_locked(int handle, int tries) {
+    const struct timespec pause = {0, 20000000};
+    while (flock(handle, LOCK_EX | LOCK_NB) != 0 &&
+           errno == EWOULDBLOCK) { /* some file systems have no locks */
+        if (tries == 0 || sf_process_stopped())
+            return true;
+        nanosleep(&pause, NULL);
+        tries -= tries > 0;
+    }
+    return false;
+}
+
+bool sf_folder_wait_lock(const char *path, int *handle) {
+    *handle = sf_folder_open(path);
+    return *handle < 0 || !is_locked(*handle, -1);
+}
+
 sf_status sf_folder_lock(const char *path, int *handle, sf_error *err) {
+    enum { TRIES = 50 }; /* the copies of a process that was killed end a moment after it */
     *handle = sf_folder_open(path);
     if (*handle < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be used as a folder: %s", path, strerror(errno));
-    if (flock(*handle, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
-        return SF_OK; /* some file systems have no locks */
+    if (!is_locked(*handle, TRIES))
+        return SF_OK;
     close(*handle);
     *handle = -1;
     return SF_FAIL(err, SF_ERR_INPUT,

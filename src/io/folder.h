@@ -25,9 +25,12 @@ int sf_folder_open(const char *path);
 sf_status sf_folder_check(int handle, const char *path, bool (*known)(const char *name), sf_error *err);
 void sf_folder_remove_known(int handle, bool (*known)(const char *name), const char *kept);
 
-/* Locks an existing folder against a second program that does so, until this process ends. `*handle` is for
- * the caller to close, -1 on failure. SF_ERR_INPUT: another program has it locked. */
+/* Locks an existing folder against a second program that does so, until this process ends, its copies and the
+ * program that holds the descriptor (sf_process). `*handle` is for the caller to close, -1 on failure.
+ * SF_ERR_INPUT: another program has it locked for longer than copies of a killed one take to end. */
 sf_status sf_folder_lock(const char *path, int *handle, sf_error *err);
+/* The same, but waits as long as it is locked; false if this process is to end (sf_process_stopped). */
+bool sf_folder_wait_lock(const char *path, int *handle);
 
 /* Removes the mark and the folder if nothing else is in it. */
 void sf_folder_leave(const char *path);

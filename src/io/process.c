@@ -46,21 +46,25 @@ sf_status sf_process_find_shared(const char *name, char *path, size_t size, sf_e
 }
 
 static volatile sig_atomic_t stopped;
-/* Process ids of stoppable programs or copies; 0: none. */
+/* Process ids of stoppable programs or copies; below 0: of a group; 0: none. */
 static volatile sig_atomic_t running[SF_PROCESS_JOBS];
+
+static void tell(sig_atomic_t who, int signal_number) {
+    if (who != 0)
+        kill((pid_t)who, who < 0 ? SIGINT : signal_number);
+}
 
 static void pass_on(int signal_number) {
     stopped = 1;
     for (int k = 0; k < SF_PROCESS_JOBS; k++)
-        if (running[k] > 0)
-            kill((pid_t)running[k], signal_number);
+        tell(running[k], signal_number);
 }
 
 /* Signals go to the child from now on; also one that came before it was known. */
 static void watch(int slot, pid_t child) {
     running[slot] = child;
     if (stopped)
-        kill(child, SIGTERM);
+        tell(child, SIGTERM);
 }
 
 void sf_process_handle_signals(void) {
@@ -91,7 +95,27 @@ static int prepare(posix_spawn_file_actions_t *actions, const sf_process *p) {
                      ? posix_spawn_file_actions_addopen(
                            actions, 1, p->log, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK, 0666)
                      : posix_spawn_file_actions_addopen(actions, 1, "/dev/null", O_WRONLY, 0);
+    if (result == 0 && p->held && *p->held >= 0)
+        result = posix_spawn_file_actions_adddup2(actions, *p->held, *p->held); /* no longer closed by exec */
     return result == 0 ? posix_spawn_file_actions_adddup2(actions, 1, 2) : result;
+}
+
+static int start(const sf_process *p, pid_t *child) {
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    int result = posix_spawn_file_actions_init(&actions);
+    if (result != 0)
+        return result;
+    posix_spawnattr_init(&attributes); /* these three cannot fail */
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setflags(&attributes, p->apart ? POSIX_SPAWN_SETPGROUP : 0);
+    result = prepare(&actions, p);
+    if (result == 0)
+        result =
+            posix_spawnp(child, p->arguments[0], &actions, &attributes, (char *const *)p->arguments, environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    return result;
 }
 
 /* Waits for the child; 0 or an errno value. */
@@ -105,20 +129,13 @@ static int await(pid_t child, int *exit_code) {
 }
 
 int sf_process_run(const sf_process *p, int *exit_code) {
-    posix_spawn_file_actions_t actions;
     pid_t child = 0;
     notice_children();
-    int result = posix_spawn_file_actions_init(&actions);
-    if (result != 0)
-        return result;
-    result = prepare(&actions, p);
-    if (result == 0)
-        result = posix_spawnp(&child, p->arguments[0], &actions, NULL, (char *const *)p->arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
+    int result = start(p, &child);
     if (result != 0)
         return result;
     if (p->stoppable)
-        watch(0, child);
+        watch(0, p->apart ? -child : child);
     result = await(child, exit_code);
     running[0] = 0;
     return result;

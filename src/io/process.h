@@ -21,6 +21,10 @@ typedef struct sf_process {
     const char *folder;           /* in which it runs; NULL: the present one */
     const char *log; /* file to which its output is appended, not through a link; NULL: dropped */
     bool stoppable;  /* signals are passed on to it, see sf_process_handle_signals */
+    bool apart; /* in a process group of its own, which a terminal does not reach: passed on, each signal is
+                   SIGINT to the whole group. Only one such program at a time */
+    const int *held; /* a descriptor that it keeps open while it runs: a lock of this process's folder that
+                        outlives this process; NULL or *held < 0: none */
 } sf_process;
 
 /* Runs the program with nothing to read. Returns 0 and its exit code (128 + the signal that ended it), or the

@@ -195,6 +195,7 @@ static sf_status run(const options *o, job *j, sf_error *err) {
         return err->status;
     sf_runner runner = {
         .folder = j->folder, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
+    runner.engine.lock = &j->lock;
     const sf_sweep_engine engine = sf_sweep_drops(&runner, o->jobs);
     j->campaign.log = stdout;
     if (sf_sweep_campaign_run(&j->campaign, &engine, &j->runs, err) != SF_OK)

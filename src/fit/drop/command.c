@@ -251,6 +251,7 @@ static sf_status run(const options *o, models *all, sf_fit_memory *memory, sf_st
     char runs[PATH_MAX], warning[512] = "";
     names n;
     char columns[PATH_MAX + 16];
+    int lock = -1;                     /* until the program ends */
     const char *const none[] = {NULL}; /* the names are in the input */
     const sf_fit_input *in = &all->input[0];
     if (sf_engine_check(&o->engine, err) != SF_OK ||
@@ -259,10 +260,11 @@ static sf_status run(const options *o, models *all, sf_fit_memory *memory, sf_st
         return err->status;
     name_files(in, &n);
     if (sf_staging_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
-        make_runs(o->directory, runs, err) != SF_OK)
+        sf_folder_lock(o->directory, &lock, err) != SF_OK || make_runs(o->directory, runs, err) != SF_OK)
         return err->status;
     sf_runner runner = {
         .folder = runs, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
+    runner.engine.lock = &lock;
     snprintf(columns, sizeof columns, "%s/columns.bin", runs);
     sf_fit_memory_open(columns, memory);
     printf("softfall-fit drop: %d unknown parameters, %d drops; finished drops are kept in %s\n",
