@@ -152,7 +152,7 @@ test)
     OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(nproc)"
     ;;
 slow)
-    install_packages build run test slow
+    install_packages build run test slow cluster slurm
     build
     run_tests --label-regex slow --parallel "$(nproc)" # those that use every core run alone
     ;;
