@@ -34,7 +34,6 @@ SlurmctldHost={node}(127.0.0.1)
 SlurmctldPort=6817
 SlurmdPort=6818
 AuthType=auth/munge
-CryptoType=crypto/munge
 AuthInfo=socket={folder}/munge.socket
 SlurmUser=root
 SlurmdUser=root
