@@ -228,12 +228,13 @@ void sf_fields_take(sf_fields *fields, bool *case_changed, bool *geometry_change
     }
 }
 
-bool sf_fields_enter(sf_fields *fields, const char *key, const char *text) {
-    sf_field *f = find(fields, key);
+bool sf_fields_enter(const sf_fields *fields, const char *key, const char *text) {
+    const sf_field *f = find(fields, key);
     if (!f)
         return false;
-    snprintf(f->now, sizeof f->now, "%s", text);
-    show(f);
+    sf_field entered = *f; /* sf_fields_take notices the change, as of a user's */
+    snprintf(entered.now, sizeof entered.now, "%s", text);
+    show(&entered);
     return true;
 }
 
@@ -269,25 +270,43 @@ static bool is_of_word(int c) {
     return isalnum(c) || c == '_';
 }
 
-/* The sentence has the word by itself. */
-static bool has_word(const char *sentence, const char *word) {
+/* Where the sentence has the word by itself; NULL: nowhere. */
+static const char *find_word_in(const char *sentence, const char *word) {
     size_t length = strlen(word);
     for (const char *at = sentence; (at = strstr(at, word)) != NULL; at += length)
         if ((at == sentence || !is_of_word((unsigned char)at[-1])) && !is_of_word((unsigned char)at[length]))
-            return true;
-    return false;
+            return at;
+    return NULL;
 }
 
-/* A key in full; of a geometry its variable, as its own checks name it. */
-static bool is_named(const sf_field *f, const char *sentence) {
+/* Of the material, if a file of the window stands in its place. */
+static const char *find_key_in(const sf_field *f, const char *sentence) {
+    bool plain = strchr(f->key, '.') == NULL;
+    return plain && strcmp(f->now, f->given) == 0 ? NULL : find_word_in(sentence, f->key);
+}
+
+/* The key that the sentence names first: further ones only explain. */
+static const char *find_first_key(const sf_fields *fields, const char *sentence) {
+    const char *first = NULL;
+    for (int k = 0; k < fields->count; k++) {
+        const char *at = find_key_in(&fields->field[k], sentence);
+        if (at && (!first || at < first))
+            first = at;
+    }
+    return first;
+}
+
+/* A geometry's own checks name its variables. */
+static bool is_named(const sf_field *f, const char *sentence, const char *first) {
     const char *dot = strrchr(f->key, '.');
-    return has_word(sentence, f->key) && dot ? true : f->of_geometry && has_word(sentence, dot + 1);
+    return first ? find_key_in(f, sentence) == first : f->of_geometry && find_word_in(sentence, dot + 1);
 }
 
 void sf_fields_mark(sf_fields *fields, const char *sentence) {
+    const char *first = sentence ? find_first_key(fields, sentence) : NULL;
     for (int k = 0; k < fields->count; k++) {
         sf_field *f = &fields->field[k];
-        bool wrong = sentence && is_named(f, sentence);
+        bool wrong = sentence && is_named(f, sentence, first);
         if (wrong == f->wrong)
             continue;
         f->wrong = wrong;
@@ -296,4 +315,21 @@ void sf_fields_mark(sf_fields *fields, const char *sentence) {
         else
             show(f);
     }
+}
+
+static void lock_unknown(void *user, const char *name) {
+    static const char *const ours[] = {"ONELAB", "0Modules/", "Gmsh/",    "1Drop/",
+                                       "2Case/", "3Checks/",  "4Results/"};
+    const sf_fields *fields = user;
+    for (size_t k = 0; k < sizeof ours / sizeof ours[0]; k++)
+        if (strncmp(name, ours[k], strlen(ours[k])) == 0)
+            return;
+    for (int k = 0; k < fields->count; k++)
+        if (strcmp(fields->field[k].name, name) == 0)
+            return;
+    sf_window_lock_number(name);
+}
+
+void sf_fields_lock_unknown(sf_fields *fields) {
+    sf_window_visit_numbers(lock_unknown, fields);
 }

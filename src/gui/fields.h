@@ -59,13 +59,17 @@ void sf_fields_take_defaults(sf_fields *fields);
 /* Takes the values that the tree has. *case_changed, *geometry_changed: a field has another value than
  * before. */
 void sf_fields_take(sf_fields *fields, bool *case_changed, bool *geometry_changed);
-/* As if the user had entered `text` in the field of that key; false: there is none. */
-bool sf_fields_enter(sf_fields *fields, const char *key, const char *text);
+/* Puts `text` into the entry of that key, as a user does; false: there is none. */
+bool sf_fields_enter(const sf_fields *fields, const char *key, const char *text);
 const sf_field *sf_fields_find(const sf_fields *fields, const char *key);
 
 /* The overrides; release with sf_overrides_free, also on failure. SF_ERR_INPUT: too many. */
 sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_error *err);
 void sf_overrides_free(sf_overrides *overrides);
+
+/* Parameters of geometries whose variables are not known can be seen and not changed: no run would have them.
+ */
+void sf_fields_lock_unknown(sf_fields *fields);
 
 /* Marks the fields that the sentence of an error names (NULL: none), in the tree too. */
 void sf_fields_mark(sf_fields *fields, const char *sentence);

@@ -39,6 +39,10 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
             argp_error(state, "one case at a time: \"%s\" is one too many", arg);
         o->case_path = arg;
         return 0;
+    case ARGP_KEY_END:
+        if (!o->case_path)
+            o->case_path = "case.cfg";
+        return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -62,7 +66,7 @@ static sf_status run(const options *o, sf_error *err) {
         free(session);
         return err->status;
     }
-    session->case_path = o->case_path ? o->case_path : "case.cfg";
+    session->case_path = o->case_path;
     session->threads = o->threads;
     if (sf_window_start(err) == SF_OK) {
         if (sf_window_open(err) == SF_OK) {

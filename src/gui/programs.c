@@ -4,19 +4,38 @@
 #include "gui/fields.h"
 #include "io/process.h"
 #include <stdio.h>
+#include <string.h>
 
-sf_status sf_programs_pre(sf_child *child, const char *case_path, const sf_run_folder *at, const char *cache,
-                          int count, const char *const *overrides, FILE *log, sf_error *err) {
-    char program[PATH_MAX], share[SF_RUN_PATH_SIZE];
-    const char *arguments[8 + 2 * SF_FIELD_OVERRIDES] = {program,   case_path, "-o", at->model,
-                                                         "--force", "--share", share};
-    int n = 7;
-    snprintf(share, sizeof share, "%s/" SF_RUN_SHARED, cache);
+enum { ARGUMENTS = 8 + 2 * SF_FIELD_OVERRIDES };
+
+/* Adds the overrides to `n` arguments. */
+static void add_overrides(const char *arguments[ARGUMENTS], int n, int count, const char *const *overrides) {
     for (int k = 0; k < count; k++) {
         arguments[n++] = "--set";
         arguments[n++] = overrides[k];
     }
+    arguments[n] = NULL;
+}
+
+sf_status sf_programs_pre(sf_child *child, const char *case_path, const sf_run_folder *at, const char *cache,
+                          int count, const char *const *overrides, FILE *log, sf_error *err) {
+    char program[PATH_MAX], share[SF_RUN_PATH_SIZE];
+    const char *arguments[ARGUMENTS] = {program, case_path, "-o", at->model, "--force", "--share", share};
+    snprintf(share, sizeof share, "%s/" SF_RUN_SHARED, cache);
+    add_overrides(arguments, 7, count, overrides);
     SF_TRY(sf_process_find("softfall-pre", program, sizeof program, err));
+    return sf_child_start(child, arguments, log, err);
+}
+
+sf_status sf_programs_save(sf_child *child, const char *case_path, const char *folder, int count,
+                           const char *const *overrides, FILE *log, sf_error *err) {
+    char program[PATH_MAX];
+    const char *slash = strchr(case_path, '/') ? "" : "./"; /* a name alone is an example's */
+    char from[PATH_MAX + 8];
+    const char *arguments[ARGUMENTS] = {program, folder, "--from", from};
+    snprintf(from, sizeof from, "%s%s", slash, case_path);
+    add_overrides(arguments, 4, count, overrides);
+    SF_TRY(sf_process_find("softfall-new", program, sizeof program, err));
     return sf_child_start(child, arguments, log, err);
 }
 

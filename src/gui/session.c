@@ -13,8 +13,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-static const char STATUS[] = "1Drop/7status", FOLDER[] = "1Drop/8run folder", FRAME[] = "1Drop/9frame";
+static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder", FRAME[] = "1Drop/83frame",
+                  TARGET[] = "1Drop/7save to folder";
 static const char BAD[] = "LightCoral";
 
 /* ---- what is told ---- */
@@ -53,6 +55,30 @@ static void show_buttons(void) {
             .name = button[k][0], .kind = SF_ENTRY_BUTTON, .text = button[k][1], .help = button[k][2]});
 }
 
+/* The case's folder tells more than its own name. */
+static void name_label(const sf_session *s, char *label, size_t size) {
+    char absolute[PATH_MAX] = "";
+    snprintf(label, size, "case");
+    char *last = realpath(s->case_path, absolute) ? strrchr(absolute, '/') : NULL;
+    if (!last)
+        return;
+    *last = '\0';
+    if (strrchr(absolute, '/') && strrchr(absolute, '/')[1])
+        snprintf(label, size, "%.40s", strrchr(absolute, '/') + 1);
+}
+
+/* Beside the present folder, by the name of the case. */
+static void show_target(const sf_session *s) {
+    char label[64], target[PATH_MAX];
+    name_label(s, label, sizeof label);
+    snprintf(target, sizeof target, "%s-saved", label);
+    sf_window_put(&(sf_entry){
+        .name = TARGET,
+        .kind = SF_ENTRY_TEXT,
+        .text = target,
+        .help = "the folder that Save case makes, from the folder in which the window was started"});
+}
+
 static void show_folder(const sf_session *s) {
     sf_window_put(
         &(sf_entry){.name = FOLDER,
@@ -67,17 +93,21 @@ static void show_folder(const sf_session *s) {
 static void show_missile(sf_session *s, const sf_triangles *t) {
     double low[3], high[3], shift[3] = {0};
     int64_t n = 3 * t->count;
-    const sf_case *c = &s->case_file;
+    const double unit = s->case_file.length_unit;
     sf_body body = {.node_count = n, .position = t->corner, .face_count = t->count};
     sf_error none = SF_ERROR_INIT;
     body.face = sf_alloc(&none, 4 * (unsigned long)t->count + 1, sizeof *body.face, "the missile's picture");
     double *move = sf_alloc(&none, 3 * (unsigned long)n + 1, sizeof *move, "the missile's picture");
     sf_geometry_box(low, high);
-    shift[2] = high[2] - t->low[2] + c->missile_card.gap / c->length_unit;
-    for (int d = 0; d < 2 && c->position_given; d++)
-        shift[d] = c->missile_position[d] / c->length_unit;
+    shift[2] = high[2] - t->low[2] + s->place.gap / unit;
+    for (int d = 0; d < 2 && s->place.given; d++)
+        shift[d] = s->place.position[d] / unit;
     for (int64_t k = 0; k < 3 * n && none.status == SF_OK; k++)
         t->corner[k] += shift[k % 3];
+    if (!s->fitted)
+        sf_window_fit(low, high, fmin(low[0], t->low[0] + shift[0]), fmax(high[0], t->high[0] + shift[0]),
+                      t->high[2] + shift[2]);
+    s->fitted = true; /* from now on the user's */
     for (int64_t k = 0; k < 4 * t->count && none.status == SF_OK; k++)
         body.face[k] = k % 4 == 3 ? -1 : (int32_t)(3 * (k / 4) + k % 4);
     if (none.status == SF_OK && sf_view_begin(SF_PICTURE_MISSILE, "missile", &body, &none) == SF_OK)
@@ -109,6 +139,7 @@ static sf_status show_geometry(sf_session *s, sf_error *err) {
         return err->status;
     if (sf_geometry_show(c->pad.path, err) == SF_OK) {
         sf_fields_take_defaults(&s->fields);
+        sf_fields_lock_unknown(&s->fields);
         if (missile.count > 0)
             show_missile(s, &missile);
     }
@@ -147,19 +178,25 @@ static sf_status read_case(sf_session *s, sf_error *err) {
 }
 
 /* The sentence of the case with the values of the window, as the programs would say it. */
-static sf_status check_values(const sf_session *s, sf_error *err) {
+static sf_status check_values(sf_session *s, sf_error *err) {
     sf_overrides o;
     sf_case c;
     if (sf_fields_overrides(&s->fields, &o, err) == SF_OK &&
-        sf_case_read(s->case_path, o.count, (const char *const *)o.text, NULL, &c, err) == SF_OK)
+        sf_case_read(s->case_path, o.count, (const char *const *)o.text, NULL, &c, err) == SF_OK) {
+        s->place = (sf_session_place){
+            c.position_given, {c.missile_position[0], c.missile_position[1]}, c.missile_card.gap};
         sf_case_free(&c);
+    }
     sf_overrides_free(&o);
     return err->status;
 }
 
-/* After an edit of the window, or of the files if `reread`. */
-static void begin_anew(sf_session *s, bool reread, bool geometry) {
-    sf_error err = SF_ERROR_INIT;
+static void show_finished(sf_session *s);
+
+/* After an edit of the window, or of the files if `reread`: gmsh reads the geometry again, even if the values
+ * of the case are wrong. */
+static void begin_anew(sf_session *s, bool reread) {
+    sf_error err = SF_ERROR_INIT, geometry = SF_ERROR_INIT;
     s->activity = sf_activity_next(s->activity, SF_EDIT);
     s->at.path[0] = '\0';
     sf_checks_clear();
@@ -170,17 +207,19 @@ static void begin_anew(sf_session *s, bool reread, bool geometry) {
         s->watch.count = 0;
         sf_watch_register(&s->watch, 0);
     }
-    if (err.status == SF_OK && (reread || geometry))
-        show_geometry(s, &err);
-    else if (err.status == SF_OK)
-        forget_results(s);
     if (err.status == SF_OK)
         check_values(s, &err);
+    if (s->case_file.pad.path)
+        show_geometry(s, &geometry);
+    if (err.status == SF_OK && geometry.status != SF_OK)
+        err = geometry;
     show_folder(s);
     if (err.status != SF_OK)
         tell_error(s, &err);
     else
         tell(s, false, "ready: Mesh checks the model, Run simulates the drop");
+    if (err.status == SF_OK)
+        show_finished(s);
     sf_window_refresh();
 }
 
@@ -188,31 +227,29 @@ void sf_session_begin(sf_session *s) {
     sf_error err = SF_ERROR_INIT;
     sf_cache_find(s->cache, sizeof s->cache, &err);
     show_buttons();
-    begin_anew(s, true, true);
+    show_target(s);
+    begin_anew(s, true);
     if (err.status != SF_OK)
         tell_error(s, &err);
 }
 
 /* ---- programs ---- */
 
-/* Finds the run's folder and makes it. */
-static sf_status locate(sf_session *s, sf_overrides *o, sf_error *err) {
-    const char *slash = strrchr(s->case_path, '/');
-    char label[64], absolute[PATH_MAX] = "";
-    if (realpath(s->case_path, absolute))
-        slash = strrchr(absolute, '/');
-    /* the name of the case's folder tells more than case.cfg */
-    const char *end = slash, *begin = end;
-    while (begin && begin > absolute && begin[-1] != '/')
-        begin--;
-    snprintf(label, sizeof label, "%.*s", begin ? (int)(end - begin) : 0, begin ? begin : "");
+/* The folder of the present values; nothing is made. */
+static sf_status name_run(sf_session *s, sf_overrides *o, sf_error *err) {
+    char label[64];
+    name_label(s, label, sizeof label);
     if (sf_fields_overrides(&s->fields, o, err) != SF_OK ||
-        sf_run_folder_name(s->cache, *label ? label : "case", s->case_path, o->count,
-                           (const char *const *)o->text, &s->at, err) != SF_OK ||
-        sf_folder_own(s->at.path, err) != SF_OK)
+        sf_run_folder_name(s->cache, label, s->case_path, o->count, (const char *const *)o->text, &s->at,
+                           err) != SF_OK)
         s->at.path[0] = '\0';
-    else
-        show_folder(s);
+    return err->status;
+}
+
+static sf_status locate(sf_session *s, sf_overrides *o, sf_error *err) {
+    if (name_run(s, o, err) != SF_OK || sf_folder_own(s->at.path, err) != SF_OK)
+        s->at.path[0] = '\0';
+    show_folder(s);
     return err->status;
 }
 
@@ -246,6 +283,16 @@ static sf_status start_pre(sf_session *s, sf_error *err) {
     return err->status;
 }
 
+static sf_status start_save(sf_session *s, sf_error *err) {
+    sf_overrides o = {0};
+    char folder[PATH_MAX];
+    sf_window_text(TARGET, folder, sizeof folder);
+    if (locate(s, &o, err) == SF_OK && open_log(s, err) == SF_OK)
+        sf_programs_save(&s->child, s->case_path, folder, o.count, (const char *const *)o.text, s->log, err);
+    sf_overrides_free(&o);
+    return err->status;
+}
+
 /* A run that was stopped goes on if its model is the same: softfall-solve refuses another one. */
 static sf_status start_solve(sf_session *s, bool resume, sf_error *err) {
     s->resuming = resume;
@@ -273,6 +320,9 @@ static void start(sf_session *s) {
     case SF_REPORTING:
         if (open_log(s, &err) == SF_OK)
             sf_programs_post(&s->child, &s->at, s->log, &err);
+        break;
+    case SF_SAVING:
+        start_save(s, &err);
         break;
     default:
         return;
@@ -380,6 +430,22 @@ static void show_results(sf_session *s, bool whole) {
     sf_window_refresh();
 }
 
+/* A finished run of the same values is shown at once. */
+static void show_finished(sf_session *s) {
+    sf_overrides o = {0};
+    sf_error none = SF_ERROR_INIT;
+    bool finished = name_run(s, &o, &none) == SF_OK && sf_run_folder_is_finished(&s->at);
+    sf_overrides_free(&o);
+    if (!finished) {
+        s->at.path[0] = '\0';
+        return;
+    }
+    s->activity = SF_DONE;
+    show_folder(s);
+    show_results(s, true);
+    tell(s, false, "done earlier with the same values: see Results");
+}
+
 /* ---- the end of a program ---- */
 
 static void tell_done(sf_session *s) {
@@ -392,6 +458,9 @@ static void tell_done(sf_session *s) {
         snprintf(text, sizeof text, "stopped%s",
                  is_there(s->at.checkpoint) ? ": Run goes on from the checkpoint" : "");
         tell(s, false, text);
+        break;
+    case SF_SAVED:
+        tell(s, false, "saved: softfall-pre and softfall-gui take the case.cfg of that folder");
         break;
     case SF_DONE:
         tell(s, false, "done: see Results");
@@ -458,8 +527,18 @@ static void tell_progress(sf_session *s) {
     free(log);
 }
 
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 void sf_session_look(sf_session *s) {
+    static const double INTERVAL = 0.25; /* s */
     int code;
+    if (now() < s->next_look)
+        return;
+    s->next_look = now() + INTERVAL;
     if (s->activity == SF_RUNNING) {
         tell_progress(s);
         show_results(s, false);
@@ -468,7 +547,7 @@ void sf_session_look(sf_session *s) {
         end_program(s, code);
     const char *changed = sf_activity_is_busy(s->activity) ? NULL : sf_watch_changed(&s->watch);
     if (changed)
-        begin_anew(s, true, true);
+        begin_anew(s, true);
 }
 
 /* ---- buttons ---- */
@@ -485,7 +564,13 @@ static void check_edits(sf_session *s) {
         return; /* the values of the next run */
     sf_fields_take(&s->fields, &of_case, &of_geometry);
     if (of_case || of_geometry)
-        begin_anew(s, false, of_geometry);
+        begin_anew(s, false);
+}
+
+static bool has_report(const sf_session *s) {
+    char path[SF_RUN_PATH_SIZE + 64];
+    snprintf(path, sizeof path, "%s/report/report.html", s->at.path);
+    return *s->at.path && is_there(path);
 }
 
 static void open_product(sf_session *s, const char *program, const char *name) {
@@ -501,8 +586,10 @@ static void open_product(sf_session *s, const char *program, const char *name) {
 }
 
 static void press(sf_session *s, sf_event event) {
-    sf_activity before = s->activity;
     check_edits(s);
+    sf_activity before = s->activity;
+    if (event == SF_PRESS_RUN && before == SF_DONE && has_report(s))
+        return; /* the run of these values is what is shown */
     s->activity = sf_activity_next(s->activity, event);
     if (s->activity == before && event != SF_PRESS_STOP && sf_activity_is_busy(before))
         return;
@@ -519,6 +606,8 @@ void sf_session_act(sf_session *s, const char *action) {
         press(s, SF_PRESS_RUN);
     else if (strcmp(action, "stop") == 0)
         press(s, SF_PRESS_STOP);
+    else if (strcmp(action, "save") == 0)
+        press(s, SF_PRESS_SAVE);
     else if (strcmp(action, "report") == 0)
         open_product(s, "xdg-open", "report.html");
     else if (strcmp(action, "paraview") == 0)

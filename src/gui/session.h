@@ -11,6 +11,12 @@
 #include "gui/watch.h"
 #include "io/child.h"
 
+/* Where the case puts the missile, until softfall-pre does so exactly. */
+typedef struct sf_session_place {
+    bool given;
+    double position[2], gap; /* m */
+} sf_session_place;
+
 typedef struct sf_session {
     const char *case_path; /* borrowed */
     int threads;           /* of softfall-solve; 0: as it chooses */
@@ -22,6 +28,8 @@ typedef struct sf_session {
     char sentence[1100]; /* the last one told */
     bool failed;         /* it is an error */
     bool with_missile;   /* the missile has a geometry of its own */
+    sf_session_place place;
+    double next_look; /* s, at the program that runs and the files */
 
     sf_run_folder at; /* of the present values; path "" until Mesh or Run */
     sf_child child;
@@ -32,6 +40,7 @@ typedef struct sf_session {
     sf_shape shape;      /* that is shown; pad.node_count 0: none */
     sf_watch_stamp seen; /* of the results.h5 that is shown */
     int frames;          /* of it that are shown */
+    bool fitted;         /* the picture shows pad and missile */
     int frame;           /* shown, as the tree has it */
 } sf_session;
 

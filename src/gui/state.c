@@ -9,7 +9,8 @@ const char *sf_activity_name(sf_activity activity) {
 }
 
 bool sf_activity_is_busy(sf_activity a) {
-    return a == SF_MESHING || a == SF_PREPARING || a == SF_RUNNING || a == SF_STOPPING || a == SF_REPORTING;
+    return a == SF_MESHING || a == SF_PREPARING || a == SF_RUNNING || a == SF_STOPPING || a == SF_REPORTING ||
+           a == SF_SAVING;
 }
 
 /* After a program has ended well. */
@@ -21,6 +22,8 @@ static sf_activity succeed(sf_activity a) {
         return SF_RUNNING;
     case SF_RUNNING:
         return SF_REPORTING;
+    case SF_SAVING:
+        return SF_SAVED;
     case SF_REPORTING:
     case SF_STOPPING: /* the run had ended before it was asked to */
         return SF_DONE;
@@ -36,6 +39,8 @@ sf_activity sf_activity_next(sf_activity a, sf_event event) {
         return busy ? a : SF_MESHING;
     case SF_PRESS_RUN:
         return busy ? a : SF_PREPARING;
+    case SF_PRESS_SAVE:
+        return busy ? a : SF_SAVING;
     case SF_PRESS_STOP:
         return busy ? SF_STOPPING : a;
     case SF_CHILD_DONE:

@@ -15,6 +15,8 @@
     X(STOPPING, "stopping")                /* it was asked to end */                                         \
     X(STOPPED, "stopped")                  /* it can be resumed */                                           \
     X(REPORTING, "writing the report")     /* softfall-post */                                               \
+    X(SAVING, "saving the case")                                                                             \
+    X(SAVED, "saved")                                                                                        \
     X(DONE, "done")                                                                                          \
     X(FAILED, "failed")
 
@@ -26,6 +28,7 @@ typedef enum sf_event {
     SF_PRESS_MESH,
     SF_PRESS_RUN,
     SF_PRESS_STOP,
+    SF_PRESS_SAVE,
     SF_CHILD_DONE,        /* the program ended well */
     SF_CHILD_INTERRUPTED, /* it ended because it was asked to */
     SF_CHILD_FAILED,

@@ -14,9 +14,9 @@ static sf_status take_error(const char *path, sf_error *err) {
     int ierr = 0;
     gmshLoggerGet(&line, &count, &ierr);
     for (size_t k = 0; k < count; k++) {
-        if (strncmp(line[k], "Error", 5) == 0)
-            SF_FAIL(err, SF_ERR_INPUT, "the geometry %s: gmsh says: %s", path,
-                    line[k] + strspn(line[k] + 5, " :") + 5);
+        if (strncmp(line[k], "Error", 5) == 0) /* as softfall-pre says it */
+            SF_FAIL(err, SF_ERR_INPUT, "%s: gmsh, reading: %s", path,
+                    line[k] + 5 + strspn(line[k] + 5, " :"));
         gmshFree(line[k]);
     }
     gmshFree(line);

@@ -196,7 +196,8 @@ void sf_view_plot(const char *title, const char *x_label, int64_t count, const d
         set_option(TAG, "Axes", 3);
         set_option(TAG, "PointSize", 1);
         set_option(TAG, "LineWidth", 2);
-        set_option(TAG, "ShowScale", 0);
+        set_option(TAG, "ShowScale", 1);
+        set_option(TAG, "NbIso", 5);
         set_option(TAG, "IntervalsType", 2);
     }
     free(data);

@@ -2,8 +2,8 @@
 #include "gui/gmsh/window.h"
 
 #include "io/json.h"
-#include <ctype.h>
 #include <gmshc.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -280,12 +280,22 @@ void sf_window_visit_numbers(void (*visit)(void *user, const char *name), void *
     gmshOnelabGetNames(&names, &count, "", &ierr);
     for (size_t k = 0; k < count; k++) {
         double value;
-        if (!isdigit((unsigned char)names[k][0]) && strncmp(names[k], "ONELAB", 6) != 0 &&
-            sf_window_number(names[k], &value))
+        if (sf_window_number(names[k], &value))
             visit(user, names[k]);
         gmshFree(names[k]);
     }
     gmshFree(names);
+}
+
+/* gmsh fits the largest extent of the model's box around its middle. */
+void sf_window_fit(const double low[3], const double high[3], double left, double right, double top) {
+    double own = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2])),
+           whole = fmax(right - left, top - low[2]), scale = own / whole;
+    const char *const scales[] = {"General.ScaleX", "General.ScaleY", "General.ScaleZ"};
+    for (int k = 0; k < 3 && scale > 0; k++)
+        sf_window_option(scales[k], fmin(scale, 1));
+    sf_window_option("General.TranslationX", 0.5 * (low[0] + high[0] - left - right));
+    sf_window_option("General.TranslationY", 0.5 * (high[2] - top));
 }
 
 sf_status sf_window_write_picture(const char *path, sf_error *err) {

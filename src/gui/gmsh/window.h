@@ -62,11 +62,14 @@ void sf_window_set_number(const char *name, double number);
 void sf_window_colour_number(const char *name, const char *colour);
 /* Shows a value of a geometry as one that cannot be changed. */
 void sf_window_lock_number(const char *name);
-/* Calls `visit` with the name of each number whose name does not begin with a digit: those of geometries. */
+/* Calls `visit` with the name of each number of the tree. */
 void sf_window_visit_numbers(void (*visit)(void *user, const char *name), void *user);
 
 /* An option of gmsh. */
 void sf_window_option(const char *name, double value);
+/* Moves and scales the picture from the model's box (side view, x and z) so that a larger box of height and
+ * width fits. */
+void sf_window_fit(const double low[3], const double high[3], double left, double right, double top);
 /* The picture (without the tree) as a PNG file. */
 sf_status sf_window_write_picture(const char *path, sf_error *err);
 

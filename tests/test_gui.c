@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-gui on a display of its own (Xvfb), by its script and by clicks and keys (xdotool). Without these
+ * two programs the tests are skipped. SF_PICTURES=FOLDER: the pictures of docs/window.md are written there,
+ * by import (ImageMagick). */
+#include "program_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+static bool has_display;
+
+/* A coarse drop of some hundred nodes, with geometry and material of its own beside it. */
+static const char case_text[] =
+    "geometry: { file = \"geo/pad.geo\"; missile_file = \"geo/hemisphere.geo\"; length_unit = \"mm\";\n"
+    "  parameters = { side = 240.0; thickness = 50.0; zone_side = 120.0; fine_spacing = 15.0; outer_spacing = 30.0; "
+    "quarter = 1; };\n"
+    "  missile_parameters = { diameter = 160.0; element_size = 16.0; quarter = 1; }; };\n"
+    "pad: { mesh_error_limit = 10.0; };\nmaterial: {\n@include \"foam/eva35.cfg\"\n};\n"
+    "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\nsolver: { end_time = \"40 ms\"; };\n"
+    "output: { frame_interval = \"2 ms\"; };\n";
+
+/* Runs in the folder of the tests; what the script waits for may be done by a click. */
+static const char tools[] =
+    "has() { for k in $(seq 1500); do grep -q -- \"$2\" $1 2>/dev/null && return 0; test -e $1.ended && return 1; "
+    "sleep 0.1; done; return 1; }\n"
+    "find_window() { for k in $(seq 300); do for w in $(xdotool search --onlyvisible --name . 2>/dev/null); do\n"
+    "  eval \"$(xdotool getwindowgeometry --shell $w 2>/dev/null)\"; test \"${WIDTH:-0}\" -gt 600 && return 0\n"
+    "  done; sleep 0.1; done; return 1; }\n"
+    "# the button at the bottom of the tree\n"
+    "click_run() { find_window && xdotool mousemove $((X + 338)) $((Y + HEIGHT - 38)) sleep 0.3 click 1; }\n"
+    "press_key() { find_window && xdotool mousemove $((X + 800)) $((Y + 400)) sleep 0.3 key $1; }\n"
+    "shoot() { test -z \"$SF_PICTURES\" || { sleep 2; import -window root \"$SF_PICTURES/$1.png\"; }; }\n"
+    "# programs of softfall that work in this folder\n"
+    "left() { for p in /proc/[0-9]*; do test \"$(readlink $p/cwd)\" = \"$PWD\" && grep -l '^softfall' $p/comm; done "
+    "2>/dev/null; true; }\n"
+    "gone() { for k in $(seq 400); do test -z \"$(left)\" && return 0; sleep 0.1; done; left; return 1; }\n"
+    "gui() { \"$SF_BIN_DIR/softfall-gui\" -t 1 --script $1.script case.cfg >$1.txt 2>$1.err; code=$?; "
+    ": >$1.txt.ended; return $code; }\n";
+
+static int set_up(void **state) {
+    program_place *p = program_group_set_up(state);
+    program_result made = program_shell(p, "mkdir home && cp -r \"$SF_SOURCE_DIR/geo\" . && "
+                                           "cp -r \"$SF_SOURCE_DIR/examples/materials\" foam");
+    assert_int_equal(made.code, 0);
+    program_write_text(p, "case.cfg", case_text);
+    program_write_text(p, "tools.sh", tools);
+    setenv("HOME", program_path(p, "home"), 1);
+    setenv("XDG_CACHE_HOME", program_path(p, "cache"), 1);
+    has_display =
+        program_shell(
+            p,
+            "command -v Xvfb xdotool >/dev/null && { Xvfb -displayfd 3 -screen 0 1300x980x24 -nolisten tcp "
+            "3>display >/dev/null 2>&1 & echo $! >xvfb.pid; for k in $(seq 100); do test -s display && "
+            "exit 0; sleep 0.1; done; exit 1; }")
+            .code == 0;
+    if (has_display) {
+        char display[32];
+        snprintf(display, sizeof display, ":%d", atoi(program_shell(p, "cat display").out));
+        setenv("DISPLAY", display, 1);
+    }
+    return 0;
+}
+
+static int tear_down(void **state) {
+    if (has_display)
+        program_shell(*state, "kill $(cat xvfb.pid)");
+    return program_group_tear_down(state);
+}
+
+static void need_display(void) {
+    if (!has_display)
+        skip();
+}
+
+/* Runs a shell command with the tools, fails the test with its words unless it exits with 0. */
+static void do_shell(const program_place *p, const char *command) {
+    program_result r = program_shell(p, ". ./tools.sh; %s", command);
+    if (r.code != 0)
+        fail_msg("%s: exit code %d: %s%s\n%s", command, r.code, r.out, r.err,
+                 program_shell(p, "tail -n 20 *.txt *.err").out);
+}
+
+/* The first line of a file that begins with the words, without them and its end. */
+static const char *line_of(const program_place *p, const char *file, const char *words) {
+    static char line[4][1200];
+    static int turn;
+    program_bytes all = program_read_file(program_path(p, file));
+    char *at = strstr(all.data, words);
+    turn = (turn + 1) % 4;
+    if (!at)
+        fail_msg("%s has no \"%s\":\n%s", file, words, all.data);
+    at += strlen(words);
+    snprintf(line[turn], sizeof line[turn], "%.*s", (int)strcspn(at, "\n"), at);
+    free(all.data);
+    return line[turn];
+}
+
+/* The drop of the command line with these --set options, in NAME/. */
+static void compute(const program_place *p, const char *name, const char *file, const char *options) {
+    program_succeed(p, "pre", "%s -o %s.h5 %s", file, name, options);
+    program_succeed(p, "solve", "%s.h5 -o %s-results.h5 -t 1 --no-checkpoint", name, name);
+    program_succeed(p, "post", "%s-results.h5 -o %s", name, name);
+}
+
+/* Fails unless the figures that the window has shown are those of NAME/summary.json, digit by digit. */
+static void assert_figures(const program_place *p, const char *shown, const char *name) {
+    char path[64], a_max[64], hic[64];
+    snprintf(path, sizeof path, "%s/summary.json", name);
+    snprintf(a_max, sizeof a_max, "%.*s g (limit", (int)strcspn(line_of(p, path, "\"a_max_g\": "), ","),
+             line_of(p, path, "\"a_max_g\": "));
+    snprintf(hic, sizeof hic, "%.*s, window", (int)strcspn(line_of(p, path, "\"hic\": "), ","),
+             line_of(p, path, "\"hic\": "));
+    assert_memory_equal(line_of(p, shown, "4Results/2a_max = "), a_max, strlen(a_max));
+    assert_memory_equal(line_of(p, shown, "4Results/3HIC = "), hic, strlen(hic));
+}
+
+static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(
+        p, "run.script",
+        "status\nset geometry.parameters.thickness=60\npress mesh\nwait meshed 300\nprint 3Checks/00nodes\n"
+        "set missile.velocity=4 m/s\nwait ready\nactivity\n# the click\nwait done 300\nstatus\nframes\n"
+        "print 4Results/2a_max\nprint 4Results/3HIC\nprint 4Results/1verdict\n"
+        "set geometry.parameters.thickness=50\nset geometry.parameters.thickness=60\nactivity\n"
+        "press save\nwait saved 300\nquit\n");
+    do_shell(
+        p,
+        "find case.cfg geo foam home -type f | sort | xargs md5sum >before; "
+        "{ has run.txt 'activity = ready' && shoot window-start; click_run; "
+        "has run.txt 4Results/1verdict; shoot window-results; } & gui run; wait; "
+        "find case.cfg geo foam home -type f | grep -v '/\\.fltk/' | sort | xargs md5sum >after; diff before after");
+    compute(p, "line", "case.cfg", "--set geometry.parameters.thickness=60 --set missile.velocity='4 m/s'");
+    assert_figures(p, "run.txt", "line");
+    assert_true(atoi(line_of(p, "run.txt", "frames = ")) > 3);
+    assert_non_null(strstr(line_of(p, "run.txt", "3Checks/00nodes = "), "1/4 of the pad"));
+    /* the same values find their run again */
+    assert_string_equal(line_of(p, "run.txt", "activity = done"), "");
+    /* what was saved is the same drop */
+    compute(p, "saved", "$(echo *-saved)/case.cfg", "");
+    assert_figures(p, "run.txt", "saved");
+}
+
+static void stop_in_the_middle_can_be_resumed(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(
+        p, "stop.script",
+        "set solver.step_limit=2 us\npress run\nwait running 300\npress stop\nwait stopped 300\n"
+        "status\nprint 1Drop/82run folder\npress run\nwait done 600\nprint 4Results/2a_max\n"
+        "print 4Results/3HIC\nquit\n");
+    do_shell(
+        p, "{ has stop.txt '82run folder' && f=$(sed -n 's/^1Drop.82run folder = //p' stop.txt) && "
+           "test -s $f/results.h5 && test -s $f/results.h5.restart && : >stopped.there; } & gui stop; wait; "
+           "test -f stopped.there");
+    assert_non_null(strstr(line_of(p, "stop.txt", "stopped"), "Run goes on"));
+    compute(p, "whole", "case.cfg", "--set solver.step_limit='2 us'");
+    assert_figures(p, "stop.txt", "whole");
+}
+
+static void a_wrong_value_has_the_sentence_of_the_command_line(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(
+        p, "wrong.script",
+        "set missile.velocity=fast\nstatus\nprint missile.velocity\nprint missile.mass\n"
+        "set missile.velocity=4.5 m/s\nstatus\nprint missile.velocity\n"
+        "set geometry.parameters.thickness=-5\nstatus\nprint geometry.parameters.thickness\nquit\n");
+    do_shell(p, "gui wrong");
+    program_result pre = program_run(p, "pre", "case.cfg -o wrong.h5 --set missile.velocity=fast");
+    assert_int_equal(pre.code, 2);
+    const char *colon = strstr(pre.err, ": ");
+    assert_memory_equal(line_of(p, "wrong.txt", "error: "), colon + 2, strcspn(colon + 2, "\n"));
+    assert_string_equal(line_of(p, "wrong.txt", "missile.velocity = "), "fast (marked)");
+    assert_string_equal(line_of(p, "wrong.txt", "missile.mass = "), "4.6 kg");
+    assert_non_null(line_of(p, "wrong.txt", "\nready: "));
+    assert_string_equal(line_of(p, "wrong.txt", "\nmissile.velocity = 4.5 m/s"), "");
+    pre = program_run(p, "pre", "case.cfg -o wrong.h5 --set geometry.parameters.thickness=-5");
+    colon = strstr(pre.err, ": ");
+    assert_memory_equal(line_of(p, "wrong.txt", "\nmissile.velocity = 4.5 m/s\nerror: "), colon + 2,
+                        strcspn(colon + 2, "\n"));
+    assert_string_equal(line_of(p, "wrong.txt", "geometry.parameters.thickness = "), "-5 (marked)");
+}
+
+static void a_geometry_is_mended_outside(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(p, "mend.script",
+                       "status\npress mesh\nwait failed 300\nstatus\nactivity\nwait ready 300\n"
+                       "status\npress mesh\nwait meshed 300\nquit\n");
+    do_shell(p, "cp geo/pad.geo good.geo; sed -i 's/^a = zone_side.*/a = zone_side \\/ ;/' geo/pad.geo; "
+                "{ has mend.txt 'activity = failed'; cp good.geo geo/pad.geo; } & gui mend; wait; "
+                "cp good.geo geo/pad.geo; tail -n 3 mend.err; ! test -s mend.err");
+    assert_non_null(strstr(line_of(p, "mend.txt", "error: "), "geo/pad.geo', line 27: syntax error"));
+    assert_non_null(line_of(p, "mend.txt", "\nready: "));
+}
+
+static void nothing_is_left_of_a_window_that_is_closed(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(p, "close.script",
+                       "set solver.step_limit=0.2 us\npress run\nwait running 300\nactivity\n");
+    do_shell(p, "{ has close.txt running && press_key ctrl+q; } & gui close; wait; gone");
+    do_shell(
+        p, "rm close.txt; \"$SF_BIN_DIR/softfall-gui\" -t 1 --script close.script case.cfg >close.txt 2>&1 & "
+           "window=$!; has close.txt running; kill -9 $window; wait; gone");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_click_on_run_has_the_figures_of_the_command_line),
+        cmocka_unit_test(stop_in_the_middle_can_be_resumed),
+        cmocka_unit_test(a_wrong_value_has_the_sentence_of_the_command_line),
+        cmocka_unit_test(a_geometry_is_mended_outside),
+        cmocka_unit_test(nothing_is_left_of_a_window_that_is_closed),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
