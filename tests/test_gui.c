@@ -133,8 +133,8 @@ static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
     do_shell(
         p,
         "find case.cfg geo foam home -type f | sort | xargs md5sum >before; "
-        "{ has run.txt 'activity = ready' && shoot window-start; click_run; "
-        "has run.txt 4Results/1verdict; shoot window-results; } & gui run; wait; "
+        "{ has run.txt 'activity = ready' && shoot window-start && click_run && "
+        "has run.txt 4Results/1verdict && shoot window-results; } & gui run; wait; "
         "find case.cfg geo foam home -type f | grep -v '/\\.fltk/' | sort | xargs md5sum >after; diff before after");
     compute(p, "line", "case.cfg", "--set geometry.parameters.thickness=60 --set missile.velocity='4 m/s'");
     assert_figures(p, "run.txt", "line");
@@ -152,7 +152,7 @@ static void stop_in_the_middle_can_be_resumed(void **state) {
     need_display();
     program_write_text(
         p, "stop.script",
-        "set solver.step_limit=2 us\npress run\nwait running 300\npress stop\nwait stopped 300\n"
+        "set solver.step_limit=2 us\npress run\nwait 2 frames while running 300\npress stop\nwait stopped 300\n"
         "status\nprint 1Drop/82run folder\npress run\nwait done 600\nprint 4Results/2a_max\n"
         "print 4Results/3HIC\nquit\n");
     do_shell(
@@ -195,7 +195,7 @@ static void a_geometry_is_mended_outside(void **state) {
                        "status\npress mesh\nwait failed 300\nstatus\nactivity\nwait ready 300\n"
                        "status\npress mesh\nwait meshed 300\nquit\n");
     do_shell(p, "cp geo/pad.geo good.geo; sed -i 's/^a = zone_side.*/a = zone_side \\/ ;/' geo/pad.geo; "
-                "{ has mend.txt 'activity = failed'; cp good.geo geo/pad.geo; } & gui mend; wait; "
+                "{ has mend.txt 'activity = failed' && cp good.geo geo/pad.geo; } & gui mend; wait; "
                 "cp good.geo geo/pad.geo; tail -n 3 mend.err; ! test -s mend.err");
     assert_non_null(strstr(line_of(p, "mend.txt", "error: "), "geo/pad.geo', line 27: syntax error"));
     assert_non_null(line_of(p, "mend.txt", "\nready: "));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The command lines of softfall-pre, softfall-solve, softfall-post and softfall-new, begun as children (io/child.h). */
+/* The command lines of softfall-pre, softfall-solve, softfall-post and softfall-new, begun as children
+ * (io/child.h). */
 #ifndef SF_GUI_PROGRAMS_H
 #define SF_GUI_PROGRAMS_H
 

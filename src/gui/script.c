@@ -24,8 +24,11 @@ void sf_script_close(sf_script *s) {
     *s = (sf_script){0};
 }
 
-/* "wait NAME [SECONDS]"; `rest` is the name of an activity. */
+/* "wait NAME [SECONDS]", NAME of an activity, or "wait N frames while running". */
 static sf_status begin_wait(sf_script *s, char *rest, sf_error *err) {
+    s->frames = (int)strtol(rest, &rest, 10);
+    if (s->frames > 0 && strncmp(rest, " frames while ", 14) == 0)
+        rest += 14;
     char *seconds = strrchr(rest, ' ');
     double patience = seconds ? strtod(seconds, NULL) : 0;
     if (patience > 0)
@@ -40,11 +43,12 @@ static sf_status begin_wait(sf_script *s, char *rest, sf_error *err) {
 }
 
 static sf_status look_wait(sf_script *s, const sf_session *session, sf_error *err) {
-    if (session->activity == s->awaited)
+    if (session->activity == s->awaited && session->frames >= s->frames)
         s->deadline = 0;
     else if (now() > s->deadline)
-        return SF_FAIL(err, SF_ERR_INPUT, "line %d: it is \"%s\", not \"%s\": %s", s->line,
-                       sf_activity_name(session->activity), sf_activity_name(s->awaited), session->sentence);
+        return SF_FAIL(err, SF_ERR_INPUT, "line %d: it is \"%s\" with %d frames, not \"%s\": %s", s->line,
+                       sf_activity_name(session->activity), session->frames, sf_activity_name(s->awaited),
+                       session->sentence);
     return SF_OK;
 }
 

@@ -12,6 +12,7 @@ typedef struct sf_script {
     int line;
     double deadline; /* s, of `wait`; 0: none */
     sf_activity awaited;
+    int frames; /* awaited too */
     bool ended; /* by `quit`, or by an error */
 } sf_script;
 

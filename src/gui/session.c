@@ -573,16 +573,37 @@ static bool has_report(const sf_session *s) {
     return *s->at.path && is_there(path);
 }
 
-static void open_product(sf_session *s, const char *program, const char *name) {
+/* The path of a file of the report; false, and told: there is none. */
+static bool find_product(sf_session *s, const char *name, char *path, size_t size) {
+    char text[160];
+    snprintf(path, size, "%s/report/%s", s->at.path, name);
+    if (*s->at.path && is_there(path))
+        return true;
+    snprintf(text, sizeof text, "there is no %s yet: Run makes it", name);
+    tell(s, true, text);
+    return false;
+}
+
+static void leave(sf_session *s, const char *program, const char *argument) {
     sf_error err = SF_ERROR_INIT;
-    char path[SF_RUN_PATH_SIZE + 64];
-    snprintf(path, sizeof path, "%s/report/%s", s->at.path, name);
-    if (!*s->at.path || !is_there(path))
-        SF_FAIL(&err, SF_ERR_INPUT, "there is no %s yet: Run makes it", name);
-    else
-        sf_child_leave((const char *const[]){program, path, NULL}, &err);
-    if (err.status != SF_OK)
+    if (sf_child_leave((const char *const[]){program, argument, NULL}, &err) != SF_OK)
         tell_error(s, &err);
+}
+
+static void open_report(sf_session *s) {
+    char path[SF_RUN_PATH_SIZE + 64];
+    if (find_product(s, "report.html", path, sizeof path))
+        leave(s, "xdg-open", path);
+}
+
+/* By the state that softfall-post writes, if there is one. */
+static void open_paraview(sf_session *s) {
+    static const char script[] = "--script=";
+    char path[SF_RUN_PATH_SIZE + 64], argument[sizeof path + sizeof script];
+    if (!find_product(s, "pad.xdmf", path, sizeof path))
+        return;
+    snprintf(argument, sizeof argument, "%s%s/report/pad_paraview.py", script, s->at.path);
+    leave(s, "paraview", is_there(argument + strlen(script)) ? argument : path);
 }
 
 static void press(sf_session *s, sf_event event) {
@@ -609,9 +630,9 @@ void sf_session_act(sf_session *s, const char *action) {
     else if (strcmp(action, "save") == 0)
         press(s, SF_PRESS_SAVE);
     else if (strcmp(action, "report") == 0)
-        open_product(s, "xdg-open", "report.html");
+        open_report(s);
     else if (strcmp(action, "paraview") == 0)
-        open_product(s, "paraview", "pad.xdmf");
+        open_paraview(s);
     else
         check_edits(s);
 }
