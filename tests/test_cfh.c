@@ -155,11 +155,11 @@ static sf_cfh_plan plan_from(double first, double max_height) {
         .limit = {200, 1000}, .first = first, .max_height = max_height, .max_drops = 8, .unit = 1};
 }
 
-static sf_cfh_step search(const pad *p, const sf_cfh_plan *plan, sf_cfh_points *points) {
-    double height = 0;
-    sf_cfh_step step;
-    *points = (sf_cfh_points){0};
-    while ((step = sf_cfh_next(plan, points, &height)) == SF_CFH_SIMULATE) {
+/* Simulates the heights of a round. */
+static void add_round(const pad *p, const sf_cfh_plan *plan, const sf_cfh_round *round,
+                      sf_cfh_points *points) {
+    for (int k = 0; k < round->count; k++) {
+        double height = round->height[k];
         sf_cfh_point point = {.height = height, .failed = height > p->collapse};
         point.value[SF_CFH_A_MAX] = evaluate(&p->a_max, height);
         point.value[SF_CFH_HIC] = evaluate(&p->hic, height);
@@ -169,9 +169,18 @@ static sf_cfh_step search(const pad *p, const sf_cfh_plan *plan, sf_cfh_points *
         assert_true(height > 0 && height <= plan->max_height);
         sf_cfh_points_add(points, &point);
     }
-    return step;
 }
 
+static sf_cfh_step search(const pad *p, const sf_cfh_plan *plan, sf_cfh_points *points) {
+    sf_cfh_round round;
+    sf_cfh_step step;
+    *points = (sf_cfh_points){0};
+    while ((step = sf_cfh_next(plan, points, &round)) == SF_CFH_SIMULATE) {
+        assert_in_range(round.count, 1, plan->list_count > 0 ? plan->list_count : 2);
+        add_round(p, plan, &round, points);
+    }
+    return step;
+}
 static int count_sides(const sf_cfh_points *points, sf_cfh_criterion c, double limit, bool above) {
     int count = 0;
     for (int k = 0; k < points->count; k++)
@@ -208,6 +217,25 @@ static void the_search_finds_the_criterion_that_is_met_first(void **state) {
             assert_true(count_sides(&points, d, plan.limit[d], false) > 0);
             assert_true(count_sides(&points, d, plan.limit[d], true) > 0);
         }
+}
+
+/* The pads of the examples, by the figures of their drops: two rounds for the 50 mm, three for the 70 mm. */
+static void a_round_has_heights_on_both_sides_of_the_crossing(void **state) {
+    (void)state;
+    static const pad pads[] = {{{200, 1.686, 1.75, 0.6}, {1000, 1.644, 2.95, 0.7}, INFINITY, 0},
+                               {{200, 2.812, 1.6, 0.6}, {1000, 2.455, 2.4, 0.5}, INFINITY, 0}};
+    for (int q = 0; q < 2; q++) {
+        const sf_cfh_plan plan = plan_from(1.032, 10);
+        sf_cfh_points points;
+        sf_cfh_round next;
+        assert_int_equal(search(&pads[q], &plan, &points), SF_CFH_ENOUGH);
+        assert_in_range(points.count, 4, 4 + 2 * q);
+        assert_int_equal(sf_cfh_next(&plan, &points, &next), SF_CFH_ENOUGH);
+        assert_int_equal(next.count, 0);
+        int below = count_sides(&points, SF_CFH_HIC, plan.limit[SF_CFH_HIC], false);
+        double at = pads[q].hic.at;
+        assert_true(points.point[below - 1].height > 0.86 * at && points.point[below].height < 1.16 * at);
+    }
 }
 
 static void the_search_ends_at_its_limits_and_says_so(void **state) {
@@ -404,6 +432,7 @@ int main(void) {
         cmocka_unit_test(limits_outside_the_points_are_no_crossing),
         cmocka_unit_test(points_that_give_no_crossing_are_refused),
         cmocka_unit_test(the_search_finds_the_criterion_that_is_met_first),
+        cmocka_unit_test(a_round_has_heights_on_both_sides_of_the_crossing),
         cmocka_unit_test(the_search_ends_at_its_limits_and_says_so),
         cmocka_unit_test(a_drop_that_reaches_the_anvil_is_worse_than_every_limit),
         cmocka_unit_test(a_list_of_heights_is_followed),

@@ -97,6 +97,18 @@ static void a_second_run_uses_every_drop_again(void **state) {
     program_assert_unchanged(program_path(p, "out/cfh.csv"), &csv);
 }
 
+/* The heights do not depend on how many drops are simulated at once, and neither do their figures. */
+static void drops_side_by_side_have_the_same_bits(void **state) {
+    const program_place *p = *state;
+    program_bytes csv = program_read_file(program_path(p, "out/cfh.csv"));
+    program_result r = program_succeed(
+        p, "cfh", "'%s' -o abreast -t 1 --jobs 2 --limit-hic 1e6 %s --rig '%s'", fixture_source(EXAMPLE),
+        program_coarse(SPACING), fixture_source("examples/data/penta2018_table2_70mm.csv"));
+    assert_non_null(strstr(r.out, "2 drops side by side, one thread each"));
+    assert_null(strstr(r.out, "\n0 drops simulated"));
+    program_assert_unchanged(program_path(p, "abreast/cfh.csv"), &csv);
+}
+
 /* `count` draws in `folder`: the foam of the examples, its stress times a log-normal factor of 10 %. */
 static void write_draws(const program_place *p, const char *folder, int count) {
     const char *material = fixture_source("examples/materials/eva35.cfg");
@@ -353,6 +365,7 @@ static void command_lines_that_cannot_be_meant_are_refused(void **state) {
         {"--material none.cfg", "none.cfg"},
         {"--rig none.csv", "none.csv"},
         {"--threads 0", "1 to 1024"},
+        {"--jobs none", "--jobs"},
     };
     for (size_t k = 0; k < sizeof lines / sizeof lines[0]; k++) {
         program_result r =
@@ -370,6 +383,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_height_found_gives_the_limit_when_it_is_simulated),
         cmocka_unit_test(a_second_run_uses_every_drop_again),
+        cmocka_unit_test(drops_side_by_side_have_the_same_bits),
         cmocka_unit_test(draws_of_the_foam_give_the_interval),
         cmocka_unit_test(errors_of_the_responses_widen_the_interval),
         cmocka_unit_test(posteriors_that_cannot_be_meant_are_refused),

@@ -168,7 +168,8 @@ static sf_status simulate(const sf_cfh_options *o, const setting *s, sf_staging 
     char folder[4096];
     if ((size_t)snprintf(folder, sizeof folder, "%s/runs", output->directory) >= sizeof folder)
         return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
-    sf_runner runner = {.folder = folder, .threads = o->threads, .log = stdout, .engine = o->engine};
+    sf_runner runner = {
+        .folder = folder, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
     runner.engine.lock = &s->lock;
     sf_runner_drop base = {
         .case_path = o->case_path, .material = o->material, .override_count = o->override_count};

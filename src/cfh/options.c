@@ -6,6 +6,7 @@
 #include "cfh/spread.h"
 #include "core/program.h"
 #include "core/units.h"
+#include "io/process.h"
 #include "post/verdict.h"
 #include <argp.h>
 #include <math.h>
@@ -61,6 +62,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         break;
     case 't':
         sf_program_read_threads(text, &o->threads, p->err);
+        break;
+    case 'j':
+        if (sf_program_read_threads(text, &o->jobs, p->err) != SF_OK || o->jobs > SF_PROCESS_JOBS)
+            argp_error(state, "--jobs takes a number from 1 to %d, not \"%s\"", SF_PROCESS_JOBS, text);
         break;
     case KEY_SET:
         add_override(o, text, p->err);
@@ -189,6 +194,8 @@ sf_status sf_cfh_options_parse(int argc, char **argv, sf_cfh_options *options, s
         {"force", 'f', NULL, 0, "replace the report of an earlier run in DIR; finished drops are used again",
          0},
         {"threads", 't', "N", 0, "OpenMP threads (default: all processors, or OMP_NUM_THREADS)", 0},
+        {"jobs", 'j', "N", 0,
+         "drops side by side, which share the threads (default: as many as threads); the same results", 0},
         {"set", KEY_SET, "GROUP.KEY=VALUE", 0, "override a key of the case, as softfall-pre does", 1},
         {"material", KEY_MATERIAL, "FILE", 0, "another foam: replaces the case's group material", 1},
         {"limit-g", KEY_LIMIT_G, "G", 0,

@@ -17,6 +17,7 @@ typedef struct sf_cfh_options {
     bool force;
     sf_runner_engine engine;
     int threads;
+    int jobs;           /* drops that run side by side, 0: as many as threads */
     int override_count; /* at most SF_RUNNER_OVERRIDES - 1: one is used for the speed */
     const char *overrides[SF_RUNNER_OVERRIDES];
     double limit[SF_CFH_CRITERIA]; /* g, - */

@@ -14,7 +14,9 @@ static const double CLOSEST = 0.04;     /* ln(height) between two points of the 
 static const double COLLAPSE_GAP = 0.1; /* ln(height) between the last success and a failure */
 static const double GOOD_MARGIN = 0.01; /* of the interval of the crossing */
 static const double NEAR = 0.15;        /* ln(height): a point beside the crossing */
-enum { GOOD_POINTS = 5 };               /* in the fit */
+static const double FIRST_GAP = 0.5;    /* of ln(height) between the first two drops */
+static const double BESIDE = 0.08;      /* ln(height) of the first points beside the crossing */
+static const double LEAST_GAP = 0.12;   /* of ln(height) between the two drops of a step */
 
 /* The points nearest to the limits; NULL if there is none. */
 typedef struct bracket {
@@ -66,29 +68,81 @@ static double rounded(const sf_cfh_plan *plan, double height) {
     return fmin(plan->unit * GRAIN * round(height / plan->unit / GRAIN), plan->max_height);
 }
 
-static sf_cfh_step go_up(const sf_cfh_plan *plan, const bracket *b, double *height) {
+static bool is_free(const sf_cfh_plan *plan, const sf_cfh_points *points, const sf_cfh_round *round,
+                    double height) {
+    bool free = height <= plan->max_height && height >= MIN_HEIGHT;
+    for (int k = 0; k < points->count; k++) {
+        const sf_cfh_point *p = &points->point[k];
+        free = free && fabs(log(p->height / height)) >= CLOSEST && !(p->failed && height > p->height);
+    }
+    for (int k = 0; k < round->count; k++)
+        free = free && fabs(log(round->height[k] / height)) >= CLOSEST;
+    return free;
+}
+
+/* Adds the first free one of `count` heights at distances of ln(height) from `from`. */
+static bool add_free(const sf_cfh_plan *plan, const sf_cfh_points *points, double from, int count,
+                     const double *distance, sf_cfh_round *round) {
+    for (int k = 0; k < count; k++) {
+        double height = rounded(plan, from * exp(distance[k]));
+        if (!is_free(plan, points, round, height))
+            continue;
+        round->height[round->count++] = height;
+        return true;
+    }
+    return false;
+}
+
+/* The first drop, and one above it; below if there is no room. */
+static sf_cfh_step begin(const sf_cfh_plan *plan, const sf_cfh_points *points, sf_cfh_round *round) {
+    const double distance[] = {FIRST_GAP, FIRST_GAP / 2, -FIRST_GAP};
+    round->height[round->count++] = rounded(plan, plan->first);
+    add_free(plan, points, round->height[0], 3, distance, round);
+    return SF_CFH_SIMULATE;
+}
+
+/* A step that leads a bit beyond the limit, if it is not a far one, and a height on the way. */
+static sf_cfh_step step_to(const sf_cfh_plan *plan, const sf_cfh_points *points, double to, double length,
+                           sf_cfh_round *round) {
+    double back = fmax(LEAST_GAP, fabs(length) / 2), toward = length > 0 ? -back : back;
+    const double distance[] = {toward, -toward};
+    round->height[round->count++] = to;
+    add_free(plan, points, to, 2, distance, round);
+    return SF_CFH_SIMULATE;
+}
+
+/* Two thirds of ln(height) on the way to where simulations fail, and one third. */
+static sf_cfh_step divide(const sf_cfh_plan *plan, double bottom, double failed, sf_cfh_round *round) {
+    double gap = log(failed / bottom);
+    for (int k = 1; k <= 2; k++)
+        round->height[round->count++] = rounded(plan, bottom * exp(gap * k / 3));
+    return SF_CFH_SIMULATE;
+}
+
+static sf_cfh_step go_up(const sf_cfh_plan *plan, const sf_cfh_points *points, const bracket *b,
+                         sf_cfh_round *round) {
     if (!b->below) { /* nothing but failures */
-        *height = rounded(plan, b->failed->height / 2);
-        return *height < MIN_HEIGHT ? SF_CFH_COLLAPSED : SF_CFH_SIMULATE;
+        double height = rounded(plan, b->failed->height / 2);
+        return height < MIN_HEIGHT ? SF_CFH_COLLAPSED
+                                   : step_to(plan, points, height, log(2), round); /* and one below */
     }
     double bottom = b->below->height;
     if (bottom >= plan->max_height * (1 - 1e-9))
         return SF_CFH_AT_MAX_HEIGHT;
-    *height = bottom * exp(step_length(plan, b->below, b->beside));
     if (b->failed && log(b->failed->height / bottom) < COLLAPSE_GAP)
         return SF_CFH_COLLAPSED;
-    if (b->failed)
-        *height = fmin(*height, sqrt(bottom * b->failed->height));
-    *height = rounded(plan, *height);
-    return SF_CFH_SIMULATE;
+    double length = step_length(plan, b->below, b->beside), height = bottom * exp(length);
+    if (b->failed && height > sqrt(bottom * b->failed->height))
+        return divide(plan, bottom, b->failed->height, round);
+    return step_to(plan, points, rounded(plan, height), length, round);
 }
 
-static sf_cfh_step go_down(const sf_cfh_plan *plan, const bracket *b, double *height) {
+static sf_cfh_step go_down(const sf_cfh_plan *plan, const sf_cfh_points *points, const bracket *b,
+                           sf_cfh_round *round) {
     if (b->above->height <= MIN_HEIGHT)
         return SF_CFH_AT_MIN_HEIGHT;
-    *height = b->above->height * exp(-step_length(plan, b->above, b->beside));
-    *height = rounded(plan, fmax(*height, MIN_HEIGHT));
-    return SF_CFH_SIMULATE;
+    double length = step_length(plan, b->above, b->beside), height = b->above->height * exp(-length);
+    return step_to(plan, points, rounded(plan, fmax(height, MIN_HEIGHT)), -length, round);
 }
 
 /* ln(height) at which the chord between the two points first meets a limit. */
@@ -101,54 +155,51 @@ static double chord_crossing(const sf_cfh_plan *plan, const bracket *b) {
     return log(b->below->height) + share * width;
 }
 
-static bool is_free(const sf_cfh_plan *plan, const sf_cfh_points *points, double height) {
-    bool free = height <= plan->max_height && height >= MIN_HEIGHT;
-    for (int k = 0; k < points->count; k++) {
-        const sf_cfh_point *p = &points->point[k];
-        free = free && fabs(log(p->height / height)) >= CLOSEST && !(p->failed && height > p->height);
-    }
-    return free;
+static bool is_enough(const sf_cfh_result *now, double centre, const bracket *b) {
+    const sf_cfh_crossing *first = &now->crossing[now->deciding];
+    bool flanked = log(b->above->height) - centre <= NEAR && centre - log(b->below->height) <= NEAR;
+    return now->verdict == SF_CFH_FOUND && flanked && first->margin <= GOOD_MARGIN;
 }
 
-/* The first free place around the crossing, from its middle outwards. */
+/* Two free places around the crossing: one on each side, then from its middle outwards. */
 static sf_cfh_step go_near(const sf_cfh_plan *plan, const sf_cfh_points *points, const bracket *b,
-                           double *height) {
+                           sf_cfh_round *round) {
+    const double below = -BESIDE, above = BESIDE;
     static const double places[] = {0, 0.12, -0.12, 0.25, -0.25, 0.06, -0.06, 0.18, -0.18, 0.35, -0.35};
+    enum { PLACES = sizeof places / sizeof places[0] };
     sf_cfh_result now;
     sf_cfh_evaluate(points, plan->limit, &now);
     bool found = now.verdict == SF_CFH_FOUND;
     double centre = found ? log(now.crossing[now.deciding].height) : chord_crossing(plan, b);
-    bool flanked = log(b->above->height) - centre <= NEAR && centre - log(b->below->height) <= NEAR;
-    const sf_cfh_crossing *first = &now.crossing[now.deciding];
-    if (found && flanked && first->fit.count >= GOOD_POINTS && first->margin <= GOOD_MARGIN)
+    if (is_enough(&now, centre, b))
         return SF_CFH_ENOUGH;
-    for (size_t k = 0; k < sizeof places / sizeof places[0]; k++) {
-        *height = rounded(plan, exp(centre + places[k]));
-        if (is_free(plan, points, *height))
-            return SF_CFH_SIMULATE;
-    }
-    return SF_CFH_ENOUGH;
+    add_free(plan, points, exp(centre), 1, &below, round);
+    add_free(plan, points, exp(centre), 1, &above, round);
+    while (round->count < 2 && add_free(plan, points, exp(centre), PLACES, places, round))
+        ;
+    return round->count > 0 ? SF_CFH_SIMULATE : SF_CFH_ENOUGH;
 }
 
-static sf_cfh_step next_of_list(const sf_cfh_plan *plan, const sf_cfh_points *points, double *height) {
+static sf_cfh_step next_of_list(const sf_cfh_plan *plan, const sf_cfh_points *points, sf_cfh_round *round) {
     if (points->count == plan->list_count)
         return SF_CFH_LIST_DONE;
-    *height = plan->list[points->count];
+    for (int k = points->count; k < plan->list_count; k++)
+        round->height[round->count++] = plan->list[k];
     return SF_CFH_SIMULATE;
 }
 
-sf_cfh_step sf_cfh_next(const sf_cfh_plan *plan, const sf_cfh_points *points, double *height) {
+sf_cfh_step sf_cfh_next(const sf_cfh_plan *plan, const sf_cfh_points *points, sf_cfh_round *round) {
+    *round = (sf_cfh_round){0};
     if (plan->list_count > 0)
-        return next_of_list(plan, points, height);
-    if (points->count == 0) {
-        *height = rounded(plan, plan->first);
-        return SF_CFH_SIMULATE;
-    }
+        return next_of_list(plan, points, round);
     const bracket b = find_bracket(plan, points);
-    sf_cfh_step step = !b.above   ? go_up(plan, &b, height)
-                       : !b.below ? go_down(plan, &b, height)
-                                  : go_near(plan, points, &b, height);
-    return step == SF_CFH_SIMULATE && points->count >= plan->max_drops ? SF_CFH_AT_CAP : step;
+    sf_cfh_step step = points->count == 0 ? begin(plan, points, round)
+                       : !b.above         ? go_up(plan, points, &b, round)
+                       : !b.below         ? go_down(plan, points, &b, round)
+                                          : go_near(plan, points, &b, round);
+    int left = plan->max_drops - points->count;
+    round->count = step != SF_CFH_SIMULATE ? 0 : round->count < left ? round->count : left;
+    return step == SF_CFH_SIMULATE && left <= 0 ? SF_CFH_AT_CAP : step;
 }
 
 const char *sf_cfh_step_text(sf_cfh_step step) {

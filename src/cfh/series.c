@@ -5,6 +5,8 @@
 #include <stdarg.h>
 #include <string.h>
 
+_Static_assert((int)SF_CFH_CHECKS <= (int)SF_CFH_MAX_POINTS, "the checks are simulated as one batch");
+
 __attribute__((format(printf, 2, 3))) static void add_note(sf_cfh_point *point, const char *format, ...) {
     size_t used = strlen(point->note);
     va_list args;
@@ -68,68 +70,97 @@ static void report_failure(const sf_runner *runner, const char *label, const sf_
         fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
 }
 
-/* `material`: a file instead of the base's; NULL: none. */
-static sf_status run_drop(const sf_cfh_series *s, sf_runner *runner, const char *label, const char *material,
-                          double height, sf_cfh_point *p, sf_error *err) {
-    char velocity[64];
-    sf_runner_drop drop = *s->base;
-    sf_runner_result result;
-    sf_error failure = SF_ERROR_INIT;
-    *p = (sf_cfh_point){.height = height, .speed = sf_cfh_speed(height)};
-    snprintf(velocity, sizeof velocity, "missile.velocity=%.12g m/s", p->speed);
-    drop.label = label;
-    drop.material = material ? material : drop.material;
-    drop.overrides[drop.override_count++] = velocity;
-    if (sf_runner_run(runner, &drop, &result, &failure) == SF_ERR_NUMERIC) {
-        p->failed = true;
-        p->on_anvil = strstr(failure.text, SF_ENDED_ON_ANVIL) != NULL;
-        p->grade = SF_GRADE_DO_NOT_USE;
-        add_note(p, "the simulation failed: %s", failure.text);
-        report_failure(runner, label, p);
-        return SF_OK;
-    }
-    if (failure.status != SF_OK) {
-        *err = failure;
-        return err->status;
-    }
-    sf_cfh_take_result(&result, s->foams, p);
+/* Drops that run side by side. */
+typedef struct drops {
+    int count;
+    char label[SF_CFH_MAX_POINTS][48], velocity[SF_CFH_MAX_POINTS][64];
+    sf_runner_drop drop[SF_CFH_MAX_POINTS];
+    sf_cfh_point point[SF_CFH_MAX_POINTS];
+} drops;
+
+/* The next one; its label is there. `material`: a file instead of the base's; NULL: none. */
+static void add_drop(const sf_cfh_series *s, drops *d, const char *material, double height) {
+    int k = d->count++;
+    sf_runner_drop *drop = &d->drop[k];
+    *drop = *s->base;
+    d->point[k] = (sf_cfh_point){.height = height, .speed = sf_cfh_speed(height)};
+    snprintf(d->velocity[k], sizeof d->velocity[k], "missile.velocity=%.12g m/s", d->point[k].speed);
+    drop->label = d->label[k];
+    drop->material = material ? material : drop->material;
+    drop->overrides[drop->override_count++] = d->velocity[k];
+}
+
+static void take_failure(const sf_error *failure, sf_cfh_point *p) {
+    p->failed = true;
+    p->on_anvil = strstr(failure->text, SF_ENDED_ON_ANVIL) != NULL;
+    p->grade = SF_GRADE_DO_NOT_USE;
+    add_note(p, "the simulation failed: %s", failure->text);
+}
+
+static sf_status take_drop(const sf_cfh_series *s, const sf_runner *runner, const char *label,
+                           const sf_runner_result *result, const sf_error *failure, sf_cfh_point *p,
+                           sf_error *err) {
+    if (failure->status == SF_ERR_NUMERIC)
+        take_failure(failure, p);
+    else if (failure->status == SF_OK)
+        sf_cfh_take_result(result, s->foams, p);
+    else if (err->status == SF_OK)
+        *err = *failure;
     if (p->failed)
         report_failure(runner, label, p);
-    learn_pad(&result, s->pad, err);
-    sf_runner_result_free(&result);
+    return err->status == SF_OK && failure->status == SF_OK ? learn_pad(result, s->pad, err) : err->status;
+}
+
+static sf_status run_drops(const sf_cfh_series *s, sf_runner *runner, drops *d, sf_error *err) {
+    sf_runner_result result[SF_CFH_MAX_POINTS];
+    sf_error failure[SF_CFH_MAX_POINTS];
+    if (sf_runner_run_each(runner, d->count, d->drop, result, failure, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < d->count; k++) {
+        take_drop(s, runner, d->label[k], &result[k], &failure[k], &d->point[k], err);
+        sf_runner_result_free(&result[k]);
+    }
     return err->status;
 }
 
 sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_points *points,
                           sf_cfh_step *ending, sf_error *err) {
-    double height = 0;
+    sf_cfh_round round;
     *points = (sf_cfh_points){0};
-    while ((*ending = sf_cfh_next(s->plan, points, &height)) == SF_CFH_SIMULATE) {
-        char label[32];
-        sf_cfh_point point;
-        snprintf(label, sizeof label, "h%.4gm", sf_cfh_rig_height(s->rig, height));
-        if (run_drop(s, runner, label, NULL, height, &point, err) != SF_OK)
+    while ((*ending = sf_cfh_next(s->plan, points, &round)) == SF_CFH_SIMULATE) {
+        drops d = {0};
+        for (int k = 0; k < round.count; k++) {
+            snprintf(d.label[k], sizeof d.label[k], "h%.4gm", sf_cfh_rig_height(s->rig, round.height[k]));
+            add_drop(s, &d, NULL, round.height[k]);
+        }
+        if (run_drops(s, runner, &d, err) != SF_OK)
             return err->status;
-        sf_cfh_points_add(points, &point);
+        for (int k = 0; k < d.count; k++)
+            sf_cfh_points_add(points, &d.point[k]);
     }
     return SF_OK;
 }
 
+static void take_check(sf_cfh_spread *spread, const sf_cfh_point *point, sf_cfh_check *check) {
+    check->failed = point->failed;
+    memcpy(check->note, point->note, sizeof check->note);
+    memcpy(check->simulated, point->value, sizeof check->simulated);
+    if (!check->failed)
+        sf_cfh_check_compare(spread, check);
+}
+
 sf_status sf_cfh_simulate_checks(const sf_cfh_series *s, const sf_cfh_draws *draws, sf_runner *runner,
                                  sf_cfh_spread *spread, sf_error *err) {
+    drops d = {0};
     for (int k = 0; k < spread->checks; k++) {
-        char label[48];
-        sf_cfh_point point;
-        sf_cfh_check *check = &spread->check[k];
-        snprintf(label, sizeof label, "draw-%03d-h%.4gm", check->draw + 1,
+        const sf_cfh_check *check = &spread->check[k];
+        snprintf(d.label[k], sizeof d.label[k], "draw-%03d-h%.4gm", check->draw + 1,
                  sf_cfh_rig_height(s->rig, check->height));
-        if (run_drop(s, runner, label, draws->draw[check->draw].path, check->height, &point, err) != SF_OK)
-            return err->status;
-        check->failed = point.failed;
-        memcpy(check->note, point.note, sizeof check->note);
-        memcpy(check->simulated, point.value, sizeof check->simulated);
-        if (!check->failed)
-            sf_cfh_check_compare(spread, check);
+        add_drop(s, &d, draws->draw[check->draw].path, check->height);
     }
+    if (d.count > 0 && run_drops(s, runner, &d, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < d.count; k++)
+        take_check(spread, &d.point[k], &spread->check[k]);
     return SF_OK;
 }

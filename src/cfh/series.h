@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simulates one drop after another until the search ends, and then draws of the foam. */
+/* Simulates the drops of a search, round by round until it ends, and then draws of the foam. The drops of a
+ * round run side by side, as many as the runner has jobs; the results do not depend on that. */
 #ifndef SF_CFH_SERIES_H
 #define SF_CFH_SERIES_H
 
