@@ -65,6 +65,27 @@ static void content_comes_whole_and_is_registered(void **state) {
     assert_null(sf_plain_name(info.st_dev, info.st_ino));
 }
 
+/* Read once, unless it has changed or was written a moment before. */
+static void a_hash_is_kept_while_the_file_stays(void **state) {
+    const char *path = program_write_text(*state, "kept.csv", "a,b\n1,2\n");
+    sf_error err = SF_ERROR_INIT;
+    uint64_t first = 0, again = 0, other = 0;
+    size_t before = sf_plain_count();
+    assert_int_equal(sf_plain_hash_kept(path, &first, &err), SF_OK);
+    assert_int_equal(sf_plain_hash_kept(path, &first, &err), SF_OK);
+    assert_int_equal(sf_plain_count(), before + 2);
+    usleep(2200000);
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(sf_plain_hash_kept(path, &again, &err), SF_OK);
+    assert_int_equal(sf_plain_count(), before + 3);
+    assert_true(first == again && again == sf_hash_bytes(SF_HASH_START, "a,b\n1,2\n", 8));
+    path = program_write_text(*state, "kept.csv", "a,b\n1,3\n"); /* of the same length */
+    assert_int_equal(sf_plain_hash_kept(path, &other, &err), SF_OK);
+    assert_true(other == sf_hash_bytes(SF_HASH_START, "a,b\n1,3\n", 8));
+    unlink(path);
+    assert_int_equal(sf_plain_hash_kept(path, &other, &err), SF_ERR_INPUT);
+}
+
 static void a_large_content_is_the_same_in_one_piece_and_in_blocks(void **state) {
     enum { SIZE = 300001 };
     char *data = malloc(SIZE), *text = NULL;
@@ -127,6 +148,7 @@ static void a_file_that_is_too_large_is_refused_unread(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(content_comes_whole_and_is_registered),
+        cmocka_unit_test(a_hash_is_kept_while_the_file_stays),
         cmocka_unit_test(a_large_content_is_the_same_in_one_piece_and_in_blocks),
         cmocka_unit_test(an_empty_file_is_an_empty_text),
         cmocka_unit_test(what_is_no_plain_file_is_refused_at_once),

@@ -152,6 +152,8 @@ static void keys_and_units_that_a_case_does_not_take_are_refused(void **state) {
         {"{ sample = \"latin_hypercube\"; count = 64; of = ( { key = \"missile.mass\"; distribution = \"normal\"; "
          "mean = \"1 kg\"; deviation = \"1 kg\"; } ); }",
          "missile.mass"},
+        {"{ key = \"geometry.parameters.thicknes\"; values = [40.0, 50.0]; }",
+         "pad.geo has no parameter \"thicknes\"; its DefineConstant parameters are: "},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         sf_plan plan;
@@ -417,6 +419,7 @@ typedef struct formula {
     int64_t stop_at; /* interrupted before that many; 0: not */
     int64_t fails;   /* this row fails; -1: none */
     bool changed;    /* whatever was there is not used again */
+    int64_t other;   /* from this row on; 0: none */
 } formula;
 
 static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh,
@@ -425,7 +428,7 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
     *fresh = 0;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         bool there = runs->state[row[k]] == SF_SWEEP_DONE;
-        if (there && !f->changed)
+        if (there && !f->changed && (f->other == 0 || row[k] < f->other))
             continue;
         if (f->stop_at > 0 && f->calls == f->stop_at)
             return SF_FAIL(err, SF_INTERRUPTED, "interrupted");
@@ -521,6 +524,24 @@ static void runs_are_looked_at_again_when_what_they_read_has_changed(void **stat
     sf_plan_free(&plan);
 }
 
+/* Only 64 were looked at. */
+static void each_geometry_is_looked_at(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    formula f = {.fails = -1};
+    read_plan(p,
+              "{ key = \"geometry.parameters.thickness\"; from = 40.0; to = 60.0; count = 90; },"
+              "{ key = \"a.y\"; values = [1, 2]; }",
+              &plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 180);
+    f.other = 178;
+    assert_true(rows_done(p, &plan, &f, false, 1) >= 180);
+    f.other = 180;
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 0);
+    sf_plan_free(&plan);
+}
+
 static void the_folder_of_another_plan_is_refused(void **state) {
     const program_place *p = *state;
     sf_plan plan;
@@ -573,6 +594,52 @@ static void the_probability_is_over_what_is_uncertain(void **state) {
     sf_plan_free(&plan);
 }
 
+/* Of 40,000 rows every second one would be of the same level of the factor that changes fastest. */
+static void a_surface_of_very_many_rows_has_every_level(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    sf_error err;
+    formula f = {.fails = -1};
+    read_plan(p,
+              "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 20000; }, { key = \"a.y\"; values = [1, 2]; }",
+              &plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
+    assert_int_equal(sf_analysis_make(&runs, &a, &err), SF_OK);
+    assert_string_equal(a.surface[1].fit.problem, "");
+    assert_int_equal(a.surface[1].rows, SF_SURFACE_ROWS);
+    assert_int_equal(a.surface[1].of, 40000);
+    assert_true(a.surface[1].fit.q2 > 0.999999); /* hic is linear */
+    sf_analysis_free(&a);
+    sf_runs_free(&runs);
+    sf_plan_free(&plan);
+}
+
+/* softfall-fit writes draws model by model: some of them must not be the first ones. */
+static void draws_are_taken_from_the_whole_posterior(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+    static const char *const expected[4] = {"draw-002.cfg", "draw-004.cfg", "draw-007.cfg", "draw-009.cfg"};
+    program_shell(p,
+                  "mkdir -p ten && for k in 01 02 03 04 05 06 07 08 09 10; do sed 's|eva35.csv|%s|' '%s' > "
+                  "ten/draw-0$k.cfg; done",
+                  "../eva35.csv", fixture_source("examples/materials/eva35.cfg"));
+    program_shell(p, "cp '%s' eva35.csv", fixture_source("examples/materials/eva35.csv"));
+    read_plan(p, "{ key = \"material\"; posterior = \"ten\"; draws = 4; }", &plan);
+    assert_int_equal(plan.rows, 4);
+    for (int64_t row = 0; row < 4; row++) {
+        assert_int_equal(sf_plan_overrides(&plan, row, text), 1);
+        assert_non_null(strstr(text[0], expected[row]));
+    }
+    sf_plan_free(&plan);
+    read_plan(p, "{ key = \"material\"; posterior = \"ten\"; }", &plan);
+    assert_int_equal(plan.rows, 10);
+    sf_plan_free(&plan);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -583,6 +650,9 @@ static void a_disk_that_is_too_small_is_refused(void **state) {
     cost.open = INT64_C(1000000000000);
     assert_int_equal(sf_sweep_cost_check_disk(&cost, folder, 2, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "the runs need about 1e+09 GB and the disk of "));
+    err = (sf_error)SF_ERROR_INIT;
+    cost.there = cost.open - 10; /* as after a kill: they take no more room */
+    assert_int_equal(sf_sweep_cost_check_disk(&cost, folder, 2, &err), SF_OK);
 }
 
 static double seconds(void) {
@@ -647,6 +717,9 @@ int main(void) {
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),
+        cmocka_unit_test(each_geometry_is_looked_at),
+        cmocka_unit_test(a_surface_of_very_many_rows_has_every_level),
+        cmocka_unit_test(draws_are_taken_from_the_whole_posterior),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

@@ -16,6 +16,7 @@ SECONDS=0
 "${SF_BIN_DIR:-build/bin}"/softfall-fit drop examples/fit/eva35_forms.cfg --jobs 3 -o "$out" --force
 echo "identified in $((SECONDS / 60)) min $((SECONDS % 60)) s"
 cp "$out/eva35.cfg" "$out/eva35.csv" examples/materials/
+tools/thin_posterior.py "$out/posterior" 100 examples/materials/eva35_posterior
 cp "$out/fit.png" docs/images/eva35_fit.png
 tools/report_sections.py "$out/report.html" docs/validation.md
 POSTERIOR=$out/posterior tools/cfh_examples.sh --docs

@@ -11,45 +11,41 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     uint64_t content = 0;
-    if (sf_plain_hash(path, NULL, SF_PLAIN_ANY, &content, err) == SF_OK)
+    if (sf_plain_hash_kept(path, &content, err) == SF_OK)
         *hash = sf_hash_bytes(*hash, &content, sizeof content);
     return err->status;
 }
 
-/* Of the programs that simulate a drop: read again only when one of them has changed. */
+/* The programs that simulate a drop: softfall-pre, softfall-solve, softfall-mesh. */
 typedef struct programs {
-    struct stat of[3]; /* softfall-pre, softfall-solve, softfall-mesh */
-    uint64_t hash;
+    char folder[PATH_MAX]; /* SF_BIN_DIR as they were found */
+    char path[3][PATH_MAX];
+    bool found;
 } programs;
 
-static bool is_same_file(const struct stat *a, const struct stat *b) {
-    return a->st_dev == b->st_dev && a->st_ino == b->st_ino && a->st_size == b->st_size &&
-           a->st_mtim.tv_sec == b->st_mtim.tv_sec && a->st_mtim.tv_nsec == b->st_mtim.tv_nsec;
+static sf_status find_programs(programs *p, sf_error *err) {
+    const char *given = getenv("SF_BIN_DIR");
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%s", given ? given : "");
+    if (p->found && strcmp(folder, p->folder) == 0)
+        return SF_OK;
+    memcpy(p->folder, folder, sizeof folder);
+    p->found = sf_process_find("softfall-pre", p->path[0], PATH_MAX, err) == SF_OK &&
+               sf_process_find("softfall-solve", p->path[1], PATH_MAX, err) == SF_OK &&
+               sf_mesher_find(p->path[2], PATH_MAX, err) == SF_OK;
+    return err->status;
 }
 
 static sf_status hash_programs(uint64_t *hash, sf_error *err) {
     static programs known;
-    char path[3][PATH_MAX];
-    programs now = {.hash = SF_HASH_START};
-    bool same = true;
-    if (sf_process_find("softfall-pre", path[0], PATH_MAX, err) != SF_OK ||
-        sf_process_find("softfall-solve", path[1], PATH_MAX, err) != SF_OK ||
-        sf_mesher_find(path[2], PATH_MAX, err) != SF_OK)
+    if (find_programs(&known, err) != SF_OK)
         return err->status;
-    for (int k = 0; k < 3; k++)
-        same = stat(path[k], &now.of[k]) == 0 && is_same_file(&now.of[k], &known.of[k]) && same;
-    for (int k = 0; k < 3 && !same; k++)
-        if (hash_file(&now.hash, path[k], err) != SF_OK)
-            return err->status;
-    if (!same)
-        known = now;
-    *hash = sf_hash_bytes(*hash, &known.hash, sizeof known.hash);
-    return SF_OK;
+    for (int k = 0; k < 3 && err->status == SF_OK; k++)
+        hash_file(hash, known.path[k], err);
+    return err->status;
 }
 
 uint64_t sf_campaign_case_hash(const sf_case *c) {

@@ -2,6 +2,7 @@
 #include "campaign/run_folder.h"
 
 #include "campaign/key.h"
+#include "campaign/record.h"
 #include "case/case.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
@@ -41,6 +42,7 @@ void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key,
     snprintf(at->checkpoint, sizeof at->checkpoint, "%s/results.h5.restart", at->path);
     snprintf(at->log, sizeof at->log, "%s/log.txt", at->path);
     snprintf(at->failed, sizeof at->failed, "%s/failed.txt", at->path);
+    snprintf(at->figures, sizeof at->figures, "%s/figures.txt", at->path);
 }
 
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
@@ -62,9 +64,21 @@ static bool is_geometry_same(const sf_run_folder *at, const char *path, const ch
     return sf_campaign_geometry_is_same(folder, path, text, unlisted);
 }
 
+/* By the record of its figures: only of a drop that ran to its end. */
+static bool is_recorded(const sf_run_folder *at) {
+    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    sf_run_record record;
+    bool recorded = sf_run_record_read(at->figures, at->results, &record) &&
+                    sf_geometry_files_are_same(folder, record.geometry);
+    sf_run_record_free(&record);
+    return recorded;
+}
+
 bool sf_run_folder_is_finished(const sf_run_folder *at) {
     sf_error none = SF_ERROR_INIT;
     sf_results r;
+    if (is_recorded(at))
+        return true;
     if (access(at->results, R_OK) != 0 || sf_results_open(at->results, &r, &none) != SF_OK)
         return false;
     bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;

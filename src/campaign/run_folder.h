@@ -18,7 +18,7 @@ typedef struct sf_run_folder {
     uint64_t key; /* of the case with its overrides */
     char path[PATH_MAX];
     char model[SF_RUN_PATH_SIZE], results[SF_RUN_PATH_SIZE], checkpoint[SF_RUN_PATH_SIZE],
-        log[SF_RUN_PATH_SIZE], failed[SF_RUN_PATH_SIZE];
+        log[SF_RUN_PATH_SIZE], failed[SF_RUN_PATH_SIZE], figures[SF_RUN_PATH_SIZE];
     char pad_folder[PATH_MAX], missile_folder[PATH_MAX]; /* of the geometries; "": no geometry of a missile */
 } sf_run_folder;
 

@@ -3,6 +3,8 @@
 
 #include "campaign/engine.h"
 #include "campaign/manifest.h"
+#include "campaign/record.h"
+#include "campaign/key.h"
 #include "campaign/run_folder.h"
 #include "core/hash.h"
 #include "core/units.h"
@@ -65,7 +67,33 @@ static sf_status take_layers(const sf_results *r, const sf_figures *f, sf_runner
     return err->status;
 }
 
-static sf_status read_result(const char *path, sf_runner_result *out, sf_error *err) {
+static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runner_result *out,
+                              sf_error *err) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    out->figure = sf_alloc(err, count, sizeof *out->figure, "figures");
+    for (size_t k = 0; out->figure && k < count; k++)
+        out->figure[k] = sf_figure_number(&list[k], r, f);
+    snprintf(out->status, sizeof out->status, "%.*s", (int)sizeof out->status - 1, r->status);
+    if (!out->figure)
+        sf_runner_result_free(out);
+    return err->status;
+}
+
+/* For the next time, if it is the results of a drop that ran to its end. */
+static void write_record(const sf_run_folder *at, const sf_results *r, const sf_figures *f,
+                         const sf_runner_result *result) {
+    bool finished = strcmp(r->status, "finished") == 0 || strcmp(r->status, "rebound") == 0;
+    char *geometry =
+        finished ? sf_campaign_geometry_list(at->results, "/provenance/model/geometry_files") : NULL;
+    if (geometry)
+        sf_run_record_write(at->figures, at->results, r, f, result->grade, result->verdict, geometry);
+    free(geometry);
+}
+
+/* `keep`: writes the record of the figures, too. */
+static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_result *out, sf_error *err) {
+    const char *path = at->results;
     sf_results r;
     sf_figures f = {0};
     if (sf_results_open(path, &r, err) != SF_OK)
@@ -86,13 +114,47 @@ static sf_status read_result(const char *path, sf_runner_result *out, sf_error *
                                   .steps = r.steps,
                                   .curve = f.filtered};
         judge(&r, &f, out);
+        if (keep)
+            write_record(at, &r, &f, out);
         f.filtered = (sf_series){0};
-        if (take_layers(&r, &f, out, err) == SF_OK)
+        if (take_layers(&r, &f, out, err) == SF_OK && take_figures(&r, &f, out, err) == SF_OK)
             result_path(path, out, err);
     }
     sf_figures_free(&f);
     sf_results_close(&r);
     return err->status;
+}
+
+static double figure_of(const sf_run_record *record, const char *key) {
+    size_t count;
+    return record->figure[sf_figure_find(key) - sf_figure_list(&count)];
+}
+
+/* Without the results: what has no figure is NaN or 0. False if there is no record of them. */
+static bool read_recorded(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
+    sf_run_record record;
+    bool there = sf_run_record_read(at->figures, at->results, &record);
+    if (there) {
+        *out = (sf_runner_result){.a_max_g = figure_of(&record, "a_max_g"),
+                                  .hic = figure_of(&record, "hic"),
+                                  .hic_window = NAN,
+                                  .contact_time = NAN,
+                                  .v0 = figure_of(&record, "v0_m_s"),
+                                  .v_rebound = figure_of(&record, "v_rebound_m_s"),
+                                  .max_indentation = 1e-3 * figure_of(&record, "max_indentation_mm"),
+                                  .max_local_strain = figure_of(&record, "max_local_strain"),
+                                  .energy_error = figure_of(&record, "energy_error"),
+                                  .nodes = (int64_t)figure_of(&record, "nodes"),
+                                  .steps = (int64_t)figure_of(&record, "steps"),
+                                  .grade = record.grade,
+                                  .figure = record.figure};
+        record.figure = NULL;
+        snprintf(out->verdict, sizeof out->verdict, "%s", record.verdict);
+        snprintf(out->status, sizeof out->status, "%s", record.status);
+        result_path(at->results, out, err);
+    }
+    sf_run_record_free(&record);
+    return there;
 }
 
 /* ---- drops ---- */
@@ -139,7 +201,7 @@ sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf
                          sf_error *err) {
     located l;
     memset(result, 0, sizeof *result);
-    return locate(runner, drop, &l, err) == SF_OK ? read_result(l.at.results, result, err) : err->status;
+    return locate(runner, drop, &l, err) == SF_OK ? read_result(&l.at, false, result, err) : err->status;
 }
 
 /* ---- batches ---- */
@@ -187,6 +249,14 @@ static sf_status prepare(const sf_runner *runner, const sf_runner_drop *drop, re
     return SF_OK;
 }
 
+/* By the process that simulated the drop, so that nobody reads the results of many drops one by one. */
+static void record(const sf_run_folder *at) {
+    sf_error none = SF_ERROR_INIT;
+    sf_runner_result result;
+    if (read_result(at, true, &result, &none) == SF_OK)
+        sf_runner_result_free(&result);
+}
+
 static sf_status simulate(void *context, int index, sf_error *err) {
     const batch *b = context;
     const sf_runner_drop *drop = &b->drop[b->pending[index]];
@@ -196,7 +266,9 @@ static sf_status simulate(void *context, int index, sf_error *err) {
     if (l.at.key != b->request[b->pending[index]].key)
         return SF_FAIL(err, SF_ERR_INPUT, "a file that %s leads to has changed while the batch ran",
                        drop->case_path);
-    return sf_run_folder_simulate(&l.at, drop->case_path, l.count, l.overrides, b->threads, err);
+    if (sf_run_folder_simulate(&l.at, drop->case_path, l.count, l.overrides, b->threads, err) == SF_OK)
+        record(&l.at);
+    return err->status;
 }
 
 static int compare(const void *p, const void *q, void *context) {
@@ -388,7 +460,9 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
                              sf_runner_result *result, sf_error *err) {
     sf_run_folder at;
     sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
-    if (read_result(at.results, result, err) != SF_OK)
+    if (!(runner->figures_only && read_recorded(&at, result, err)))
+        read_result(&at, true, result, err);
+    if (err->status != SF_OK)
         return err->status;
     result->reused = r->reused;
     *(r->reused ? &runner->reused : &runner->simulated) += 1;
@@ -478,6 +552,7 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
 void sf_runner_result_free(sf_runner_result *result) {
     sf_series_free(&result->curve);
     free(result->path);
+    free(result->figure);
     free(result->layer_strain);
     *result = (sf_runner_result){0};
 }

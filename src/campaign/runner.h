@@ -20,6 +20,7 @@ typedef struct sf_runner {
     int threads;        /* of softfall-solve, together, but at least one of each drop that runs */
     int jobs;           /* drops of a batch that run side by side, at most SF_PROCESS_JOBS; 0: as many as
                            threads. More than threads: the log says so */
+    bool figures_only;  /* of the results neither curve nor layers are wanted: figures.txt is enough */
     FILE *log;          /* a line for each drop; borrowed; NULL: silent */
     int64_t simulated;  /* drops so far, out */
     int64_t reused;     /* drops whose results were there, out */
@@ -40,6 +41,8 @@ typedef struct sf_runner_result {
     sf_grade grade;                     /* of the run, as softfall-post gives it */
     char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */
     int64_t nodes, steps;
+    double *figure;  /* [of sf_figure_list] sf_figure_number; owned */
+    char status[80]; /* how the run ended: the figure that is a text */
     sf_series curve; /* s, g: filtered; owned */
     char *path;      /* of its results.h5; owned */
     bool reused;

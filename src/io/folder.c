@@ -167,6 +167,20 @@ void sf_folder_leave(const char *path) {
     rmdir(path);
 }
 
+int64_t sf_folder_count(const char *path, const char *prefix) {
+    int handle = sf_folder_open(path);
+    DIR *list = handle >= 0 ? list_folder(handle) : NULL;
+    struct dirent *entry;
+    int64_t count = 0;
+    while (list && (entry = readdir(list)) != NULL)
+        count += strncmp(entry->d_name, prefix, strlen(prefix)) == 0;
+    if (list)
+        closedir(list);
+    if (handle >= 0)
+        close(handle);
+    return count;
+}
+
 uint64_t sf_folder_bytes(const char *path) {
     int handle = sf_folder_open(path);
     DIR *list = handle >= 0 ? list_folder(handle) : NULL;

@@ -35,6 +35,9 @@ bool sf_folder_wait_lock(const char *path, int *handle);
 /* Removes the mark and the folder if nothing else is in it. */
 void sf_folder_leave(const char *path);
 
+/* The number of names in the folder that begin with `prefix`; 0 if it cannot be read. */
+int64_t sf_folder_count(const char *path, const char *prefix);
+
 /* Bytes of the files in the folder. */
 uint64_t sf_folder_bytes(const char *path);
 

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { BLOCK = 1 << 16 };
@@ -75,8 +76,21 @@ const char *sf_plain_name(uint64_t device, uint64_t inode) {
     return name;
 }
 
+/* Hashes that are kept, each at the place that its path gives; behind the lock of the list. */
+typedef struct kept_hash {
+    char *path; /* NULL: none */
+    struct stat info;
+    uint64_t hash;
+} kept_hash;
+enum { KEPT = 256 };
+static kept_hash kept[KEPT];
+
 void sf_plain_forget(void) {
     pthread_mutex_lock(&list.lock);
+    for (int k = 0; k < KEPT; k++) {
+        free(kept[k].path);
+        kept[k] = (kept_hash){0};
+    }
     for (size_t k = 0; k < list.count; k++)
         free((char *)list.entry[k].path);
     free(list.entry);
@@ -269,5 +283,53 @@ sf_status sf_plain_hash(const char *path, const char *what, uint64_t largest, ui
     reading r = {.path = path, .what = what, .largest = largest};
     if (take(&r, err) == SF_OK)
         *hash = r.hash;
+    return err->status;
+}
+
+/* ---- hashes that are kept ---- */
+
+static bool is_unchanged(const struct stat *a, const struct stat *b) {
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino && is_same(a, b) &&
+           a->st_ctim.tv_sec == b->st_ctim.tv_sec && a->st_ctim.tv_nsec == b->st_ctim.tv_nsec;
+}
+
+/* Was it changed long enough ago for a later change to show in its times? */
+static bool is_settled(const struct stat *info) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    return info->st_mtim.tv_sec + 1 < now.tv_sec && info->st_ctim.tv_sec + 1 < now.tv_sec;
+}
+
+static kept_hash *place_of(const char *path) {
+    return &kept[sf_hash_bytes(SF_HASH_START, path, strlen(path)) % KEPT];
+}
+
+static bool find_kept(const char *path, const struct stat *info, uint64_t *hash) {
+    pthread_mutex_lock(&list.lock);
+    const kept_hash *k = place_of(path);
+    bool found = k->path && strcmp(k->path, path) == 0 && is_unchanged(&k->info, info);
+    if (found)
+        *hash = k->hash;
+    pthread_mutex_unlock(&list.lock);
+    return found;
+}
+
+static void keep(const char *path, const struct stat *info, uint64_t hash) {
+    pthread_mutex_lock(&list.lock);
+    kept_hash *k = place_of(path);
+    free(k->path);
+    *k = (kept_hash){.path = strdup(path), .info = *info, .hash = hash};
+    pthread_mutex_unlock(&list.lock);
+}
+
+sf_status sf_plain_hash_kept(const char *path, uint64_t *hash, sf_error *err) {
+    struct stat before, after;
+    bool there = stat(path, &before) == 0;
+    if (there && find_kept(path, &before, hash))
+        return SF_OK;
+    bool settled = there && is_settled(&before);
+    if (sf_plain_hash(path, NULL, SF_PLAIN_ANY, hash, err) == SF_OK && settled && stat(path, &after) == 0 &&
+        is_unchanged(&before, &after))
+        keep(path, &before, *hash);
     return err->status;
 }

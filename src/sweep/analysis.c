@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sweep/analysis.h"
 
+#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
+
+enum { SURFACE_SEED = 1 };
 
 double sf_analysis_value(const sf_analysis *a, int figure, int64_t row) {
     const sf_runs *r = a->runs;
@@ -58,19 +61,28 @@ static int64_t count_values(const sf_analysis *a, int figure) {
     return number;
 }
 
+/* Draws `wanted` of the `left` values to come, each as likely as any other (Knuth's algorithm S): rows at
+ * equal distances would meet the same levels of the factors that change fastest. */
+static bool is_drawn(gsl_rng *random, int64_t wanted, int64_t left) {
+    return left <= wanted || gsl_rng_uniform(random) * (double)left < (double)wanted;
+}
+
 static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     sf_sweep_surface *s = &a->surface[figure];
     int numbers[SF_SWEEP_FACTORS], d = sf_analysis_numbers(a->plan, numbers),
                                    offsets = count_offsets(a->plan);
     s->of = count_values(a, figure);
-    int64_t every = (s->of + SF_SURFACE_ROWS - 1) / SF_SURFACE_ROWS, at = 0,
-            most = every > 0 ? s->of / every + 1 : 1;
+    int64_t most = s->of < SF_SURFACE_ROWS ? s->of : SF_SURFACE_ROWS, left = s->of;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    if (!random)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a surface");
+    gsl_rng_set(random, SURFACE_SEED);
     double *x = sf_alloc(err, (unsigned long)most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
     s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     s->left_out = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
         double value = sf_analysis_value(a, figure, row);
-        if (isnan(value) || at++ % every != 0)
+        if (isnan(value) || !is_drawn(random, most - s->rows, left--))
             continue;
         put_columns(a->plan, row, x + s->rows * (d + offsets));
         s->simulated[s->rows++] = value;
@@ -78,6 +90,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     if (err->status == SF_OK)
         sf_quadratic_fit(d, offsets, s->rows, x, s->simulated, &s->fit, s->left_out, err);
     free(x);
+    gsl_rng_free(random);
     return err->status;
 }
 

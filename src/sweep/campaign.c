@@ -12,7 +12,7 @@
 
 static const double WRITE_INTERVAL = 20; /* s between two tables, or this many times what one takes */
 static const double WRITE_SHARE = 20;
-enum { KEY_SIZE = 256, GEOMETRIES = 64 };
+enum { KEY_SIZE = 256 };
 
 typedef struct path {
     char text[PATH_MAX];
@@ -127,34 +127,63 @@ static uint64_t geometry_of(const sf_plan *plan, int64_t row) {
     return hash;
 }
 
-/* The first row that is done of each geometry, at most GEOMETRIES. */
-static int pick_samples(const sf_runs *runs, int64_t sample[GEOMETRIES]) {
-    uint64_t seen[GEOMETRIES];
-    int count = 0;
-    for (int64_t row = 0; row < runs->count && count < GEOMETRIES; row++) {
-        if (runs->state[row] != SF_SWEEP_DONE)
-            continue;
-        uint64_t hash = geometry_of(runs->plan, row);
-        int k = 0;
-        while (k < count && seen[k] != hash)
-            k++;
-        if (k == count) {
-            seen[count] = hash;
-            sample[count++] = row;
-        }
+typedef struct geometry {
+    uint64_t hash;
+    int64_t row;
+} geometry;
+
+static int compare_geometries(const void *a, const void *b) {
+    const geometry *p = a, *q = b;
+    int order = (p->hash > q->hash) - (p->hash < q->hash);
+    return order ? order : (p->row > q->row) - (p->row < q->row);
+}
+
+static int compare_rows(const void *a, const void *b) {
+    int64_t p = *(const int64_t *)a, q = *(const int64_t *)b;
+    return (p > q) - (p < q);
+}
+
+/* The first row that is done of each geometry, in the order of rows; from malloc. */
+static int64_t *pick_samples(const sf_runs *runs, int64_t *count, sf_error *err) {
+    int64_t done = sf_runs_count(runs, SF_SWEEP_DONE), n = 0;
+    geometry *list = sf_alloc(err, (unsigned long)done, sizeof *list, "geometries");
+    int64_t *sample = sf_alloc(err, (unsigned long)done, sizeof *sample, "geometries");
+    *count = 0;
+    for (int64_t row = 0; row < runs->count && list && sample; row++)
+        if (runs->state[row] == SF_SWEEP_DONE)
+            list[n++] = (geometry){geometry_of(runs->plan, row), row};
+    if (n > 0)
+        qsort(list, (size_t)n, sizeof *list, compare_geometries);
+    for (int64_t k = 0; k < n; k++)
+        if (k == 0 || list[k].hash != list[k - 1].hash)
+            sample[(*count)++] = list[k].row;
+    if (*count > 0)
+        qsort(sample, (size_t)*count, sizeof *sample, compare_rows);
+    free(list);
+    return sample;
+}
+
+/* Gives the rows to the engine, piece by piece, until one of them had to be simulated. */
+static sf_status look_at(const sf_sweep_engine *engine, sf_runs *runs, int64_t count, const int64_t *row,
+                         int *fresh, sf_error *err) {
+    for (int64_t k = 0; k < count && *fresh == 0 && err->status == SF_OK; k += engine->piece) {
+        int64_t left = count - k;
+        engine->run(engine->context, runs, left < engine->piece ? (int)left : engine->piece, row + k, fresh,
+                    err);
     }
-    return count;
+    return err->status;
 }
 
 /* A file that only the geometry knows of may have changed: one finished run of each geometry is given to the
  * engine again. If it has to be simulated, every run is looked at again. */
 static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                        sf_error *err) {
-    int64_t sample[GEOMETRIES];
-    int fresh = 0, count = pick_samples(runs, sample);
-    if (count == 0)
-        return SF_OK;
-    if (engine->run(engine->context, runs, count, sample, &fresh, err) != SF_OK || fresh == 0)
+    int64_t count = 0, *sample = pick_samples(runs, &count, err);
+    int fresh = 0;
+    if (err->status == SF_OK)
+        look_at(engine, runs, count, sample, &fresh, err);
+    free(sample);
+    if (err->status != SF_OK || fresh == 0)
         return err->status;
     open_all(runs, SF_SWEEP_DONE);
     if (c->log)

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sweep/cost.h"
 
+#include "io/folder.h"
 #include "io/plain_file.h"
 #include "pre/make.h"
 #include "pre/report.h"
+#include "sweep/drops.h"
 #include "sweep/inputs.h"
 #include <gsl/gsl_sort.h>
 #include <limits.h>
@@ -77,6 +79,8 @@ sf_status sf_sweep_cost_estimate(const sf_runs *r, const char *folder, sf_sweep_
     *c = (sf_sweep_cost){.open = sf_runs_count(r, SF_SWEEP_OPEN)};
     if (measure(r, &c->seconds, &done, err) != SF_OK)
         return err->status;
+    int64_t more = sf_folder_count(folder, SF_SWEEP_LABEL "-") - sf_runs_count(r, SF_SWEEP_DONE);
+    c->there = more < 0 ? 0 : more < c->open ? more : c->open;
     if (done == 0)
         return from_model(r->plan, c, err);
     from_runs(r, folder, done, c);
@@ -101,7 +105,7 @@ static double free_bytes(const char *folder) {
 }
 
 sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, int jobs, sf_error *err) {
-    double need = c->bytes * (double)c->open + c->work_bytes * jobs, there = free_bytes(folder);
+    double need = c->bytes * (double)(c->open - c->there) + c->work_bytes * jobs, there = free_bytes(folder);
     if (need <= there)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,
@@ -111,7 +115,10 @@ sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, i
 
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {
     double hours = c->seconds * (double)c->open / jobs / 3600;
-    fprintf(out,
-            "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
-            (long long)c->open, c->seconds, hours, jobs, c->bytes * (double)c->open / 1e9, c->basis);
+    fprintf(
+        out, "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
+        (long long)c->open, c->seconds, hours, jobs, c->bytes * (double)(c->open - c->there) / 1e9, c->basis);
+    if (c->there > 0)
+        fprintf(out, "  (up to %lld of them may be there already: drops that runs.csv does not list)\n",
+                (long long)c->there);
 }

@@ -11,6 +11,7 @@ typedef struct sf_sweep_cost {
     double bytes;      /* of its results */
     double work_bytes; /* that one run needs while it is at work */
     int64_t open;      /* runs */
+    int64_t there;     /* of them at most so many have a drop's folder already, that runs.csv does not know */
     char basis[160];   /* where that comes from */
 } sf_sweep_cost;
 

@@ -5,42 +5,47 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct row_text {
-    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
-} row_text;
-
 typedef struct piece {
     int count;
-    sf_runner_drop *drop;
+    sf_runner_drop *drop; /* its overrides are from malloc */
     sf_runner_result *result;
     sf_error *failure;
-    row_text *text;
 } piece;
+
+static sf_status take_overrides(const sf_plan *plan, int64_t row, sf_runner_drop *d, sf_error *err) {
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+    int count = sf_plan_overrides(plan, row, text);
+    for (int i = 0; i < count && err->status == SF_OK; i++) {
+        d->overrides[i] = strdup(text[i]);
+        if (!d->overrides[i])
+            SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the drops");
+        d->override_count = i + 1;
+    }
+    return err->status;
+}
 
 static sf_status begin_piece(piece *p, const sf_plan *plan, int count, const int64_t *row, sf_error *err) {
     unsigned long n = (unsigned long)count;
     *p = (piece){.count = count,
                  .drop = sf_alloc(err, n, sizeof *p->drop, "drops"),
                  .result = sf_alloc(err, n, sizeof *p->result, "drops"),
-                 .failure = sf_alloc(err, n, sizeof *p->failure, "drops"),
-                 .text = sf_alloc(err, n, sizeof *p->text, "drops")};
+                 .failure = sf_alloc(err, n, sizeof *p->failure, "drops")};
     for (int k = 0; k < count && err->status == SF_OK; k++) {
-        sf_runner_drop *d = &p->drop[k];
-        *d = (sf_runner_drop){.label = "drop", .case_path = plan->case_path};
-        d->override_count = sf_plan_overrides(plan, row[k], p->text[k].text);
-        for (int i = 0; i < d->override_count; i++)
-            d->overrides[i] = p->text[k].text[i];
+        p->drop[k] = (sf_runner_drop){.label = SF_SWEEP_LABEL, .case_path = plan->case_path};
+        take_overrides(plan, row[k], &p->drop[k], err);
     }
     return err->status;
 }
 
 static void end_piece(piece *p) {
+    for (int k = 0; k < p->count && p->drop; k++)
+        for (int i = 0; i < p->drop[k].override_count; i++)
+            free((char *)p->drop[k].overrides[i]);
     for (int k = 0; k < p->count && p->result; k++)
         sf_runner_result_free(&p->result[k]);
     free(p->drop);
     free(p->result);
     free(p->failure);
-    free(p->text);
 }
 
 /* "drop-0123456789abcdef" of ".../drop-0123456789abcdef/results.h5". */
@@ -53,22 +58,10 @@ static void folder_name(const char *path, char *out, size_t size) {
 
 static sf_status take_result(sf_runs *runs, int64_t row, const sf_runner_result *result, sf_error *err) {
     char folder[256];
-    sf_results r;
-    sf_figures f = {0};
-    sf_error inner = SF_ERROR_INIT;
-    if (sf_results_open(result->path, &r, &inner) != SF_OK)
-        return sf_runs_failed(runs, row, inner.text, err);
-    if (sf_figures_compute(&r, 1000, &f, &inner) == SF_OK) {
-        folder_name(result->path, folder, sizeof folder);
-        sf_runs_take(runs, row, &r, &f);
-        sf_runs_done(runs, row, result->grade, folder,
-                     result->grade == SF_GRADE_VALID ? NULL : result->verdict, err);
-    } else {
-        sf_runs_failed(runs, row, inner.text, err);
-    }
-    sf_figures_free(&f);
-    sf_results_close(&r);
-    return err->status;
+    folder_name(result->path, folder, sizeof folder);
+    sf_runs_take(runs, row, result->figure, result->status);
+    return sf_runs_done(runs, row, result->grade, folder,
+                        result->grade == SF_GRADE_VALID ? NULL : result->verdict, err);
 }
 
 /* Not the drop's own, as a disk that is full: it ends the campaign. */
@@ -108,6 +101,7 @@ static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row
 }
 
 sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
+    runner->figures_only = true;
     int abreast = jobs < 1 ? 1 : jobs < SF_SWEEP_JOBS ? jobs : SF_SWEEP_JOBS;
     return (sf_sweep_engine){.run = run,
                              .context = runner,

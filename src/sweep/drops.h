@@ -5,11 +5,13 @@
 
 #include "sweep/campaign.h"
 
+#define SF_SWEEP_LABEL "drop" /* begins the names of the drops' folders */
+
 enum {
-    SF_SWEEP_PIECE = 32, /* rows at a time, for each drop that runs side by side */
-    SF_SWEEP_JOBS = 8,   /* up to so many of them */
-    SF_SWEEP_ELSEWHERE =
-        4000 /* rows at a time by another engine, which waits for the slowest job of a piece */
+    SF_SWEEP_PIECE = 32,       /* rows at a time, for each drop that runs side by side */
+    SF_SWEEP_JOBS = 8,         /* up to so many of them */
+    SF_SWEEP_ELSEWHERE = 20000 /* rows at a time by another engine, a thousand jobs of 20, which waits for the
+                                  slowest job of a piece */
 };
 
 /* The context of the engine is the runner, borrowed. */

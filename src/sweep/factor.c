@@ -260,6 +260,12 @@ static int count_draws(const char *folder, int most) {
     return count < most ? count : most;
 }
 
+/* The number of draw `k` (from 0) of `count` of them, in the middle of equal parts of those that are there:
+ * softfall-fit writes them model by model. */
+static int chosen_draw(int k, int count, int there) {
+    return (2 * k + 1) * there / (2 * count) + 1;
+}
+
 static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error *err) {
     const char *name = config_setting_get_string(s);
     char folder[PATH_MAX], path[DRAW_PATH];
@@ -275,16 +281,16 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
     bool given = config_setting_get_member(r->group, "draws") != NULL;
     snprintf(folder, sizeof folder, "%s%s%s", *name == '/' ? "" : r->config->folder, *name == '/' ? "" : "/",
              name);
-    int count = count_draws(folder, (int)draws);
-    if (count == 0)
+    int there = count_draws(folder, MOST_DRAWS), count = given ? (int)draws : there;
+    if (there == 0)
         return sf_config_refuse(r->config, s, err, "posterior: there is no draw-001.cfg in %s", folder);
-    if (given && count < (int)draws)
-        return sf_config_refuse(r->config, s, err, "draws is %d, but %s holds %d", (int)draws, folder, count);
+    if (there < count)
+        return sf_config_refuse(r->config, s, err, "draws is %d, but %s holds %d", count, folder, there);
     if (make_levels(r->factor, count, true, err) != SF_OK)
         return err->status;
     r->factor->uncertain = true;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
-        draw_name(name, k + 1, path, sizeof path);
+        draw_name(name, chosen_draw(k, count, there), path, sizeof path);
         take_file(r, s, path, k, err);
     }
     return err->status;

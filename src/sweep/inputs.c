@@ -3,6 +3,7 @@
 
 #include "campaign/key.h"
 #include "core/hash.h"
+#include "pre/mesh/geo_parameters.h"
 #include <string.h>
 
 /* A row of the plan in which one factor has another value. */
@@ -37,7 +38,9 @@ static sf_status check(const variant *v, uint64_t *hash, sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
     uint64_t key = 0;
     if (read_variant(v, &c, &inner) == SF_OK) {
-        sf_campaign_key(&c, &key, &inner);
+        if (sf_geo_parameters_check_alone(&c.pad, &inner) == SF_OK &&
+            sf_geo_parameters_check_alone(&c.missile, &inner) == SF_OK)
+            sf_campaign_key(&c, &key, &inner);
         sf_case_free(&c);
     }
     *hash = sf_hash_bytes(*hash, &key, sizeof key);

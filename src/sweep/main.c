@@ -3,6 +3,7 @@
 #include "build_info.h"
 #include "campaign/engine.h"
 #include "core/program.h"
+#include "core/units.h"
 #include "io/folder.h"
 #include "io/process.h"
 #include "io/provenance.h"
@@ -214,7 +215,10 @@ int main(int argc, char **argv) {
     if (sf_program_begin(argv, &err) == SF_OK && parse_command(argc, argv, &o, &err) == SF_OK) {
         j->lock = -1;
         j->command = command;
-        run(&o, j, &err);
+        if (sf_units_hold(&err) == SF_OK) { /* of very many cases */
+            run(&o, j, &err);
+            sf_units_let_go();
+        }
         sf_staging_end(&j->output);
         sf_analysis_free(&j->analysis);
         sf_runs_free(&j->runs);

@@ -61,20 +61,12 @@ static double text_number(sf_runs *r, const char *text) {
     return r->text_count++;
 }
 
-static double number_of(sf_runs *r, const sf_figure *figure, const sf_results *results,
-                        const sf_figures *figures) {
-    const char *text = figure->type == SF_FIGURE_TEXT ? sf_figure_place(figure, results, figures) : NULL;
-    if (text)
-        return *text ? text_number(r, text) : NAN;
-    return sf_figure_number(figure, results, figures);
-}
-
-void sf_runs_take(sf_runs *r, int64_t row, const sf_results *results, const sf_figures *figures) {
+void sf_runs_take(sf_runs *r, int64_t row, const double *figure, const char *status) {
     size_t count;
     const sf_figure *list = sf_figure_list(&count);
     double *place = sf_runs_place(r, row);
     for (size_t k = 0; k < count; k++)
-        place[k] = number_of(r, &list[k], results, figures);
+        place[k] = list[k].type != SF_FIGURE_TEXT ? figure[k] : *status ? text_number(r, status) : NAN;
 }
 
 static double to_nine_digits(double value) {

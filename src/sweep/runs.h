@@ -31,8 +31,9 @@ void sf_runs_free(sf_runs *runs);
 double *sf_runs_place(sf_runs *runs, int64_t row);
 /* The place of a figure among them; the key must be in the list. */
 size_t sf_runs_figure(const char *key);
-/* The figures of a drop into the place of the row. */
-void sf_runs_take(sf_runs *runs, int64_t row, const sf_results *results, const sf_figures *figures);
+/* The figures of a drop, [of sf_figure_list] sf_figure_number, into the place of the row; `status` is the one
+ * that is a text. */
+void sf_runs_take(sf_runs *runs, int64_t row, const double *figure, const char *status);
 
 /* Figures are rounded to the 9 digits of runs.csv, so that a campaign in pieces computes with the same. */
 sf_status sf_runs_done(sf_runs *runs, int64_t row, sf_grade grade, const char *folder, const char *message,

@@ -72,15 +72,9 @@ static sf_status collect(const sf_geo_source *source, const sf_broker *read, boo
     return err->status;
 }
 
-sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
-                                  sf_error *err) {
-    if (source->parameter_count == 0)
-        return SF_OK;
-    name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
-    if (!list)
-        return err->status;
-    collect(source, read, complete, list, err);
-    for (int k = 0; k < source->parameter_count && err->status == SF_OK; k++) {
+/* Refuses the first parameter that is not in the list. */
+static sf_status refuse_missing(const sf_geo_source *source, const name_list *list, sf_error *err) {
+    for (int k = 0; k < source->parameter_count; k++) {
         if (has_name(list, source->parameter[k].name))
             continue;
         char names[640];
@@ -88,9 +82,42 @@ sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *
         names[0] = '\0';
         for (int i = 0; i < list->count && used < sizeof names; i++)
             used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", list->name[i]);
-        SF_FAIL(err, SF_ERR_INPUT, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
-                source->path, source->parameter[k].name, list->count ? names : "none");
+        return SF_FAIL(err, SF_ERR_INPUT, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
+                       source->path, source->parameter[k].name, list->count ? names : "none");
     }
+    return SF_OK;
+}
+
+sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
+                                  sf_error *err) {
+    if (source->parameter_count == 0)
+        return SF_OK;
+    name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
+    if (list && collect(source, read, complete, list, err) == SF_OK)
+        refuse_missing(source, list, err);
+    free(list);
+    return err->status;
+}
+
+static bool reads_others(const char *text) {
+    for (sf_geo_token t = sf_geo_next(&text); t.kind != SF_GEO_END; t = sf_geo_next(&text))
+        if (t.kind == SF_GEO_WORD && (sf_geo_is(t, "Include") || sf_geo_is(t, "Merge")))
+            return true;
+    return false;
+}
+
+sf_status sf_geo_parameters_check_alone(const sf_geo_source *source, sf_error *err) {
+    const char *ending = source->path ? strrchr(source->path, '.') : NULL;
+    char *text = NULL;
+    if (source->parameter_count == 0 || !ending || strcmp(ending, ".geo") != 0)
+        return SF_OK;
+    name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
+    if (list && sf_plain_read(source->path, "geometry", SF_PLAIN_ANY, &text, NULL, err) == SF_OK &&
+        !reads_others(text)) {
+        scan(text, list);
+        refuse_missing(source, list, err);
+    }
+    free(text);
     free(list);
     return err->status;
 }

@@ -14,4 +14,8 @@
 sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
                                   sf_error *err);
 
+/* The same before anything is meshed, for a .geo file that includes and merges no other: it defines all that
+ * there is. Of every other geometry nothing is said. */
+sf_status sf_geo_parameters_check_alone(const sf_geo_source *source, sf_error *err);
+
 #endif

@@ -28,7 +28,7 @@ static bool is_same(const section *s, uint64_t then, const char *name, size_t le
     uint64_t hash = 0;
     sf_error none = SF_ERROR_INIT;
     return join(s, name, length, "", path) &&
-           sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, &none) == SF_OK && hash == then;
+           sf_plain_hash_kept(path, &hash, &none) == SF_OK && hash == then;
 }
 
 /* gmsh reads the file NAME.opt beside a geometry NAME, if there is one. */
