@@ -129,9 +129,11 @@ static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
         "set missile.velocity=4 m/s\nwait ready\nactivity\n# the click\nwait done 300\nstatus\nframes\n"
         "print 4Results/2a_max\nprint 4Results/3HIC\nprint 4Results/1verdict\n"
         "set geometry.parameters.thickness=50\nset geometry.parameters.thickness=60\nactivity\n"
-        "press save\nwait saved 300\nquit\n");
+        "press report\npress paraview\npress save\nwait saved 300\nquit\n");
     do_shell(
         p,
+        "mkdir fake; printf '#!/bin/sh\\necho $(basename $0) \"$@\" >>opened\\n' >fake/paraview; chmod +x fake/paraview; "
+        "cp fake/paraview fake/xdg-open; PATH=$PWD/fake:$PATH; "
         "find case.cfg geo foam home -type f | sort | xargs md5sum >before; "
         "{ has run.txt 'activity = ready' && shoot window-start && click_run && "
         "has run.txt 4Results/1verdict && shoot window-results; } & gui run; wait; "
@@ -142,6 +144,11 @@ static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
     assert_non_null(strstr(line_of(p, "run.txt", "3Checks/00nodes = "), "1/4 of the pad"));
     /* the same values find their run again */
     assert_string_equal(line_of(p, "run.txt", "activity = done"), "");
+    /* the two buttons have opened the products of that run */
+    assert_int_equal(program_shell(p, "grep -q 'xdg-open .*/report/report.html' opened && "
+                                      "grep -q 'paraview .*/report/pad' opened")
+                         .code,
+                     0);
     /* what was saved is the same drop */
     compute(p, "saved", "$(echo *-saved)/case.cfg", "");
     assert_figures(p, "run.txt", "saved");

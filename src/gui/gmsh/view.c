@@ -13,12 +13,30 @@ enum { MOVES = 101, VALUES = 201 };
 /* gmsh's numbers of kinds of elements, of views, of ranges and of colours. */
 enum { TRIANGLE = 2, QUADRANGLE = 3, DISPLACEMENT = 5, GRAPH = 4, TOP_RIGHT = 3, OWN_RANGE = 2, GREY = 9 };
 
-/* A model of gmsh that is not shown holds the mesh of a body. */
-static const char *const models[SF_PICTURES] = {"softfall missile", "softfall pad", ""};
+/* A model of gmsh that is not shown holds the mesh of a body. It stays when its picture goes, until the
+ * geometry is read anew: gmsh's window may still point to what it held. */
+static char models[SF_PICTURES][48];
+
+static void name_model(sf_picture which) {
+    static int serial;
+    snprintf(models[which], sizeof models[which], "softfall %s %d",
+             which == SF_PICTURE_PAD ? "pad" : "missile", ++serial);
+}
+
+static bool has_view(int tag) {
+    int ierr = 0, *tags = NULL;
+    size_t count = 0;
+    bool found = false;
+    gmshViewGetTags(&tags, &count, &ierr);
+    for (size_t k = 0; k < count; k++)
+        found = found || tags[k] == tag;
+    gmshFree(tags);
+    return found;
+}
 
 static void set_option(int tag, const char *option, double value) {
     char name[64];
-    int ierr = 0, index = gmshViewGetIndex(tag, &ierr);
+    int ierr = 0, index = has_view(tag) ? gmshViewGetIndex(tag, &ierr) : -1;
     if (ierr != 0 || index < 0)
         return;
     snprintf(name, sizeof name, "View[%d].%s", index, option);
@@ -33,36 +51,10 @@ static void set_text(int tag, const char *option, const char *value) {
         gmshOptionSetString(name, value, &ierr);
 }
 
-static bool has_view(int tag) {
-    int ierr = 0, *tags = NULL;
-    size_t count = 0;
-    bool found = false;
-    gmshViewGetTags(&tags, &count, &ierr);
-    for (size_t k = 0; k < count; k++)
-        found = found || tags[k] == tag;
-    gmshFree(tags);
-    return found;
-}
-
 static void remove_view(int tag) {
     int ierr = 0;
     if (has_view(tag))
         gmshViewRemove(tag, &ierr);
-}
-
-static void remove_model(const char *name) {
-    int ierr = 0;
-    char **names = NULL;
-    size_t count = 0;
-    gmshModelList(&names, &count, &ierr);
-    for (size_t k = 0; k < count; k++) {
-        if (strcmp(names[k], name) == 0) {
-            gmshModelSetCurrent(name, &ierr);
-            gmshModelRemove(&ierr);
-        }
-        gmshFree(names[k]);
-    }
-    gmshFree(names);
 }
 
 /* The faces of so many corners as elements of the model's one entity. */
@@ -103,16 +95,9 @@ static sf_status add_mesh(const sf_body *b, sf_error *err) {
 }
 
 void sf_view_remove(sf_picture which) {
-    char *shown = NULL;
-    int ierr = 0;
-    gmshModelGetCurrent(&shown, &ierr);
+    set_option(MOVES + (int)which, "ExternalView", -1);
     remove_view(MOVES + (int)which);
     remove_view(VALUES + (int)which);
-    if (*models[which])
-        remove_model(models[which]);
-    if (ierr == 0 && shown)
-        gmshModelSetCurrent(shown, &ierr);
-    gmshFree(shown);
 }
 
 /* gmsh forgets the options of a view with it. */
@@ -140,6 +125,7 @@ sf_status sf_view_begin(sf_picture which, const char *title, const sf_body *body
     char *shown = NULL;
     int ierr = 0;
     sf_view_remove(which);
+    name_model(which);
     gmshModelGetCurrent(&shown, &ierr);
     gmshModelAdd(models[which], &ierr);
     add_mesh(body, err);
