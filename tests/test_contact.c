@@ -6,6 +6,7 @@
 
 #include "core/mat3.h"
 #include "solver/contact/contact.h"
+#include "solver/run/frame.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>
@@ -115,6 +116,36 @@ static void pad_and_missile_exchange_equal_and_opposite_momentum(void **state) {
         free(before);
         fixture_free(&f);
     }
+}
+
+/* The pressure of a frame adds up to the force across the plate; nodes without contact have none. */
+static void pressure_of_a_frame_adds_up_to_the_normal_force(void **state) {
+    (void)state;
+    fixture f;
+    start_press(&f, 0.5, 0.4);
+    const sf_model *m = &f.model;
+    sf_state *s = &f.state;
+    while (s->time < 0.6e-3) {
+        fixture_step(&f);
+        sf_step_advance(m, s);
+    }
+    fixture_step(&f);
+    double *pressure = malloc((size_t)m->node_count * sizeof *pressure), sum = 0;
+    assert_non_null(pressure);
+    sf_frame_take(m, &f.operators, s, SF_FRAME_CONTACT_PRESSURE, pressure);
+    for (int64_t c = 0; c < m->contact_count; c++) {
+        double *p = &pressure[m->contact_node[c]];
+        assert_true(*p >= 0);
+        sum += m->contact_area[c] * *p;
+        *p = 0;
+    }
+    for (int64_t i = 0; i < m->node_count; i++)
+        assert_true(pressure[i] == 0);
+    assert_true(s->contact_count > 10);
+    assert_true(s->missile.force[2] > 1);
+    assert_relative(sum, s->missile.force[2], 1e-12);
+    free(pressure);
+    fixture_free(&f);
 }
 
 typedef struct friction_count {
@@ -245,6 +276,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pressed_points_lie_on_the_plate_and_free_ones_outside),
         cmocka_unit_test(pad_and_missile_exchange_equal_and_opposite_momentum),
+        cmocka_unit_test(pressure_of_a_frame_adds_up_to_the_normal_force),
         cmocka_unit_test(rough_plate_sticks),
         cmocka_unit_test(smooth_plate_slides_at_the_coulomb_bound),
         cmocka_unit_test(sliding_friction_loses_energy),

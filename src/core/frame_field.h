@@ -22,7 +22,9 @@
       "1 - smallest principal stretch", "") BETWEEN                                                                    \
     X(ENERGY_DENSITY, energy_density, 1, "J m-3", "energy_density_J_m3",                                               \
       "W of the loading curve per reference volume", "") BETWEEN                                                       \
-    X(HYSTERESIS_FACTOR, hysteresis_factor, 1, "1", "hysteresis_factor_1", "factor on the curve's stress", "")
+    X(HYSTERESIS_FACTOR, hysteresis_factor, 1, "1", "hysteresis_factor_1", "factor on the curve's stress", "") BETWEEN \
+    X(CONTACT_PRESSURE, contact_pressure, 1, "Pa", "contact_pressure_Pa",                                              \
+      "normal force of the missile on the node over the undeformed surface that belongs to it", "0 without contact")
 /* clang-format on */
 
 #define SF_FRAME_CONSTANT(constant, ...) SF_FRAME_##constant,

@@ -86,6 +86,27 @@ static void take_law_field(const sf_model *m, const sf_operators *op, const sf_s
     }
 }
 
+/* The first contact point whose node is not below i. */
+static int64_t find_point(const sf_model *m, int64_t i) {
+    int64_t low = 0, high = m->contact_count;
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        if (m->contact_node[middle] < i)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void take_pressure(const sf_model *m, const sf_state *s, int64_t first, int64_t end, double *out) {
+    memset(out, 0, (size_t)(end - first) * sizeof *out);
+    for (int64_t c = find_point(m, first); c < m->contact_count && m->contact_node[c] < end; c++)
+        if (m->contact_area[c] > 0)
+            out[m->contact_node[c] - first] =
+                sf_dot3(&s->contact_force[3 * c], &s->contact_normal[3 * c]) / m->contact_area[c];
+}
+
 /* One field of `count` nodes from node `start`, the first of a group. */
 static void take_field(const sf_model *m, const sf_operators *op, const sf_state *s, sf_frame_field kind,
                        int64_t start, int64_t count, double *out) {
@@ -109,6 +130,9 @@ static void take_field(const sf_model *m, const sf_operators *op, const sf_state
         case SF_FRAME_ENERGY_DENSITY:
         case SF_FRAME_HYSTERESIS_FACTOR:
             take_law_field(m, op, s, kind, first, end, rows);
+            break;
+        case SF_FRAME_CONTACT_PRESSURE:
+            take_pressure(m, s, first, end, rows);
             break;
         case SF_FRAME_FIELDS:
             break;

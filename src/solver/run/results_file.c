@@ -10,6 +10,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     const double unknown = NAN, *impact = m->missile.impact_known ? m->missile.impact : NULL;
     const double informed = sf_model_informed_strain(m);
     const double gravity = sf_missile_free_fall(m), density = sf_model_density(m);
+    const double radius = m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0;
     const struct {
         sf_h5_info info;
         sf_h5_type type;
@@ -98,6 +99,16 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
          1,
          {3, 0},
          m->missile.centre},
+        {{"/model/sphere_radius", "m", "of the missile's exact sphere, 0: contact with its triangles"},
+         SF_H5_F64,
+         0,
+         {0},
+         &radius},
+        {{"/model/sphere_centre", "m", "of the missile's exact sphere at t = 0"},
+         SF_H5_F64,
+         1,
+         {3, 0},
+         m->missile.sphere_centre},
         {{"/model/gravity_along", "m s-2", "acceleration of the missile in free flight, along its direction"},
          SF_H5_F64,
          0,
