@@ -2,10 +2,12 @@
 """Loads a pad.xdmf with all three XDMF readers of ParaView, every time step and every array.
 
     pvpython check_xdmf.py PATH STEPS PAD_NODES PAD_CELLS MISSILE_CELLS [--bounds STEP X0 X1 Y0 Y1 Z0 Z1]
-                           [--range ARRAY STEP LOW HIGH]...
+                           [--range ARRAY STEP LOW HIGH]... [--times T0 T1 ...] [--full]
 
 Checks the number of time steps, nodes and cells, that every value is finite, that the readers agree, and, if asked, the
-bounds of pad and missile together and the range of an array (its first component). Exit code 0 if all is well.
+times of the steps, the bounds of pad and missile together and the range of an array (its first component; an array of the
+missile or of the cells as "missile NAME" or "cell NAME"). Numbers are floats, or with --full doubles. Exit code 0 if all
+is well.
 """
 import argparse
 import math
@@ -15,7 +17,7 @@ from paraview import servermanager, simple
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 import numpy
 
-TOLERANCE = 1e-9
+TOLERANCE = {False: 1e-6, True: 1e-9}  # relative to the largest magnitude of floats; of doubles absolute
 READERS = ("XDMFReader", "Xdmf3ReaderS", "Xdmf3ReaderT")
 
 
@@ -62,7 +64,7 @@ def load(name, path, options):
     for time in times:
         reader.UpdatePipeline(time)
         leaves = blocks(servermanager.Fetch(reader))
-        leaves.sort(key=lambda leaf: leaf.GetPointData().GetNumberOfArrays(), reverse=True)
+        leaves.sort(key=lambda leaf: leaf.GetCellData().HasArray("material"), reverse=True)
         if len(leaves) != (2 if options.missile_cells else 1):
             fail("%s, t = %g: %d grids" % (name, time, len(leaves)))
         counts = [(leaf.GetNumberOfPoints(), leaf.GetNumberOfCells()) for leaf in leaves]
@@ -77,9 +79,14 @@ def load(name, path, options):
                 fail("%s, t = %g: the %s is a %s" % (name, time, kind, leaf.GetClassName()))
             arrays[kind + " cell types"] = copy_of(leaf.GetCellTypesArray())
             arrays[kind + " connectivity"] = copy_of(leaf.GetCells().GetConnectivityArray())
-        data = leaves[0].GetPointData()
-        for k in range(data.GetNumberOfArrays()):
-            arrays[data.GetArrayName(k)] = copy_of(data.GetArray(k))
+            expected = numpy.float64 if options.full else numpy.float32
+            if arrays[kind + " points"].dtype != expected:
+                fail("%s: the %s's points are %s" % (name, kind, arrays[kind + " points"].dtype))
+        data = [("", leaves[0].GetPointData()), ("cell ", leaves[0].GetCellData())]
+        data += [("missile ", leaf.GetPointData()) for leaf in leaves[1:]]
+        for kind, source in data:
+            for k in range(source.GetNumberOfArrays()):
+                arrays[kind + source.GetArrayName(k)] = copy_of(source.GetArray(k))
         for key, values in arrays.items():
             if not numpy.isfinite(values).all():
                 fail("%s, t = %g: %s is not finite" % (name, time, key))
@@ -100,18 +107,26 @@ def compare(name, steps, reference_name, reference):
                 fail("t = %g: %s differs between %s and %s" % (time, key, name, reference_name))
 
 
+def differ(found, expected, options):
+    scale = 1 if options.full else max(abs(expected), 0.1)
+    return abs(found - expected) > TOLERANCE[options.full] * scale
+
+
 def check_expected(name, steps, options):
+    times = [step[0] for step in steps]
+    if options.times and [round(t, 9) for t in times] != options.times:
+        fail("%s: the times are %s, expected %s" % (name, times, options.times))
     for bounds in options.bounds or []:
         found = steps[int(bounds[0])][1]
         expected = [float(v) for v in bounds[1:]]
-        if any(abs(a - b) > TOLERANCE for a, b in zip(found, expected)):
+        if any(differ(a, b, options) for a, b in zip(found, expected)):
             fail("%s, step %s: bounds %s, expected %s" % (name, bounds[0], found, expected))
     for array, step, low, high in options.range or []:
         values = steps[int(step)][2].get(array)
         if values is None:
             fail("%s has no array %s, but %s" % (name, array, sorted(steps[int(step)][2])))
         values = values.reshape(len(values), -1)[:, 0]
-        if abs(values.min() - float(low)) > TOLERANCE or abs(values.max() - float(high)) > TOLERANCE:
+        if differ(values.min(), float(low), options) or differ(values.max(), float(high), options):
             fail("%s, step %s: %s is in %.17g to %.17g" % (name, step, array, values.min(), values.max()))
 
 
@@ -124,6 +139,8 @@ def main():
     parser.add_argument("missile_cells", type=int)
     parser.add_argument("--bounds", nargs=7, action="append")
     parser.add_argument("--range", nargs=4, action="append")
+    parser.add_argument("--times", nargs="+", type=float)
+    parser.add_argument("--full", action="store_true")
     options = parser.parse_args()
     loaded = []
     for name in READERS:

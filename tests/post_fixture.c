@@ -100,7 +100,7 @@ static sf_status put_model(sf_h5 *file, const cloud *c, const fixture_options *o
     put(file, "/model/cell_node", SF_H5_I32, c->ptr[FIXTURE_CELLS], 1, c->node, err);
     put(file, "/model/surface_position", SF_H5_F64, 5, 3, surface, err);
     put(file, "/model/surface_triangle", SF_H5_I32, FIXTURE_TRIANGLES, 3, triangle, err);
-    put_integer(file, "/model/symmetry_factor", 1, err);
+    put_integer(file, "/model/symmetry_factor", o->part > 0 ? o->part : 1, err);
     put_scalar(file, "/model/thickness", FIXTURE_THICKNESS, err);
     put_scalar(file, "/model/density", 35, err);
     put_scalar(file, "/model/missile_mass", FIXTURE_MASS, err);
@@ -108,7 +108,11 @@ static sf_status put_model(sf_h5 *file, const cloud *c, const fixture_options *o
     put_scalar(file, "/model/expected_mesh_error", 0, err);
     put_scalar(file, "/model/gravity_along", SF_STANDARD_GRAVITY, err);
     put_integer(file, "/model/kinematic", o->kinematic, err);
-    const double centre[3] = {0, 0, 0};
+    const double centre[3] = {0, 0, 0}, sphere[3] = {0, 0, o->sphere_radius};
+    if (o->sphere_radius > 0) {
+        put_scalar(file, "/model/sphere_radius", o->sphere_radius, err);
+        put(file, "/model/sphere_centre", SF_H5_F64, 3, 1, sphere, err);
+    }
     put_integer(file, "/model/missile_driven", 0, err);
     put_integer(file, "/model/missile_free", 0, err);
     put(file, "/model/missile_centre", SF_H5_F64, 3, 1, centre, err);
@@ -183,7 +187,9 @@ static sf_status put_frame(sf_h5 *file, const cloud *c, const char *group, int k
     }
     snprintf(path, sizeof path, "%s/time", group);
     if (!(last && o->headless_frame))
-        put_scalar(file, path, k * FIXTURE_DURATION / 4, err);
+        put_scalar(file, path,
+                   strcmp(group, "/peak") == 0 && o->peak_time > 0 ? o->peak_time : k * FIXTURE_DURATION / 4,
+                   err);
     snprintf(path, sizeof path, "%s/acceleration", group);
     put_scalar(file, path, FIXTURE_PEAK_G * SF_STANDARD_GRAVITY * sin(M_PI * k / 4), err);
     const double upright[4] = {1, 0, 0, 0};

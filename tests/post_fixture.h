@@ -40,6 +40,9 @@ typedef struct fixture_options {
     const char *notes;      /* /summary/notes, NULL = none there */
     double informed_strain; /* > 0: /model/informed_strain */
     double anvil_depth;     /* > 0: /model/anvil_depth (m) */
+    double peak_time;       /* > 0: of /peak (s), else that of frame 2 */
+    double sphere_radius;   /* > 0: /model/sphere_radius (m), its centre that far above the pole */
+    int64_t part;           /* 2: half a model, mirrored at x = -0.1; 0: whole */
 } fixture_options;
 
 sf_status fixture_write(const char *path, const fixture_options *options, sf_error *err);

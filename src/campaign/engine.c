@@ -19,18 +19,6 @@ static sf_status missing(sf_error *err) {
                    "--engine snakemake: Snakemake is not installed (package snakemake of Debian)");
 }
 
-/* Is there a program of this name in PATH? */
-static bool is_in_path(const char *name) {
-    const char *path = getenv("PATH");
-    char copy[8192], file[SF_RUN_PATH_SIZE], *rest = copy, *folder;
-    snprintf(copy, sizeof copy, "%s", path ? path : "/usr/bin:/bin");
-    while ((folder = strsep(&rest, ":")))
-        if (snprintf(file, sizeof file, "%s/%s", *folder ? folder : ".", name) < (int)sizeof file &&
-            access(file, X_OK) == 0)
-            return true;
-    return false;
-}
-
 /* The profile as Snakemake is told: a folder of ours, or what was given. */
 static sf_status find_profile(const char *name, char path[PATH_MAX], sf_error *err) {
     if (strcmp(name, "slurm") == 0)
@@ -93,7 +81,7 @@ sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err) {
                                : SF_OK;
     if (strcmp(engine->name, "snakemake") != 0)
         return SF_FAIL(err, SF_ERR_INPUT, "--engine %s: the engines are local and snakemake", engine->name);
-    if (!is_in_path("snakemake"))
+    if (!sf_process_is_in_path("snakemake"))
         return missing(err);
     return engine->profile ? check_profile(engine->profile, err) : SF_OK;
 }

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536, SF_H5_COPY_SIZE = 1 << 16 };
+enum { SF_H5_PIECE_SIZE = 1 << 20, SF_H5_DEFLATE = 4 }; /* bytes; level of deflate */
 
 struct sf_h5 {
     hid_t id;
@@ -287,11 +288,12 @@ static hid_t make_groups(void) {
     return links;
 }
 
-/* Creates a dataset with its two attributes and closes it again unless `keep` is given. */
-static sf_status create_dataset(sf_h5 *file, const sf_h5_info *info, hid_t type, hid_t space, hid_t *keep,
-                                sf_error *err) {
+/* Creates a dataset with its two attributes and closes it again unless `keep` is given. `storage`: a property
+ * list, or H5P_DEFAULT. */
+static sf_status create_dataset(sf_h5 *file, const sf_h5_info *info, hid_t type, hid_t space, hid_t storage,
+                                hid_t *keep, sf_error *err) {
     hid_t links = make_groups();
-    hid_t set = H5Dcreate2(file->id, info->path, type, space, links, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t set = H5Dcreate2(file->id, info->path, type, space, links, storage, H5P_DEFAULT);
     H5Pclose(links);
     if (set < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: dataset %s cannot be created", file->path, info->path);
@@ -331,7 +333,7 @@ sf_status sf_h5_rows_begin(sf_h5 *file, const sf_h5_info *info, sf_h5_type type,
     for (int k = 0; k < rank; k++)
         extent[k] = (hsize_t)dims[k];
     hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
-    sf_status status = create_dataset(file, info, native_type(type), space, &set, err);
+    sf_status status = create_dataset(file, info, native_type(type), space, H5P_DEFAULT, &set, err);
     H5Sclose(space);
     *rows = (sf_h5_rows){
         .file = file, .path = info->path, .type = type, .count = rank == 0 ? 1 : dims[0], .set = set};
@@ -365,6 +367,43 @@ sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int 
     return sf_h5_rows_end(&rows, err);
 }
 
+/* Pieces of whole rows, of about a megabyte. Nothing to compress: as any dataset. */
+static hid_t packed_storage(int rank, const int64_t *dims, size_t item_size) {
+    hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
+    hsize_t piece[SF_H5_MAX_RANK];
+    size_t row = item_size;
+    for (int k = 1; k < rank; k++) {
+        piece[k] = (hsize_t)dims[k];
+        row *= (size_t)dims[k];
+    }
+    if (rank == 0 || dims[0] == 0 || row == 0)
+        return storage;
+    int64_t most = row < SF_H5_PIECE_SIZE ? (int64_t)(SF_H5_PIECE_SIZE / row) : 1;
+    piece[0] = (hsize_t)(dims[0] < most ? dims[0] : most);
+    H5Pset_chunk(storage, rank, piece);
+    H5Pset_shuffle(storage);
+    H5Pset_deflate(storage, SF_H5_DEFLATE);
+    return storage;
+}
+
+sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, bool single, int rank,
+                             const int64_t *dims, const void *data, sf_error *err) {
+    hsize_t extent[SF_H5_MAX_RANK] = {0};
+    hid_t stored = single && type == SF_H5_F64 ? H5T_NATIVE_FLOAT : native_type(type), set = -1;
+    for (int k = 0; k < rank; k++)
+        extent[k] = (hsize_t)dims[k];
+    hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
+    hid_t storage = packed_storage(rank, dims, H5Tget_size(stored));
+    create_dataset(file, info, stored, space, storage, &set, err);
+    bool written = set < 0 || H5Sget_simple_extent_npoints(space) == 0 ||
+                   H5Dwrite(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+    if ((set >= 0 && H5Dclose(set) < 0) || !written)
+        SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
+    H5Pclose(storage);
+    H5Sclose(space);
+    return err->status;
+}
+
 sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, sf_error *err) {
     return sf_h5_write(file, info, SF_H5_F64, 0, NULL, &value, err);
 }
@@ -375,7 +414,7 @@ sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text
     H5Tset_cset(type, H5T_CSET_UTF8);
     hid_t space = H5Screate(H5S_SCALAR);
     hid_t set = -1;
-    sf_status status = create_dataset(file, info, type, space, &set, err);
+    sf_status status = create_dataset(file, info, type, space, H5P_DEFAULT, &set, err);
     if (status == SF_OK && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0)
         status = SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
     if (set >= 0)
@@ -634,7 +673,8 @@ static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf
         (items < 0 || size == 0 || (uint64_t)items > size_of_file(set) / size))
         SF_FAIL(err, SF_ERR_IO, "%s: %s claims more than its file can hold", from->path, path);
     sf_h5_info info = {path, units, description};
-    if (err->status == SF_OK && create_dataset(to, &info, type, space, &made, err) == SF_OK && items > 0)
+    if (err->status == SF_OK && create_dataset(to, &info, type, space, H5P_DEFAULT, &made, err) == SF_OK &&
+        items > 0)
         copy_rows(from, path, set, type, items, to, made, err);
     if (made >= 0 && H5Dclose(made) < 0)
         SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);

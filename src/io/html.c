@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/html.h"
 
+#include "io/plain_file.h"
 #include "io/utf8.h"
 #include <math.h>
 #include <stdarg.h>
@@ -203,6 +204,56 @@ void sf_html_figure(FILE *page, const char *svg, const char *format, ...) {
     fprintf(page, "<figure%s>\n%s<figcaption>", svg ? "" : " class=\"missing\"", svg ? svg : "");
     PUT_ARGUMENTS(page, format);
     fputs("</figcaption></figure>\n", page);
+}
+
+static void put_base64(FILE *out, const unsigned char *data, size_t size) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t k = 0; k < size; k += 3) {
+        size_t left = size - k;
+        unsigned three = (unsigned)data[k] << 16 | (left > 1 ? (unsigned)data[k + 1] << 8 : 0) |
+                         (left > 2 ? (unsigned)data[k + 2] : 0);
+        fputc(digits[three >> 18], out);
+        fputc(digits[three >> 12 & 63], out);
+        fputc(left > 1 ? digits[three >> 6 & 63] : '=', out);
+        fputc(left > 2 ? digits[three & 63] : '=', out);
+    }
+}
+
+/* Four bytes of a PNG's header, which begins with signature, length and name of its first part. */
+static unsigned png_number(const unsigned char *at) {
+    return (unsigned)at[0] << 24 | (unsigned)at[1] << 16 | (unsigned)at[2] << 8 | (unsigned)at[3];
+}
+
+static char *png_element(const unsigned char *data, size_t size) {
+    enum { WIDTH = 16, HEIGHT = 20, HEADER = 24 };
+    char *element = NULL;
+    size_t length = 0;
+    FILE *out = size > HEADER ? open_memstream(&element, &length) : NULL;
+    if (!out)
+        return NULL;
+    unsigned width = png_number(data + WIDTH), height = png_number(data + HEIGHT);
+    fprintf(out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %u %u\"><image width=\"%u\" "
+            "height=\"%u\" href=\"data:image/png;base64,",
+            width, height, width, height);
+    put_base64(out, data, size);
+    fputs("\"/></svg>\n", out);
+    if (fclose(out) == 0)
+        return element;
+    free(element);
+    return NULL;
+}
+
+char *sf_html_png(const sf_staging *output, const char *name) {
+    sf_error ignored = SF_ERROR_INIT;
+    char *data = NULL, *element = NULL, *path = sf_staging_path(output, name, &ignored);
+    size_t size = 0;
+    if (path && sf_staging_has(output, name) &&
+        sf_plain_read(path, NULL, SF_PLAIN_TEXT, &data, &size, &ignored) == SF_OK)
+        element = png_element((const unsigned char *)data, size);
+    free(data);
+    free(path);
+    return element;
 }
 
 sf_html_table sf_html_table_begin(FILE *page, const char *kind, const char *columns) {

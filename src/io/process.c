@@ -45,6 +45,17 @@ sf_status sf_process_find_shared(const char *name, char *path, size_t size, sf_e
     return SF_OK;
 }
 
+bool sf_process_is_in_path(const char *name) {
+    const char *path = getenv("PATH");
+    char copy[8192], file[PATH_MAX], *rest = copy, *folder;
+    snprintf(copy, sizeof copy, "%s", path ? path : "/usr/bin:/bin");
+    while ((folder = strsep(&rest, ":")))
+        if (snprintf(file, sizeof file, "%s/%s", *folder ? folder : ".", name) < (int)sizeof file &&
+            access(file, X_OK) == 0)
+            return true;
+    return false;
+}
+
 static volatile sig_atomic_t stopped;
 /* Process ids of stoppable programs or copies; below 0: of a group; 0: none. */
 static volatile sig_atomic_t running[SF_PROCESS_JOBS];

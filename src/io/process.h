@@ -15,6 +15,9 @@ sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *e
  * SF_ERR_IO if it is not there. */
 sf_status sf_process_find_shared(const char *name, char *path, size_t size, sf_error *err);
 
+/* Is there a program of this name in PATH? */
+bool sf_process_is_in_path(const char *name);
+
 typedef struct sf_process {
     const char *const *arguments; /* the program, a path or a name to look for in PATH, and its arguments;
                                      ends with NULL */

@@ -10,6 +10,7 @@
 #include "post/figures.h"
 #include "io/staging.h"
 #include "post/overlay.h"
+#include "post/paraview.h"
 #include "post/plot.h"
 #include "post/report.h"
 #include "post/results.h"
@@ -32,6 +33,8 @@ enum {
     KEY_REGIONS,
     KEY_SHIFT,
     KEY_STRICT,
+    KEY_FULL,
+    KEY_FILM,
     KEY_LIMIT_G,
     KEY_LIMIT_HIC,
     KEY_REFERENCE_FILTER,
@@ -43,7 +46,9 @@ typedef struct options {
     const char *results_path;
     const char *directory;
     bool force;
-    bool strict; /* the exit status shows the verdict */
+    bool full;        /* doubles for ParaView */
+    const char *film; /* name of the file; NULL: none is asked for */
+    bool strict;      /* the exit status shows the verdict */
     sf_limits limits;
     double cfc;
     bool comparing; /* --reference was given */
@@ -60,11 +65,11 @@ typedef struct job {
     sf_verdict verdict;
     sf_comparison comparison;
     sf_staging output;
-    const char *names[15];        /* of every file that may be written */
+    const char *names[19];        /* of every file that may be written */
     char data[SF_XDMF_NAME_SIZE]; /* of the data of pad.xdmf */
     char *command_line;
-    int64_t frames;
-    char plot_warning[512];
+    sf_xdmf xdmf;
+    char plot_warning[512], state_warning[512];
 } job;
 
 static sf_status parse_filter(const char *option, const char *text, double *cfc, sf_error *err) {
@@ -93,6 +98,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         break;
     case KEY_FORCE:
         o->force = true;
+        break;
+    case KEY_FULL:
+        o->full = true;
+        break;
+    case KEY_FILM:
+        sf_paraview_check_film(text, &o->film, &o->err);
         break;
     case KEY_STRICT:
         o->strict = true;
@@ -161,6 +172,12 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     static const struct argp_option known[] = {
         {"output", 'o', "DIR", 0, "write everything there (required)", 0},
         {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier run in DIR", 0},
+        {"full", KEY_FULL, NULL, 0,
+         "data of pad.xdmf as doubles, as in results.h5 (default: as floats, a third of the bytes)", 0},
+        {"film", KEY_FILM, "mp4|gif", OPTION_ARG_OPTIONAL,
+         "a film of the drop too, pad.mp4 or pad.gif, and pad.png, the picture at the peak, which report.html then "
+         "shows; by pvbatch (ParaView) and ffmpeg",
+         0},
         {"filter", KEY_FILTER, "CFC", 0, "channel frequency class: 60, 180, 600 or 1000 (default)", 0},
         {"strict", KEY_STRICT, NULL, 0,
          "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"; it says nothing about limits that "
@@ -194,7 +211,8 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         .doc =
             "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, summary.json, "
             "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
-            "motion compression.csv and .png instead of the acceleration. Open pad.xdmf in ParaView. The "
+            "motion compression.csv and .png instead of the acceleration. Open the drop in ParaView with paraview "
+            "--script=pad_paraview.py, in that directory. The "
             "figures are indicative, not a certification.",
     };
     argp_program_version_hook = print_version;
@@ -221,11 +239,25 @@ static sf_status parse_command(int argc, char **argv, options *o) {
 /* Every file that this program may write. The data of pad.xdmf are moved before it, and earlier ones (pad.h5
  * of earlier versions) removed after it. Without a name of the data yet, pad.xdmf stands for them. */
 static void name_output(job *j) {
-    const char *const names[] = {j->data,           "pad.xdmf",         "history.csv",
-                                 "section.csv",     "reference.csv",    "compression.csv",
-                                 "compression.gp",  "compression.png",  "acceleration.csv",
-                                 "acceleration.gp", "acceleration.png", "report.html",
-                                 "summary.json",    "pad.h5",           NULL};
+    const char *const names[] = {j->data,
+                                 "pad.xdmf",
+                                 "pad_paraview.py",
+                                 "pad.mp4",
+                                 "pad.gif",
+                                 "pad.png",
+                                 "history.csv",
+                                 "section.csv",
+                                 "reference.csv",
+                                 "compression.csv",
+                                 "compression.gp",
+                                 "compression.png",
+                                 "acceleration.csv",
+                                 "acceleration.gp",
+                                 "acceleration.png",
+                                 "report.html",
+                                 "summary.json",
+                                 "pad.h5",
+                                 NULL};
     static_assert(sizeof names == sizeof j->names, "as many as the job holds");
     memcpy(j->names, names, sizeof names);
     snprintf(j->data, sizeof j->data, "pad.xdmf");
@@ -234,6 +266,7 @@ static void name_output(job *j) {
 static sf_status write_output(const options *o, job *j, sf_error *err) {
     bool section = false;
     const sf_comparison *comparison = o->comparing ? &j->comparison : NULL;
+    const sf_xdmf_options xdmf = {j->command_line, o->full};
     name_output(j);
     if (sf_staging_begin(o->directory, j->names, o->force, &j->output, err) != SF_OK ||
         sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
@@ -241,7 +274,10 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
         (!j->figures.driven && sf_csv_write_acceleration(&j->output, &j->figures, err) != SF_OK) ||
         (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
         sf_section_write(&j->output, &j->results, &section, err) != SF_OK ||
-        sf_xdmf_write(&j->output, &j->results, j->command_line, j->data, &j->frames, err) != SF_OK ||
+        sf_xdmf_write(&j->output, &j->results, &xdmf, j->data, &j->xdmf, err) != SF_OK ||
+        sf_paraview_write(&j->output, &j->results, &j->xdmf, j->state_warning, sizeof j->state_warning,
+                          err) != SF_OK ||
+        (o->film && sf_paraview_film(&j->output, o->film, err) != SF_OK) ||
         sf_plot_write(&j->output, &j->results, &j->figures, comparison, &j->verdict, j->plot_warning,
                       sizeof j->plot_warning, err))
         return err->status;
@@ -272,6 +308,8 @@ static void print_warnings(const job *j) {
             "softfall-post: warning: the run ended in contact: no rebound speed, the peak may lie ahead\n");
     if (j->plot_warning[0])
         fprintf(stderr, "softfall-post: warning: %s\n", j->plot_warning);
+    if (j->state_warning[0])
+        fprintf(stderr, "softfall-post: warning: %s\n", j->state_warning);
 }
 
 static void print_files(const job *j) {
@@ -288,6 +326,10 @@ static void print_files(const job *j) {
         {"section.csv", "mid-section and profile under the axis at the peak"},
         {"reference.csv", "the measured curve, aligned"},
         {"pad.xdmf", "pad and missile for ParaView (with pad-....h5)"},
+        {"pad_paraview.py", "opens them: paraview --script=pad_paraview.py"},
+        {"pad.mp4", "film of the drop"},
+        {"pad.gif", "film of the drop"},
+        {"pad.png", "picture at the peak"},
     };
     printf("Files\n");
     for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)

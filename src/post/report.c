@@ -170,11 +170,21 @@ static void put_curve(const page *p, const sf_staging *output) {
     free(svg);
 }
 
+/* The picture that came with the film. */
+static void put_scene(const page *p, const sf_staging *output) {
+    char *scene = sf_html_png(output, "pad.png");
+    if (scene)
+        sf_html_figure(p->file, scene,
+                       "The same in ParaView (pad_paraview.py), all of the pad behind the missile's axis.");
+    free(scene);
+}
+
 static void put_pictures(const page *p, const sf_staging *output) {
     const sf_report_pictures *q = p->pictures;
     sf_html_block_begin(p->file);
     sf_html_heading(p->file, "The pad at the peak");
     sf_html_figure(p->file, q->pad, "%s", q->pad_text);
+    put_scene(p, output);
     sf_html_block_end(p->file);
     sf_html_block_begin(p->file);
     sf_html_heading(p->file, "Mid-section");

@@ -60,10 +60,13 @@ typedef struct sf_results {
                                the file does not say */
     double informed_strain; /* -, up to which data inform the material (of layers the least); NaN: the file
                                does not say */
-    double anvil_depth;     /* m, below the undeformed pad's top; 0: there is none; NaN: the file does not say */
-    int layer_count;        /* of a pad of several materials; 0: one */
-    uint8_t *node_layer;    /* [node_count] number of the layer */
-    char **layer_name;      /* [layer_count] parts of layer_names */
+    double
+        sphere_radius; /* m, of the exact sphere of the contact, NaN: triangles, or the file does not say */
+    double sphere_centre[3]; /* m, at t = 0; 0 without it */
+    double anvil_depth;  /* m, below the undeformed pad's top; 0: there is none; NaN: the file does not say */
+    int layer_count;     /* of a pad of several materials; 0: one */
+    uint8_t *node_layer; /* [node_count] number of the layer */
+    char **layer_name;   /* [layer_count] parts of layer_names */
     char *layer_names;
     double *layer_density;     /* [layer_count] kg m-3 */
     double *layer_informed;    /* [layer_count] as informed_strain */

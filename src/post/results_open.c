@@ -103,6 +103,17 @@ static sf_status read_optional(const sf_results *r, const char *path, double *va
     return err->status;
 }
 
+/* The exact sphere that contact takes for the missile, if it does. */
+static sf_status read_sphere(sf_results *r, sf_error *err) {
+    if (read_optional(r, "/model/sphere_radius", &r->sphere_radius, err) != SF_OK)
+        return err->status;
+    if (!(r->sphere_radius > 0))
+        r->sphere_radius = NAN;
+    else if (read_vector(r, "/model/sphere_centre", r->sphere_centre, err) == SF_OK)
+        sf_results_check_finite(r->sphere_centre, 3, "/model/sphere_centre", err);
+    return err->status;
+}
+
 /* The names of the layers, a line each. */
 static sf_status read_layer_names(sf_results *r, sf_error *err) {
     char *rest = NULL;
@@ -199,7 +210,7 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         read_optional(r, "/model/impact_y", &r->impact_y, err) != SF_OK ||
         read_optional(r, "/model/anvil_depth", &r->anvil_depth, err) != SF_OK ||
         read_optional(r, "/model/slit_fraction", &r->slit_fraction, err) != SF_OK ||
-        read_layers(r, err) != SF_OK)
+        read_sphere(r, err) != SF_OK || read_layers(r, err) != SF_OK)
         return err->status;
     return sf_results_check_model(r, err);
 }
