@@ -61,10 +61,11 @@ static bool is_profile_name(const char *name) {
 static sf_status check_profile(const char *name, sf_error *err) {
     char path[PATH_MAX];
     if (strcmp(name, "slurm") == 0)
-        return is_in_path("sbatch") ? find_profile(name, path, err)
-                                    : SF_FAIL(err, SF_ERR_IO,
-                                              "--profile slurm: Slurm's commands (sbatch) are not installed "
-                                              "(package slurm-client of Debian)");
+        return sf_process_is_in_path("sbatch")
+                   ? find_profile(name, path, err)
+                   : SF_FAIL(err, SF_ERR_IO,
+                             "--profile slurm: Slurm's commands (sbatch) are not installed "
+                             "(package slurm-client of Debian)");
     if (is_profile(name) || is_profile_name(name))
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,

@@ -45,15 +45,22 @@ static void find_extent(const double *position, int64_t count, int k, double ext
     }
 }
 
-/* A symmetry plane is an end of the modelled pad, and there the missile is cut open too: the end (m) where
- * both end, or come closest to it, and how close. */
+/* A symmetry plane is an end of the modelled pad, where a whole missile has its middle, or one that is
+ * modelled in part ends too. The end (m) that fits best, and by how much (m) it does not. */
 static double find_common_end(const sf_results *r, int k, double *place) {
-    double pad[2], missile[2];
+    double pad[2], missile[2], best = INFINITY;
     find_extent(r->position, r->node_count, k, pad);
     find_extent(r->surface_position, r->surface_node_count, k, missile);
-    int end = fabs(missile[1] - pad[1]) < fabs(missile[0] - pad[0]);
-    *place = pad[end];
-    return fabs(missile[end] - pad[end]);
+    const double marks[3] = {0.5 * (missile[0] + missile[1]), missile[0], missile[1]};
+    for (int mark = 0; mark < 3; mark++)
+        for (int end = 0; end < 2; end++) {
+            double off = fabs(marks[mark] - pad[end]);
+            if (off < best - 1e-6 * r->thickness) { /* of equals the middle, which stands first */
+                best = off;
+                *place = pad[end];
+            }
+        }
+    return best;
 }
 
 /* The symmetry planes; the missile's axis lies in them, and else in the middle of the missile. */

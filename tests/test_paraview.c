@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The state for ParaView that softfall-post writes, pad_paraview.py: what it knows of a drop, what it shows,
+ * the film, and tools/draw_pad.py, which draws with it. What needs ParaView is skipped without it. */
+#include "core/error.h"
+#include "model_fixture.h"
+#include "program_fixture.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+/* The coarse example with a full model, hit beside its middle; and a compression test, for a few steps. */
+static int set_up(void **state) {
+    program_group_example(state);
+    const program_place *p = *state;
+    program_succeed(
+        p, "pre",
+        "good.cfg -o full.h5 %s --set solver.end_time='1.5 ms' --set geometry.parameters.quarter=0 "
+        "--set geometry.missile_parameters.quarter=0 --set 'missile.position=[\"40 mm\",\"-30 mm\"]'",
+        program_coarse(20));
+    program_succeed(p, "solve", "full.h5 -o full_results.h5 -t 1");
+    program_succeed(p, "post", "full_results.h5 -o full");
+    program_succeed(p, "pre",
+                    "'%s' -o pressed.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=5 ms'",
+                    fixture_source("examples/compression/case.cfg"));
+    program_succeed(p, "solve", "pressed.h5 -o pressed_results.h5 -t 1");
+    program_succeed(p, "post", "pressed_results.h5 -o pressed");
+    return 0;
+}
+
+/* Python that has the facts of out/pad_paraview.py as `d` and must not fail. */
+static void assert_facts(const program_place *p, const char *folder, const char *condition) {
+    program_result r = program_shell(
+        p,
+        "python3 -c \"import ast\n"
+        "t = ast.parse(open('%s/pad_paraview.py').read())\n"
+        "d = [ast.literal_eval(n.value) for n in t.body if isinstance(n, ast.Assign) and n.targets[0].id == 'DROP'][0]\n"
+        "assert %s, d\"",
+        folder, condition);
+    if (r.code != 0)
+        fail_msg("%s: %s", folder, r.err);
+}
+
+static void the_state_knows_symmetry_missile_and_peak(void **state) {
+    const program_place *p = *state;
+    assert_facts(
+        p, "out",
+        "[m[0] for m in d['mirrors']] == ['X', 'Y'] and max(abs(m[1]) for m in d['mirrors']) < 1e-9 and "
+        "max(abs(a) for a in d['axis']) < 1e-9 and abs(d['sphere'] - 0.08) < 1e-6 and d['missile'] and not "
+        "d['driven'] and d['array'] == 'von_mises_Pa' and d['largest'] > 1000 and 0 < d['peak'] <= 0.0011");
+    assert_facts(
+        p, "full",
+        "d['mirrors'] == [] and abs(d['axis'][0] - 0.04) < 0.002 and abs(d['axis'][1] + 0.03) < 0.002");
+    /* A whole platen on a quarter of a specimen. */
+    assert_facts(p, "pressed",
+                 "d['mirrors'] == [['X', 0], ['Y', 0]] and d['sphere'] is None and d['driven'] and "
+                 "'prescribed' in d['title']");
+}
+
+static void a_state_without_its_template_is_a_warning(void **state) {
+    const program_place *p = *state;
+    program_result r = program_shell(p, "SF_BIN_DIR=/nonexistent '%s/softfall-post' results.h5 -o bare",
+                                     getenv("SF_BIN_DIR"));
+    assert_int_equal(r.code, 0);
+    assert_non_null(strstr(r.err, "warning: there is no pad_paraview.py: "));
+    assert_non_null(strstr(r.err, "which comes with softfall, is missing"));
+    assert_int_equal(program_shell(p, "test -e bare/pad.xdmf && ! test -e bare/pad_paraview.py").code, 0);
+}
+
+static void assert_no_film(const program_place *p, const char *path, const char *option, const char *words) {
+    program_result r = program_shell(p, "env -u DISPLAY PATH='%s' '%s/softfall-post' results.h5 -o none %s",
+                                     path, getenv("SF_BIN_DIR"), option);
+    if (r.code != SF_ERR_INPUT || !strstr(r.err, words))
+        fail_msg("exit code %d, expected \"%s\": %s", r.code, words, r.err);
+    assert_int_equal(program_shell(p, "test -e none").code, 1);
+}
+
+static void a_film_without_its_programs_names_the_package(void **state) {
+    const program_place *p = *state;
+    assert_no_film(p, "/nonexistent", "--film", "--film needs pvbatch");
+    assert_no_film(p, "/nonexistent", "--film", "install the package paraview");
+    program_shell(p,
+                  "mkdir some && printf '#!/bin/sh\\necho no pictures today\\nexit 7\\n' > some/pvbatch && "
+                  "chmod +x some/pvbatch");
+    assert_no_film(p, "some", "--film", "install the package ffmpeg");
+    program_shell(p, "cp some/pvbatch some/ffmpeg");
+    assert_no_film(p, "some", "--film=gif", "install the package xvfb and xauth");
+    assert_no_film(p, "some", "--film=avi", "--film=avi: a film is mp4 or gif");
+    /* One that fails: its own words, and no output at all. */
+    program_result r =
+        program_shell(p, "DISPLAY=:7 PATH=\"$PWD/some:$PATH\" '%s/softfall-post' results.h5 -o none --film",
+                      getenv("SF_BIN_DIR"));
+    assert_int_equal(r.code, SF_ERR_LIBRARY);
+    assert_non_null(strstr(r.err, "the film was not made: pvbatch ended with code 7: no pictures today"));
+    assert_int_equal(program_shell(p, "test -e none").code, 1);
+}
+
+/* ---- with ParaView ---- */
+
+static void need(const program_place *p, const char *programs) {
+    if (program_shell(p, "for k in %s; do command -v $k || exit 1; done", programs).code != 0) {
+        print_message("skipped: not all of %s are installed\n", programs);
+        skip();
+    }
+}
+
+/* One missile, where it is; the peak's frame; nothing cut off. */
+static void the_state_shows_a_missile_beside_the_middle_once(void **state) {
+    const program_place *p = *state;
+    need(p, "pvbatch xvfb-run");
+    program_result peak = program_shell(p, "sed -n 's/ *\"peak\": \\(.*\\),/1e3*\\1/p' full/pad_paraview.py");
+    program_result r = program_shell(
+        p,
+        "xvfb-run -a pvbatch --force-offscreen-rendering '%s' full full.png $(python3 -c 'print(%s)') "
+        "-200,200,-200,200 -40,120,-110,50 2>&1",
+        fixture_source("tests/check_scene.py"), peak.out);
+    if (r.code != 0 || !strstr(r.out, "scene is right") || strstr(r.out, "Failed to evaluate"))
+        fail_msg("%s", r.out);
+}
+
+static void draw_pad_draws_a_prescribed_motion(void **state) {
+    const program_place *p = *state;
+    need(p, "pvbatch xvfb-run");
+    program_result r = program_shell(
+        p, "xvfb-run -a pvbatch --force-offscreen-rendering '%s' pressed/pad.xdmf pressed.png 2>&1",
+        fixture_source("tools/draw_pad.py"));
+    if (r.code != 0 || !strstr(r.out, "pressed.png") || strstr(r.out, "Traceback"))
+        fail_msg("%s", r.out);
+    assert_int_equal(program_shell(p, "test -s pressed.png").code, 0);
+}
+
+static void a_film_and_its_picture_stand_beside_the_report(void **state) {
+    const program_place *p = *state;
+    need(p, "pvbatch xvfb-run ffmpeg");
+    program_succeed(p, "post", "results.h5 -o filmed --film=gif");
+    assert_int_equal(program_shell(p, "head -c 6 filmed/pad.gif | grep -q GIF89a").code, 0);
+    assert_int_equal(program_shell(p, "grep -q 'href=\"data:image/png;base64,iVBOR' filmed/report.html").code,
+                     0);
+    assert_int_equal(program_shell(p, "test -e filmed/pad.png && ! test -e filmed/film.log").code, 0);
+    program_succeed(p, "post", "results.h5 -o filmed --force"); /* a film of another run would lie */
+    assert_int_equal(
+        program_shell(p, "! test -e filmed/pad.gif && ! grep -q 'data:image' filmed/report.html").code, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_state_knows_symmetry_missile_and_peak),
+        cmocka_unit_test(a_state_without_its_template_is_a_warning),
+        cmocka_unit_test(a_film_without_its_programs_names_the_package),
+        cmocka_unit_test(the_state_shows_a_missile_beside_the_middle_once),
+        cmocka_unit_test(draw_pad_draws_a_prescribed_motion),
+        cmocka_unit_test(a_film_and_its_picture_stand_beside_the_report),
+    };
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+}
