@@ -36,7 +36,7 @@ static void assert_facts(const program_place *p, const char *folder, const char 
         p,
         "python3 -c \"import ast\n"
         "t = ast.parse(open('%s/pad_paraview.py').read())\n"
-        "d = [ast.literal_eval(n.value) for n in t.body if isinstance(n, ast.Assign) and n.targets[0].id == 'DROP'][0]\n"
+        "d = [ast.literal_eval(n.value) for n in t.body if isinstance(n, ast.Assign) and getattr(n.targets[0], 'id', '') == 'DROP'][0]\n"
         "assert %s, d\"",
         folder, condition);
     if (r.code != 0)

@@ -3,7 +3,6 @@
 
 #include "io/plain_file.h"
 #include "io/replace.h"
-#include "post/xdmf_data.h"
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>
@@ -134,8 +133,6 @@ static sf_xdmf tell(const sf_shown *shown) {
         return made;
     for (int64_t k = 0; k < shown->count; k++)
         made.fields &= shown->fields[k];
-    made.first_time = shown->head[0]->time;
-    made.last_time = shown->head[shown->count - 1]->time;
     if (shown->peak >= 0 && shown->peak < shown->count)
         made.peak_time = shown->head[shown->peak]->time;
     return made;

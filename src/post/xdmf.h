@@ -10,27 +10,15 @@
 #define SF_POST_XDMF_H
 
 #include "io/staging.h"
-#include "post/results.h"
+#include "post/xdmf_data.h"
 
 enum { SF_XDMF_NAME_SIZE = 32 };
-
-typedef struct sf_xdmf_options {
-    const char *command_line;
-    bool full; /* doubles as they are in results.h5; else floats, see SF_XDMF_BITS */
-} sf_xdmf_options;
-
-/* The largest magnitude of an array in a frame has so many bits as a float, and all its values are whole
- * multiples of the last one, so that compression has something to take: the error is at most a millionth of
- * that magnitude. */
-enum { SF_XDMF_BITS = 20 };
 
 typedef struct sf_xdmf {
     int64_t frames;                  /* written; 0: there are no files */
     int fields;                      /* SF_FIELD_* bits that all of them have */
     double largest[SF_FRAME_FIELDS]; /* magnitude of each in all frames, SI */
     double peak_time;                /* s, of the frame that is /peak of results.h5; NaN: there is none */
-    double first_time;               /* s, of the first frame, and of the last */
-    double last_time;
 } sf_xdmf;
 
 /* `data` is the name of the file of the data; without frames it stays as it is. A frame that cannot be read

@@ -3,7 +3,17 @@
 #ifndef SF_POST_XDMF_DATA_H
 #define SF_POST_XDMF_DATA_H
 
-#include "post/xdmf.h"
+#include "post/results.h"
+
+typedef struct sf_xdmf_options {
+    const char *command_line;
+    bool full; /* doubles as they are in results.h5; else floats, see SF_XDMF_BITS */
+} sf_xdmf_options;
+
+/* The largest magnitude of an array in a frame has so many bits as a float, and all its values are whole
+ * multiples of the last one, so that compression has something to take: the error is at most a millionth of
+ * that magnitude. */
+enum { SF_XDMF_BITS = 20 };
 
 /* The frames of results.h5 and, in its place among them by time, /peak. */
 typedef struct sf_shown {
