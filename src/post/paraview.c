@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char STATE[] = "pad_paraview.py", PICTURE[] = "pad.png", LOG[] = "film.log";
 /* The line of the template that the facts replace. */
@@ -178,15 +179,18 @@ static void read_reason(const sf_staging *output, char *line, size_t size) {
 }
 
 sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error *err) {
-    const char *words[] = {"xvfb-run", "-a",     "pvbatch", "--force-offscreen-rendering",
-                           STATE,      "--film", film,      "--picture",
-                           PICTURE,    NULL};
+    enum { OF_XVFB = 4 };
+    char display[16]; /* from here on xvfb-run looks for a free one: others look too, and two may find the
+                         same */
+    const char *words[] = {"xvfb-run", "-a",     "-n", display,     "pvbatch", "--force-offscreen-rendering",
+                           STATE,      "--film", film, "--picture", PICTURE,   NULL};
     char *log = sf_staging_path(output, LOG, err), reason[256];
     int code = 0;
     if (!log)
         return err->status;
+    snprintf(display, sizeof display, "%d", 1000 + (int)(getpid() % 30000));
     const sf_process process = {
-        .arguments = has_display() ? words + 2 : words, .folder = output->aside, .log = LOG};
+        .arguments = has_display() ? words + OF_XVFB : words, .folder = output->aside, .log = LOG};
     int problem = sf_staging_has(output, STATE) ? sf_process_run(&process, &code) : 0;
     if (!sf_staging_has(output, STATE))
         SF_FAIL(err, SF_ERR_INPUT, "there are no frames or no %s to make a film of", STATE);
