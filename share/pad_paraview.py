@@ -3,8 +3,8 @@
 
     paraview --script=pad_paraview.py                  opens the drop in ParaView's window, at the peak
     pvpython pad_paraview.py --state drop.pvsm         writes it as a state file of ParaView
-    xvfb-run -a pvbatch --force-offscreen-rendering pad_paraview.py --picture P.png [--time MS] [--whole]
-    xvfb-run -a pvbatch --force-offscreen-rendering pad_paraview.py --film F.mp4 [--whole]
+    xvfb-run -a -s -noreset pvbatch --force-offscreen-rendering pad_paraview.py --picture P.png [--time MS] [--whole]
+    xvfb-run -a -s -noreset pvbatch --force-offscreen-rendering pad_paraview.py --film F.mp4 [--whole]
 
 softfall-post writes this file beside pad.xdmf, with the facts of the drop; the two and pad-....h5 belong together. The
 pad of a half or quarter model is reflected to the whole: "pad" is all of it, "cut" what lies behind the missile's axis.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Opens the state for ParaView that softfall-post wrote into DIR, draws PICTURE and checks what it shows.
 
-    xvfb-run -a pvbatch --force-offscreen-rendering check_scene.py DIR PICTURE PEAK PAD MISSILE
+    xvfb-run -a -s -noreset pvbatch --force-offscreen-rendering check_scene.py DIR PICTURE PEAK PAD MISSILE
 
 PEAK is the time of the frame shown, in ms; PAD and MISSILE are X0,X1,Y0,Y1, the extents in mm of the whole bodies, which
 may be wrong by 2 mm. Nothing may be cut off by the border of the picture; a sphere's points lie on it. Prints "scene is

@@ -113,7 +113,7 @@ static void the_state_shows_a_missile_beside_the_middle_once(void **state) {
     program_result peak = program_shell(p, "sed -n 's/ *\"peak\": \\(.*\\),/1e3*\\1/p' full/pad_paraview.py");
     program_result r = program_shell(
         p,
-        "xvfb-run -a -n $((1000 + $$ %% 30000)) pvbatch --force-offscreen-rendering '%s' full full.png $(python3 -c 'print(%s)') "
+        "xvfb-run -a -n $((1000 + $$ %% 30000)) -s '-noreset -screen 0 1280x1024x24' pvbatch --force-offscreen-rendering '%s' full full.png $(python3 -c 'print(%s)') "
         "-200,200,-200,200 -40,120,-110,50 2>&1",
         fixture_source("tests/check_scene.py"), peak.out);
     if (r.code != 0 || !strstr(r.out, "scene is right") || strstr(r.out, "Failed to evaluate"))
@@ -125,7 +125,7 @@ static void draw_pad_draws_a_prescribed_motion(void **state) {
     need(p, "pvbatch xvfb-run");
     program_result r = program_shell(
         p,
-        "xvfb-run -a -n $((1000 + $$ %% 30000)) pvbatch --force-offscreen-rendering '%s' pressed/pad.xdmf pressed.png 2>&1",
+        "xvfb-run -a -n $((1000 + $$ %% 30000)) -s '-noreset -screen 0 1280x1024x24' pvbatch --force-offscreen-rendering '%s' pressed/pad.xdmf pressed.png 2>&1",
         fixture_source("tools/draw_pad.py"));
     if (r.code != 0 || !strstr(r.out, "pressed.png") || strstr(r.out, "Traceback"))
         fail_msg("%s", r.out);

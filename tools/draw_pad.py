@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws the deformed pad, coloured by von Mises stress, under the missile.
 
-    xvfb-run -a pvbatch --force-offscreen-rendering tools/draw_pad.py DIR/pad.xdmf PICTURE.png [--time MS] [--whole]
+    xvfb-run -a -s -noreset pvbatch --force-offscreen-rendering tools/draw_pad.py DIR/pad.xdmf PICTURE.png [--time MS] [--whole]
 
 Draws the frame nearest to MS, in ms of the run; by default the peak. The pad is cut through the missile's axis, or with
 --whole it is shown as it is. softfall-post wrote the scene, pad_paraview.py, beside the .xdmf.

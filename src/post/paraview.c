@@ -179,11 +179,18 @@ static void read_reason(const sf_staging *output, char *line, size_t size) {
 }
 
 sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error *err) {
-    enum { OF_XVFB = 4 };
+    enum { OF_XVFB = 6 };
     char display[16]; /* from here on xvfb-run looks for a free one: others look too, and two may find the
                          same */
-    const char *words[] = {"xvfb-run", "-a",     "-n", display,     "pvbatch", "--force-offscreen-rendering",
-                           STATE,      "--film", film, "--picture", PICTURE,   NULL};
+    /* -noreset: ParaView opens the display, closes it and opens it again; a server that resets between the
+     * two may refuse the second */
+    const char *words[] = {"xvfb-run", "-a",
+                           "-n",       display,
+                           "-s",       "-noreset -screen 0 1280x1024x24",
+                           "pvbatch",  "--force-offscreen-rendering",
+                           STATE,      "--film",
+                           film,       "--picture",
+                           PICTURE,    NULL};
     char *log = sf_staging_path(output, LOG, err), reason[256];
     int code = 0;
     if (!log)
