@@ -119,7 +119,7 @@ static void look_ahead(const sf_foam *foam, double dt, const double e[6], princi
 
 /* Rate overstress (theory eq. 22): changes the principal stresses s, returns its bound. */
 static double overstress(const sf_foam *foam, double dt, const principal *p, const double e[6], double *rate,
-                         double s[3], double *work) {
+                         double s[3]) {
     double bound = 0, rates = 0, extra[3];
     int shortest = 0;
     for (int i = 1; i < 3; i++)
@@ -130,7 +130,6 @@ static double overstress(const sf_foam *foam, double dt, const principal *p, con
         double slope, rate_slope;
         extra[i] = sf_foam_overstress(foam, 1 - p->stretch[i], *rate, &slope, &rate_slope);
         s[i] -= extra[i] / p->stretch[i];
-        *work -= extra[i] / p->stretch[i] * quadratic(p, i, e) * dt;
         bound = larger(bound, slope);
         rates += rate_slope * rate_slope;
     }
@@ -141,6 +140,19 @@ static double overstress(const sf_foam *foam, double dt, const principal *p, con
             bound = larger(bound, (extra[i] - extra[j]) / gap);
     }
     return bound + sqrt(rates) / foam->filter_time;
+}
+
+/* Work of the overstress, by the mean of its values at both ends of the step. */
+static void work_of(const principal *p, const double added[3], double dt, const double e[6], sf_law_batch *b,
+                    int l) {
+    for (int r = 0; r < 3; r++)
+        for (int k = r; k < 3; k++) {
+            double now = 0, *held = &b->history[SF_FOAM_OVERSTRESS + SYM[r][k]][l], twice = k > r ? 2 : 1;
+            for (int i = 0; i < 3; i++)
+                now += added[i] * p->n[3 * r + i] * p->n[3 * k + i];
+            b->work[l] += twice * 0.5 * (*held + now) * e[SYM[r][k]] * dt;
+            *held = now;
+        }
 }
 
 /* Raises a[i], a[j] until a[j] x^2 + a[i] y^2 covers p x^2 + 2 o x y + q y^2. */
@@ -231,7 +243,7 @@ static double determinant(double f[9][SF_LANES], int l) {
 }
 
 void foam_reference_update(const sf_foam *foam, double dt, sf_law_batch *b, int l) {
-    double c[9], old[9], e[6] = {0}, s[6] = {0}, part[3], a[3], eta[3], extra = 0;
+    double c[9], old[9], e[6] = {0}, s[6] = {0}, part[3], added[3], a[3], eta[3], extra = 0;
     principal p;
     right_cauchy_green(b->f, l, c);
     right_cauchy_green(b->f_old, l, old);
@@ -253,7 +265,11 @@ void foam_reference_update(const sf_foam *foam, double dt, sf_law_batch *b, int 
     for (int i = 0; i < 3; i++)
         part[i] = p.factor * p.t[i] / p.stretch[i];
     if (foam->curve_count > 1 && dt > 0)
-        extra = overstress(foam, dt, &p, e, &b->history[SF_FOAM_RATE][l], part, &b->work[l]);
+        extra = overstress(foam, dt, &p, e, &b->history[SF_FOAM_RATE][l], part);
+    for (int i = 0; i < 3; i++)
+        added[i] = part[i] - p.factor * p.t[i] / p.stretch[i];
+    if (foam->curve_count > 1 && dt > 0)
+        work_of(&p, added, dt, e, b, l);
     double damp = foam->damp * b->length[l] * sqrt(foam->density * b->stiffness[l]);
     bounds(foam, &p, damp, a, eta);
     for (int k = 0; k < 6; k++)

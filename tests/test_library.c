@@ -200,7 +200,7 @@ static void fields_are_those_of_the_frames(void **state) {
         free(expected);
         free(values);
     }
-    assert_int_equal(count, 8);
+    assert_int_equal(count, SF_FRAME_FIELDS);
     assert_int_equal(softfall_drop_field(p->drop, "colour", NULL, 0, &error), SOFTFALL_INPUT);
     sf_h5_close(&file, &err);
 }

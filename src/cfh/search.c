@@ -101,11 +101,12 @@ static sf_cfh_step begin(const sf_cfh_plan *plan, const sf_cfh_points *points, s
     return SF_CFH_SIMULATE;
 }
 
-/* A step that leads a bit beyond the limit, if it is not a far one, and a height on the way. */
-static sf_cfh_step step_to(const sf_cfh_plan *plan, const sf_cfh_points *points, double to, double length,
-                           sf_cfh_round *round) {
-    double back = fmax(LEAST_GAP, fabs(length) / 2), toward = length > 0 ? -back : back;
-    const double distance[] = {toward, -toward};
+/* A step up (`sign` 1) or down (-1) by `length` of ln(height), which leads a bit beyond the limit, and a
+ * height on the way. The largest step may not reach it: then a height as far again ahead. */
+static sf_cfh_step step_to(const sf_cfh_plan *plan, const sf_cfh_points *points, double to, int sign,
+                           double length, sf_cfh_round *round) {
+    double second = length < LARGEST_STEP ? -sign * fmax(LEAST_GAP, length / 2) : sign * LARGEST_STEP;
+    const double distance[] = {second, -second};
     round->height[round->count++] = to;
     add_free(plan, points, to, 2, distance, round);
     return SF_CFH_SIMULATE;
@@ -124,7 +125,7 @@ static sf_cfh_step go_up(const sf_cfh_plan *plan, const sf_cfh_points *points, c
     if (!b->below) { /* nothing but failures */
         double height = rounded(plan, b->failed->height / 2);
         return height < MIN_HEIGHT ? SF_CFH_COLLAPSED
-                                   : step_to(plan, points, height, log(2), round); /* and one below */
+                                   : step_to(plan, points, height, -1, LARGEST_STEP, round);
     }
     double bottom = b->below->height;
     if (bottom >= plan->max_height * (1 - 1e-9))
@@ -134,7 +135,7 @@ static sf_cfh_step go_up(const sf_cfh_plan *plan, const sf_cfh_points *points, c
     double length = step_length(plan, b->below, b->beside), height = bottom * exp(length);
     if (b->failed && height > sqrt(bottom * b->failed->height))
         return divide(plan, bottom, b->failed->height, round);
-    return step_to(plan, points, rounded(plan, height), length, round);
+    return step_to(plan, points, rounded(plan, height), 1, length, round);
 }
 
 static sf_cfh_step go_down(const sf_cfh_plan *plan, const sf_cfh_points *points, const bracket *b,
@@ -142,7 +143,7 @@ static sf_cfh_step go_down(const sf_cfh_plan *plan, const sf_cfh_points *points,
     if (b->above->height <= MIN_HEIGHT)
         return SF_CFH_AT_MIN_HEIGHT;
     double length = step_length(plan, b->above, b->beside), height = b->above->height * exp(-length);
-    return step_to(plan, points, rounded(plan, fmax(height, MIN_HEIGHT)), -length, round);
+    return step_to(plan, points, rounded(plan, fmax(height, MIN_HEIGHT)), -1, length, round);
 }
 
 /* ln(height) at which the chord between the two points first meets a limit. */

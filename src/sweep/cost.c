@@ -105,7 +105,7 @@ static double free_bytes(const char *folder) {
 }
 
 sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, int jobs, sf_error *err) {
-    double need = c->bytes * (double)(c->open - c->there) + c->work_bytes * jobs, there = free_bytes(folder);
+    double need = c->bytes * (double)c->open + c->work_bytes * jobs, there = free_bytes(folder);
     if (need <= there)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,
@@ -115,9 +115,9 @@ sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, i
 
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {
     double hours = c->seconds * (double)c->open / jobs / 3600;
-    fprintf(
-        out, "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
-        (long long)c->open, c->seconds, hours, jobs, c->bytes * (double)(c->open - c->there) / 1e9, c->basis);
+    fprintf(out,
+            "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
+            (long long)c->open, c->seconds, hours, jobs, c->bytes * (double)c->open / 1e9, c->basis);
     if (c->there > 0)
         fprintf(out, "  (up to %lld of them may be there already: drops that runs.csv does not list)\n",
                 (long long)c->there);

@@ -101,10 +101,11 @@ static int64_t find_point(const sf_model *m, int64_t i) {
 
 static void take_pressure(const sf_model *m, const sf_state *s, int64_t first, int64_t end, double *out) {
     memset(out, 0, (size_t)(end - first) * sizeof *out);
-    for (int64_t c = find_point(m, first); c < m->contact_count && m->contact_node[c] < end; c++)
-        if (m->contact_area[c] > 0)
-            out[m->contact_node[c] - first] =
-                sf_dot3(&s->contact_force[3 * c], &s->contact_normal[3 * c]) / m->contact_area[c];
+    for (int64_t c = find_point(m, first); c < m->contact_count && m->contact_node[c] < end; c++) {
+        const double *force = &s->contact_force[3 * c];
+        if (m->contact_area[c] > 0 && sf_dot3(force, force) > 0) /* a normal without a force may be any */
+            out[m->contact_node[c] - first] = sf_dot3(force, &s->contact_normal[3 * c]) / m->contact_area[c];
+    }
 }
 
 /* One field of `count` nodes from node `start`, the first of a group. */
