@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
+#include <hdf5.h>
 
 /* The coarse example with a full model, hit beside its middle; and a compression test, for a few steps. */
 static int set_up(void **state) {
@@ -27,6 +28,14 @@ static int set_up(void **state) {
                     fixture_source("examples/compression/case.cfg"));
     program_succeed(p, "solve", "pressed.h5 -o pressed_results.h5 -t 1");
     program_succeed(p, "post", "pressed_results.h5 -o pressed");
+    /* Half a pad that is hit at an edge: the middle of the whole missile is an end of the pad along x too. */
+    program_succeed(
+        p, "pre",
+        "good.cfg -o half.h5 %s --set solver.end_time='0.5 ms' --set 'pad.symmetry=[\"symmetry_y\"]' "
+        "--set geometry.missile_parameters.quarter=0",
+        program_coarse(20));
+    program_succeed(p, "solve", "half.h5 -o half_results.h5 -t 1");
+    program_succeed(p, "post", "half_results.h5 -o half");
     return 0;
 }
 
@@ -57,6 +66,48 @@ static void the_state_knows_symmetry_missile_and_peak(void **state) {
     assert_facts(p, "pressed",
                  "d['mirrors'] == [['X', 0], ['Y', 0]] and d['sphere'] is None and d['driven'] and "
                  "'prescribed' in d['title']");
+}
+
+static void the_state_reflects_at_the_planes_of_the_model_only(void **state) {
+    const program_place *p = *state;
+    assert_facts(p, "half", "d['mirrors'] == [['Y', 0]] and abs(d['axis'][0]) < 1e-9 and d['axis'][1] == 0");
+}
+
+static void forget_planes(const program_place *p, const char *name) {
+    hid_t file = H5Fopen(program_path(p, name), H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(H5Ldelete(file, "/model/symmetry_x", H5P_DEFAULT) >= 0);
+    assert_true(H5Ldelete(file, "/model/symmetry_y", H5P_DEFAULT) >= 0);
+    H5Fclose(file);
+}
+
+/* Results of earlier versions do not name the planes: what cannot be told is not guessed. */
+static void a_plane_that_cannot_be_told_is_no_mirror(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "solve", "half.h5 -o old_half.h5 -t 1");
+    forget_planes(p, "old_half.h5");
+    program_result r = program_succeed(p, "post", "old_half.h5 -o old_half");
+    assert_non_null(strstr(r.err, "pad_paraview.py shows the modelled part of the pad only"));
+    assert_facts(p, "old_half", "d['mirrors'] == []");
+    program_shell(p, "cp results.h5 old.h5");
+    forget_planes(p, "old.h5");
+    r = program_succeed(p, "post", "old.h5 -o old");
+    assert_null(strstr(r.err, "modelled part"));
+    assert_facts(p, "old", "[m[0] for m in d['mirrors']] == ['X', 'Y']");
+}
+
+static void planes_that_contradict_the_factor_are_refused(void **state) {
+    const program_place *p = *state;
+    const double place = 0;
+    program_shell(p, "cp half_results.h5 contradiction.h5");
+    hid_t file = H5Fopen(program_path(p, "contradiction.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
+    hid_t set = H5Dopen2(file, "/model/symmetry_x", H5P_DEFAULT);
+    assert_true(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &place) >= 0);
+    H5Dclose(set);
+    H5Fclose(file);
+    program_result r = program_run(p, "post", "contradiction.h5 -o contradiction");
+    assert_int_equal(r.code, SF_ERR_IO);
+    assert_non_null(
+        strstr(r.err, "/model/symmetry_factor is 2, /model/symmetry_x and symmetry_y tell 2 planes"));
 }
 
 static void a_state_without_its_template_is_a_warning(void **state) {
@@ -148,6 +199,9 @@ static void a_film_and_its_picture_stand_beside_the_report(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_state_knows_symmetry_missile_and_peak),
+        cmocka_unit_test(the_state_reflects_at_the_planes_of_the_model_only),
+        cmocka_unit_test(a_plane_that_cannot_be_told_is_no_mirror),
+        cmocka_unit_test(planes_that_contradict_the_factor_are_refused),
         cmocka_unit_test(a_state_without_its_template_is_a_warning),
         cmocka_unit_test(a_film_without_its_programs_names_the_package),
         cmocka_unit_test(the_state_shows_a_missile_beside_the_middle_once),

@@ -12,6 +12,8 @@
 static const char STATE[] = "pad_paraview.py", PICTURE[] = "pad.png", LOG[] = "film.log";
 /* The line of the template that the facts replace. */
 static const char FACTS[] = "\nDROP = {}";
+/* Of the thickness: what lies closer to an end is at it. */
+static const double AT_END = 1e-6;
 
 /* ---- the facts ---- */
 
@@ -46,36 +48,50 @@ static void find_extent(const double *position, int64_t count, int k, double ext
     }
 }
 
-/* A symmetry plane is an end of the modelled pad, where a whole missile has its middle, or one that is
- * modelled in part ends too. The end (m) that fits best, and by how much (m) it does not. */
-static double find_common_end(const sf_results *r, int k, double *place) {
-    double pad[2], missile[2], best = INFINITY;
+/* Files of earlier versions do not say where the planes are, nor do those where all nodes of a plane are of
+ * the base too. A symmetry plane is an end of the modelled pad, where a whole missile has its middle, or one
+ * that is modelled in part ends too: how many of the pad's two ends are such; *place (m) of the last. */
+static int count_common_ends(const sf_results *r, int k, double *place) {
+    double pad[2], missile[2];
+    int count = 0;
     find_extent(r->position, r->node_count, k, pad);
     find_extent(r->surface_position, r->surface_node_count, k, missile);
     const double marks[3] = {0.5 * (missile[0] + missile[1]), missile[0], missile[1]};
-    for (int mark = 0; mark < 3; mark++)
-        for (int end = 0; end < 2; end++) {
-            double off = fabs(marks[mark] - pad[end]);
-            if (off < best - 1e-6 * r->thickness) { /* of equals the middle, which stands first */
-                best = off;
-                *place = pad[end];
-            }
-        }
-    return best;
+    for (int end = 0; end < 2; end++) {
+        double off = INFINITY;
+        for (int mark = 0; mark < 3; mark++)
+            off = fmin(off, fabs(marks[mark] - pad[end]));
+        if (off > AT_END * r->thickness)
+            continue;
+        *place = pad[end];
+        count++;
+    }
+    return count;
+}
+
+/* Places (m) of the symmetry planes normal to x and y; NaN: none. False: they cannot be told. */
+static bool find_mirrors(const sf_results *r, double place[2]) {
+    place[0] = r->symmetry_place[0];
+    place[1] = r->symmetry_place[1];
+    if (r->symmetry_factor == 1 << (isfinite(place[0]) + isfinite(place[1])))
+        return true;
+    double end[2];
+    const int count[2] = {count_common_ends(r, 0, &end[0]), count_common_ends(r, 1, &end[1])};
+    bool known = r->symmetry_factor == 4 ? count[0] == 1 && count[1] == 1 : count[0] + count[1] == 1;
+    for (int k = 0; k < 2; k++)
+        place[k] = known && count[k] ? end[k] : NAN;
+    return known;
 }
 
 /* The symmetry planes; the missile's axis lies in them, and else in the middle of the missile. */
 static void put_mirrors(FILE *f, const sf_results *r) {
-    double place[2], distance[2], axis[2], missile[2];
-    for (int k = 0; k < 2; k++)
-        distance[k] = find_common_end(r, k, &place[k]);
-    int closer = distance[1] < distance[0];
+    double place[2], axis[2], missile[2];
+    find_mirrors(r, place);
     fputs("    \"mirrors\": [", f);
     for (int k = 0; k < 2; k++) {
-        bool mirror = r->symmetry_factor == 4 || (r->symmetry_factor == 2 && k == closer);
         find_extent(r->surface_position, r->surface_node_count, k, missile);
-        axis[k] = mirror ? place[k] : 0.5 * (missile[0] + missile[1]);
-        if (mirror)
+        axis[k] = isfinite(place[k]) ? place[k] : 0.5 * (missile[0] + missile[1]);
+        if (isfinite(place[k]))
             fprintf(f, "[\"%c\", %.9g], ", "XY"[k], place[k]);
     }
     fprintf(f, "], \"axis\": [%.9g, %.9g],\n", axis[0], axis[1]);
@@ -129,6 +145,12 @@ sf_status sf_paraview_write(const sf_staging *output, const sf_results *r, const
         snprintf(warning, size, "there is no %s: %s", STATE, problem.text);
         return SF_OK;
     }
+    double place[2];
+    if (!find_mirrors(r, place))
+        snprintf(
+            warning, size,
+            "%s shows the modelled part of the pad only, as results.h5 does not say where the symmetry planes lie",
+            STATE);
     FILE *f = sf_staging_open(output, STATE, err);
     if (f) {
         const char *line = strstr(text, FACTS);

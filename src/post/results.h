@@ -53,8 +53,10 @@ typedef struct sf_results {
     double *surface_position;  /* [surface_node_count][3] m, missile at t = 0 */
     int32_t *surface_triangle; /* [surface_triangle_count][3] */
     int64_t symmetry_factor;
-    double thickness;           /* m */
-    double density;             /* kg m-3, mean */
+    double symmetry_place[2]; /* m, of the symmetry planes normal to x and y; NaN: none, or the file does not
+                                 say */
+    double thickness;         /* m */
+    double density;           /* kg m-3, mean */
     double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
     double slit_fraction;   /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
                                the file does not say */

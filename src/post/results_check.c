@@ -106,6 +106,11 @@ sf_status sf_results_check_model(const sf_results *r, sf_error *err) {
     if (r->symmetry_factor != 1 && r->symmetry_factor != 2 && r->symmetry_factor != 4)
         return SF_FAIL(err, SF_ERR_IO, "/model/symmetry_factor is %lld, it must be 1, 2 or 4",
                        (long long)r->symmetry_factor);
+    int planes = isfinite(r->symmetry_place[0]) + isfinite(r->symmetry_place[1]);
+    if (r->symmetry_factor < 1 << planes)
+        return SF_FAIL(err, SF_ERR_IO,
+                       "/model/symmetry_factor is %lld, /model/symmetry_x and symmetry_y tell %d plane%s",
+                       (long long)r->symmetry_factor, planes, planes > 1 ? "s" : "");
     const double *d = r->missile_direction;
     if (!(fabs(sf_results_along(r, d) - 1) < 1e-6))
         return SF_FAIL(err, SF_ERR_IO, "/model/missile_direction (%g, %g, %g) is not a unit vector", d[0],

@@ -1,15 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/results_file.h"
 
+#include "core/symmetry.h"
 #include "solver/missile.h"
 #include <math.h>
 #include <stdio.h>
+
+/* Where the symmetry plane normal to an axis lies; NaN: there is none. */
+static double find_plane(const sf_model *m, int axis) {
+    double place;
+    return sf_symmetry_plane(m, axis, &place) ? place : NAN;
+}
 
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     int64_t driven = sf_missile_is_driven(m), turns = sf_missile_turns(m);
     const double unknown = NAN, *impact = m->missile.impact_known ? m->missile.impact : NULL;
     const double informed = sf_model_informed_strain(m);
     const double gravity = sf_missile_free_fall(m), density = sf_model_density(m);
+    const double plane[2] = {find_plane(m, 0), find_plane(m, 1)};
     const double radius = m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0;
     const struct {
         sf_h5_info info;
@@ -50,6 +58,12 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
          0,
          {0},
          &m->symmetry_factor},
+        {{"/model/symmetry_x", "m", "where the symmetry plane normal to x lies; NaN: there is none"},
+         SF_H5_F64,
+         0,
+         {0},
+         &plane[0]},
+        {{"/model/symmetry_y", "m", "the same of that normal to y"}, SF_H5_F64, 0, {0}, &plane[1]},
         {{"/model/thickness", "m", "pad thickness"}, SF_H5_F64, 0, {0}, &m->thickness},
         {{"/model/expected_mesh_error", "1",
           "expected relative error of a_max from the spacing, 0: not estimated"},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The symmetry planes of a model. */
-#ifndef SF_PRE_SYMMETRY_H
-#define SF_PRE_SYMMETRY_H
+#ifndef SF_CORE_SYMMETRY_H
+#define SF_CORE_SYMMETRY_H
 
 #include "core/model.h"
 

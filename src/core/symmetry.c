@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/symmetry.h"
+#include "core/symmetry.h"
 
 /* The nodes of such a plane are held along its normal, but not as part of the base. */
 bool sf_symmetry_plane(const sf_model *m, int axis, double *place) {
