@@ -20,7 +20,7 @@ endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/softfall USE_SOURCE_PERMISSIONS)
 
 # The documents, with the folders that they name beside them.
-foreach(name README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md CITATION.cff)
+foreach(name README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md CITATION.cff LICENSE)
     install(FILES ${CMAKE_SOURCE_DIR}/${name} DESTINATION ${CMAKE_INSTALL_DOCDIR})
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -195,6 +195,77 @@ static void a_wrong_value_has_the_sentence_of_the_command_line(void **state) {
     assert_string_equal(line_of(p, "wrong.txt", "geometry.parameters.thickness = "), "-5 (marked)");
 }
 
+/* A material that the window names and its curve are watched like the case; a value that is entered during a
+ * run is no value of that run. */
+static void a_run_is_that_of_its_values_and_files(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(
+        p, "files.script",
+        "set material=foam2/eva35.cfg\nset solver.end_time=1 ms\npress run\nset missile.velocity=4 m/s\n"
+        "wait ready 300\nstatus\nset missile.velocity=4.5 m/s\npress run\nactivity\nwait ready 300\nprint material\n"
+        "quit\n");
+    do_shell(
+        p,
+        "cp -r foam foam2; { has files.txt 'activity = done' && "
+        "sed -i 's/\"35 kg/\"36 kg/' foam2/eva35.cfg; } & gui files; wait; cat files.err; ! test -s files.err");
+    assert_non_null(line_of(p, "files.txt", "ready: "));
+    assert_string_equal(line_of(p, "files.txt", "material = "), "foam2/eva35.cfg");
+}
+
+/* What a geometry merges is known to its run only. The old frames, more than forty, are gone when the new run
+ * of that folder begins. */
+static void a_merged_file_that_changed_makes_a_new_run(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(
+        p, "merge.script",
+        "set solver.end_time=4 ms\nset output.frame_interval=0.1 ms\nset solver.step_limit=2 us\n"
+        "press run\nwait done 300\nframes\npress run\nactivity\n# the click\n"
+        "wait 1 frames while running 120\nstatus\nframes\nquit\n");
+    do_shell(
+        p, "echo '// one' >geo/extra.geo; { cat geo/pad.geo; echo 'Merge \"extra.geo\";'; } >geo/whole.geo; "
+           "cp case.cfg kept.cfg; sed -i 's/pad.geo/whole.geo/' case.cfg; "
+           "{ has merge.txt 'activity = done' && echo '// two' >geo/extra.geo && click_run; } & gui merge; "
+           "wait; mv kept.cfg case.cfg; cat merge.err; ! test -s merge.err");
+    assert_true(atoi(line_of(p, "merge.txt", "frames = ")) > 40);
+    assert_in_range(atoi(program_shell(p, "sed -n 's/^frames = //p' merge.txt | tail -n 1").out), 1, 30);
+}
+
+static void two_windows_do_not_share_a_run(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(p, "lock.script",
+                       "set solver.end_time=1.5 ms\npress mesh\nwait meshed 300\nprint 1Drop/82run folder\n"
+                       "activity\n# the click\nwait failed 60\nstatus\nquit\n");
+    do_shell(
+        p, "{ has lock.txt 'activity = meshed' && exec 9<$(sed -n 's/^1Drop.82run folder = //p' lock.txt) && "
+           "flock -n 9 && click_run && has lock.txt '^error'; } & gui lock; wait; cat lock.err; "
+           "! test -s lock.err");
+    assert_non_null(strstr(line_of(p, "lock.txt", "error: "), "is at work in "));
+}
+
+static void without_a_place_for_runs_nothing_runs(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(p, "place.script", "press run\nwait failed 60\nstatus\nquit\n");
+    do_shell(p, "(unset HOME XDG_CACHE_HOME; gui place); cat place.err; ! test -s place.err");
+    assert_non_null(
+        strstr(line_of(p, "place.txt", "error: "), "there is no place for runs: neither XDG_CACHE_HOME"));
+}
+
+/* The sentence of softfall-pre, then the same one of the case that was read anew. */
+static void a_mark_stays_when_the_case_is_read_anew(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(p, "mark.script",
+                       "set missile.velocity=fast\npress mesh\nwait failed 60\nactivity\nwait ready 60\n"
+                       "print missile.velocity\nquit\n");
+    do_shell(p, "{ has mark.txt 'activity = failed' && touch case.cfg; } & gui mark; wait; cat mark.err; "
+                "! test -s mark.err");
+    assert_string_equal(line_of(p, "mark.txt", "missile.velocity = "), "fast (marked)");
+}
+
 static void a_geometry_is_mended_outside(void **state) {
     const program_place *p = *state;
     need_display();
@@ -224,6 +295,11 @@ int main(void) {
         cmocka_unit_test(a_click_on_run_has_the_figures_of_the_command_line),
         cmocka_unit_test(stop_in_the_middle_can_be_resumed),
         cmocka_unit_test(a_wrong_value_has_the_sentence_of_the_command_line),
+        cmocka_unit_test(a_run_is_that_of_its_values_and_files),
+        cmocka_unit_test(a_merged_file_that_changed_makes_a_new_run),
+        cmocka_unit_test(two_windows_do_not_share_a_run),
+        cmocka_unit_test(without_a_place_for_runs_nothing_runs),
+        cmocka_unit_test(a_mark_stays_when_the_case_is_read_anew),
         cmocka_unit_test(a_geometry_is_mended_outside),
         cmocka_unit_test(nothing_is_left_of_a_window_that_is_closed),
     };

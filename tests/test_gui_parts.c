@@ -5,6 +5,7 @@
 #include "program_fixture.h"
 
 #include "case/values.h"
+#include "gui/cache.h"
 #include "gui/checks.h"
 #include "gui/geo_names.h"
 #include "gui/shape.h"
@@ -51,6 +52,19 @@ static void stop_leaves_what_can_be_resumed(void **state) {
     assert_int_equal(FOLLOW(SF_PRESS_RUN, SF_CHILD_DONE, SF_PRESS_STOP, SF_CHILD_INTERRUPTED, SF_PRESS_RUN),
                      SF_PREPARING);
     assert_int_equal(FOLLOW(SF_PRESS_STOP), SF_IDLE);
+}
+
+/* What had ended well by itself before it was asked to counts all the same, but only a run has results. */
+static void stop_of_a_mesh_or_of_save_leaves_no_results(void **state) {
+    (void)state;
+    static const sf_event ends[] = {SF_CHILD_DONE, SF_CHILD_INTERRUPTED, SF_CHILD_FAILED};
+    for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++) {
+        assert_int_equal(FOLLOW(SF_PRESS_MESH, SF_PRESS_STOP, ends[k]), SF_STOPPED);
+        assert_int_equal(FOLLOW(SF_PRESS_RUN, SF_PRESS_STOP, SF_PRESS_STOP, ends[k]), SF_STOPPED);
+        assert_int_equal(FOLLOW(SF_PRESS_SAVE, SF_PRESS_STOP, ends[k]), SF_STOPPED);
+    }
+    assert_int_equal(FOLLOW(SF_PRESS_RUN, SF_CHILD_DONE, SF_PRESS_STOP, SF_PRESS_STOP, SF_CHILD_DONE),
+                     SF_DONE);
 }
 
 static void a_busy_window_begins_nothing_else(void **state) {
@@ -234,6 +248,27 @@ static void every_value_of_a_case_is_told_as_it_can_be_set(void **state) {
     assert_string_equal(h.position, "[\"0 mm\", \"0 mm\"] given");
 }
 
+/* Neither a relative nor a root folder takes the place of one that is not there. */
+static void without_a_place_for_runs_there_is_no_path(void **state) {
+    const program_place *p = *state;
+    char path[PATH_MAX] = "before";
+    sf_error err = SF_ERROR_INIT;
+    unsetenv("XDG_CACHE_HOME");
+    setenv("HOME", "", 1);
+    assert_int_equal(sf_cache_find(path, sizeof path, &err), SF_ERR_IO);
+    assert_string_equal(path, "");
+    assert_int_equal(program_shell(p, "mkdir -p taken/softfall && echo mine >taken/softfall/file").code, 0);
+    setenv("XDG_CACHE_HOME", program_path(p, "taken"), 1);
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_cache_find(path, sizeof path, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "taken/softfall holds files and was not made by softfall"));
+    assert_string_equal(path, "");
+    setenv("XDG_CACHE_HOME", program_path(p, "free"), 1);
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_cache_find(path, sizeof path, &err), SF_OK);
+    assert_string_equal(path + strlen(path) - strlen("/free/softfall"), "/free/softfall");
+}
+
 /* ---- the skin ---- */
 
 /* Two cubes, one on the other: ten faces, and every node. */
@@ -269,6 +304,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(run_goes_through_its_programs),
         cmocka_unit_test(stop_leaves_what_can_be_resumed),
+        cmocka_unit_test(stop_of_a_mesh_or_of_save_leaves_no_results),
         cmocka_unit_test(a_busy_window_begins_nothing_else),
         cmocka_unit_test(parameters_are_found_in_the_text),
         cmocka_unit_test(included_files_count_too),
@@ -279,6 +315,7 @@ int main(void) {
         cmocka_unit_test(the_sentence_of_a_program_is_its_last),
         cmocka_unit_test(a_file_that_changes_is_noticed_once),
         cmocka_unit_test(every_value_of_a_case_is_told_as_it_can_be_set),
+        cmocka_unit_test(without_a_place_for_runs_there_is_no_path),
         cmocka_unit_test(the_skin_has_the_faces_of_one_cell_only),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

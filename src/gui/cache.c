@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-sf_status sf_cache_find(char *path, size_t size, sf_error *err) {
+static sf_status find(char *path, size_t size, sf_error *err) {
     const char *given = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     int length = 0;
     if (given && *given == '/')
@@ -21,4 +21,11 @@ sf_status sf_cache_find(char *path, size_t size, sf_error *err) {
         (size_t)snprintf(path + length, size - (size_t)length, "/softfall") >= size - (size_t)length)
         return SF_FAIL(err, SF_ERR_IO, "the name of the folder for runs is too long: %.100s...", path);
     return sf_folder_own(path, err);
+}
+
+sf_status sf_cache_find(char *path, size_t size, sf_error *err) {
+    *path = '\0';
+    if (find(path, size, err) != SF_OK)
+        *path = '\0'; /* no run may go where it is not allowed to */
+    return err->status;
 }

@@ -7,7 +7,8 @@
 #include "core/error.h"
 #include <stddef.h>
 
-/* Makes it if need be. SF_ERR_IO: there is no home folder, or it cannot be made. */
+/* Makes it if need be. SF_ERR_IO: there is no home folder, or it cannot be made; SF_ERR_INPUT: it is not
+ * softfall's own (io/folder.h). On failure the path is "". */
 sf_status sf_cache_find(char *path, size_t size, sf_error *err);
 
 #endif

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder", FRAME[] = "1Drop/83frame",
                   TARGET[] = "1Drop/7save to folder";
@@ -22,6 +23,7 @@ static const char BAD[] = "LightCoral";
 /* ---- what is told ---- */
 
 static void tell(sf_session *s, bool failed, const char *sentence) {
+    sf_fields_mark(&s->fields, failed ? sentence : NULL); /* they may have been read anew */
     if (strcmp(s->sentence, sentence) == 0 && s->failed == failed)
         return;
     snprintf(s->sentence, sizeof s->sentence, "%.1099s", sentence);
@@ -31,7 +33,6 @@ static void tell(sf_session *s, bool failed, const char *sentence) {
                               .text = s->sentence,
                               .help = s->sentence,
                               .colour = failed ? BAD : NULL});
-    sf_fields_mark(&s->fields, failed ? s->sentence : NULL);
     sf_window_say(s->sentence);
     sf_window_refresh();
 }
@@ -201,14 +202,15 @@ static void begin_anew(sf_session *s, bool reread) {
     s->at.path[0] = '\0';
     sf_checks_clear();
     sf_plain_forget();
+    if (reread) {
+        sf_fields_mark(&s->fields, NULL); /* in the tree, before the fields are others */
+        s->watch.count = 0;
+    }
     if (reread && read_case(s, &err) == SF_OK)
         sf_fields_show(&s->fields);
-    if (reread) {
-        s->watch.count = 0;
-        sf_watch_register(&s->watch, 0);
-    }
     if (err.status == SF_OK)
         check_values(s, &err);
+    sf_watch_register(&s->watch, 0); /* with the files that the values of the window name */
     if (s->case_file.pad.path)
         show_geometry(s, &geometry);
     if (err.status == SF_OK && geometry.status != SF_OK)
@@ -239,15 +241,25 @@ void sf_session_begin(sf_session *s) {
 static sf_status name_run(sf_session *s, sf_overrides *o, sf_error *err) {
     char label[64];
     name_label(s, label, sizeof label);
-    if (sf_fields_overrides(&s->fields, o, err) != SF_OK ||
+    if ((!*s->cache && sf_cache_find(s->cache, sizeof s->cache, err) != SF_OK) ||
+        sf_fields_overrides(&s->fields, o, err) != SF_OK ||
         sf_run_folder_name(s->cache, label, s->case_path, o->count, (const char *const *)o->text, &s->at,
                            err) != SF_OK)
         s->at.path[0] = '\0';
     return err->status;
 }
 
+static void unlock(sf_session *s) {
+    if (s->lock > 0)
+        close(s->lock);
+    s->lock = 0;
+}
+
+/* Makes that folder, and locks it against another window of the case until the last program has ended. */
 static sf_status locate(sf_session *s, sf_overrides *o, sf_error *err) {
-    if (name_run(s, o, err) != SF_OK || sf_folder_own(s->at.path, err) != SF_OK)
+    unlock(s);
+    if (name_run(s, o, err) != SF_OK || sf_folder_own(s->at.path, err) != SF_OK ||
+        sf_folder_lock(s->at.path, &s->lock, err) != SF_OK)
         s->at.path[0] = '\0';
     show_folder(s);
     return err->status;
@@ -293,10 +305,29 @@ static sf_status start_save(sf_session *s, sf_error *err) {
     return err->status;
 }
 
+static void show_model(sf_session *s);
+
+/* What an earlier run has left in the folder must not stand beside the one that begins. */
+static void remove_results(sf_session *s) {
+    static const char *const products[] = {"report.html", "pad.xdmf"};
+    char path[SF_RUN_PATH_SIZE + 64];
+    sf_folder_remove_file(s->at.figures);
+    sf_folder_remove_file(s->at.results);
+    for (size_t k = 0; k < sizeof products / sizeof products[0]; k++) {
+        snprintf(path, sizeof path, "%s/report/%s", s->at.path, products[k]);
+        sf_folder_remove_file(path);
+    }
+    s->seen = (sf_watch_stamp){0};
+    if (s->frames > 0)
+        show_model(s);
+}
+
 /* A run that was stopped goes on if its model is the same: softfall-solve refuses another one. */
 static sf_status start_solve(sf_session *s, bool resume, sf_error *err) {
     s->resuming = resume;
     s->told = false;
+    if (!resume)
+        remove_results(s);
     return open_log(s, err) == SF_OK ? sf_programs_solve(&s->child, &s->at, resume, s->threads, s->log, err)
                                      : err->status;
 }
@@ -333,8 +364,10 @@ static void start(sf_session *s) {
         tell(s, false, text);
     else
         s->activity = SF_FAILED;
-    if (err.status != SF_OK)
+    if (err.status != SF_OK) {
+        unlock(s);
         tell_error(s, &err);
+    }
 }
 
 /* ---- results ---- */
@@ -489,11 +522,14 @@ static void take_end(sf_session *s, sf_activity before, const char *log) {
         show_results(s, true);
 }
 
+static void check_edits(sf_session *s);
+
 static void end_program(sf_session *s, int code) {
     sf_activity before = s->activity;
-    sf_event event = code == 0                                              ? SF_CHILD_DONE
-                     : code == SF_INTERRUPTED || s->activity == SF_STOPPING ? SF_CHILD_INTERRUPTED
-                                                                            : SF_CHILD_FAILED;
+    sf_event event = code == 0 ? SF_CHILD_DONE
+                     : code == SF_INTERRUPTED || before == SF_STOPPING || before == SF_CANCELLING
+                         ? SF_CHILD_INTERRUPTED
+                         : SF_CHILD_FAILED;
     char *log = NULL;
     close_log(s);
     read_log(s, &log);
@@ -501,10 +537,15 @@ static void end_program(sf_session *s, int code) {
         !s->told) { /* it cannot be resumed */
         sf_error err = SF_ERROR_INIT;
         free(log);
-        if (start_solve(s, false, &err) != SF_OK)
+        if (start_solve(s, false, &err) != SF_OK) {
+            s->activity = SF_FAILED;
+            unlock(s);
             tell_error(s, &err);
+        }
         return;
     }
+    if (event == SF_CHILD_DONE && (before == SF_RUNNING || before == SF_STOPPING))
+        sf_folder_remove_file(s->at.checkpoint); /* a run that has ended does not go on */
     s->activity = sf_activity_next(before, event);
     take_end(s, before, log);
     if (s->activity == SF_FAILED)
@@ -514,6 +555,10 @@ static void end_program(sf_session *s, int code) {
     else
         tell_done(s);
     free(log);
+    if (sf_activity_is_busy(s->activity))
+        return;
+    unlock(s);
+    check_edits(s); /* of the time of the run: its results are not those of the present values */
 }
 
 static void tell_progress(sf_session *s) {
@@ -606,8 +651,24 @@ static void open_paraview(sf_session *s) {
     leave(s, "paraview", is_there(argument + strlen(script)) ? argument : path);
 }
 
+/* The run that is shown is that of the values, of the files that they name, and of what its geometry has
+ * read, as they are now. */
+static bool is_shown(sf_session *s) {
+    sf_overrides o = {0};
+    sf_error none = SF_ERROR_INIT;
+    char shown[PATH_MAX];
+    snprintf(shown, sizeof shown, "%s", s->at.path);
+    sf_plain_forget();
+    bool same = name_run(s, &o, &none) == SF_OK && strcmp(s->at.path, shown) == 0 &&
+                sf_run_folder_is_finished(&s->at);
+    sf_overrides_free(&o);
+    return same;
+}
+
 static void press(sf_session *s, sf_event event) {
     check_edits(s);
+    if (event == SF_PRESS_RUN && s->activity == SF_DONE && !is_shown(s))
+        begin_anew(s, true);
     sf_activity before = s->activity;
     if (event == SF_PRESS_RUN && before == SF_DONE && has_report(s))
         return; /* the run of these values is what is shown */
@@ -640,6 +701,7 @@ void sf_session_act(sf_session *s, const char *action) {
 void sf_session_end(sf_session *s) {
     sf_child_end(&s->child, 20);
     close_log(s);
+    unlock(s);
     sf_shape_free(&s->shape);
     sf_case_free(&s->case_file);
 }

@@ -20,7 +20,7 @@ typedef struct sf_session_place {
 typedef struct sf_session {
     const char *case_path; /* borrowed */
     int threads;           /* of softfall-solve; 0: as it chooses */
-    char cache[PATH_MAX];  /* its runs are there */
+    char cache[PATH_MAX];  /* its runs are there; "": there is no place for them */
     sf_case case_file;     /* without the changes of the window */
     sf_fields fields;
     sf_watch watch; /* what was read of the case and its geometries */
@@ -33,6 +33,7 @@ typedef struct sf_session {
 
     sf_run_folder at; /* of the present values; path "" until Mesh or Run */
     sf_child child;
+    int lock;      /* on the folder of the run while a program is at work; 0: none */
     FILE *log;     /* its output */
     bool resuming; /* softfall-solve goes on from a checkpoint */
     bool told;     /* softfall-solve has told its progress */

@@ -9,8 +9,8 @@ const char *sf_activity_name(sf_activity activity) {
 }
 
 bool sf_activity_is_busy(sf_activity a) {
-    return a == SF_MESHING || a == SF_PREPARING || a == SF_RUNNING || a == SF_STOPPING || a == SF_REPORTING ||
-           a == SF_SAVING;
+    return a == SF_MESHING || a == SF_PREPARING || a == SF_RUNNING || a == SF_STOPPING ||
+           a == SF_CANCELLING || a == SF_REPORTING || a == SF_SAVING;
 }
 
 /* After a program has ended well. */
@@ -27,6 +27,23 @@ static sf_activity succeed(sf_activity a) {
     case SF_REPORTING:
     case SF_STOPPING: /* the run had ended before it was asked to */
         return SF_DONE;
+    case SF_CANCELLING:
+        return SF_STOPPED;
+    default:
+        return a;
+    }
+}
+
+/* Only a run leaves results. */
+static sf_activity stop(sf_activity a) {
+    switch (a) {
+    case SF_MESHING:
+    case SF_PREPARING:
+    case SF_SAVING:
+        return SF_CANCELLING;
+    case SF_RUNNING:
+    case SF_REPORTING:
+        return SF_STOPPING;
     default:
         return a;
     }
@@ -42,13 +59,13 @@ sf_activity sf_activity_next(sf_activity a, sf_event event) {
     case SF_PRESS_SAVE:
         return busy ? a : SF_SAVING;
     case SF_PRESS_STOP:
-        return busy ? SF_STOPPING : a;
+        return stop(a);
     case SF_CHILD_DONE:
         return succeed(a);
     case SF_CHILD_INTERRUPTED:
         return busy ? SF_STOPPED : a;
     case SF_CHILD_FAILED:
-        return a == SF_STOPPING ? SF_STOPPED : busy ? SF_FAILED : a;
+        return a == SF_STOPPING || a == SF_CANCELLING ? SF_STOPPED : busy ? SF_FAILED : a;
     case SF_EDIT:
         return busy ? a : SF_IDLE;
     default:

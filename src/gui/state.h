@@ -12,8 +12,9 @@
     X(MESHED, "meshed")                                                                                      \
     X(PREPARING, "meshing before the run") /* softfall-pre for a run */                                      \
     X(RUNNING, "running")                  /* softfall-solve */                                              \
-    X(STOPPING, "stopping")                /* it was asked to end */                                         \
-    X(STOPPED, "stopped")                  /* it can be resumed */                                           \
+    X(STOPPING, "stopping")                /* a run was asked to end */                                      \
+    X(CANCELLING, "cancelling")            /* softfall-pre or Save case was asked to end */                  \
+    X(STOPPED, "stopped")                  /* a run can be resumed */                                        \
     X(REPORTING, "writing the report")     /* softfall-post */                                               \
     X(SAVING, "saving the case")                                                                             \
     X(SAVED, "saved")                                                                                        \
