@@ -132,9 +132,10 @@ static void a_film_without_its_programs_names_the_package(void **state) {
     const program_place *p = *state;
     assert_no_film(p, "/nonexistent", "--film", "--film needs pvbatch");
     assert_no_film(p, "/nonexistent", "--film", "install the package paraview");
-    program_shell(p,
-                  "mkdir some && printf '#!/bin/sh\\necho no pictures today\\nexit 7\\n' > some/pvbatch && "
-                  "chmod +x some/pvbatch");
+    program_shell(
+        p,
+        "mkdir some && printf '#!/bin/sh\\nprintf \"\\\\033[31mno \\\\033[0;1mpictures today\\\\033[0m\\\\n\"\\nexit 7\\n' > some/pvbatch && "
+        "chmod +x some/pvbatch");
     assert_no_film(p, "some", "--film", "install the package ffmpeg");
     program_shell(p, "cp some/pvbatch some/ffmpeg");
     assert_no_film(p, "some", "--film=gif", "install the package xvfb and xauth");
@@ -186,7 +187,9 @@ static void draw_pad_draws_a_prescribed_motion(void **state) {
 static void a_film_and_its_picture_stand_beside_the_report(void **state) {
     const program_place *p = *state;
     need(p, "pvbatch xvfb-run ffmpeg");
+    setenv("DISPLAY", ":77", 1); /* there is none */
     program_succeed(p, "post", "results.h5 -o filmed --film=gif");
+    unsetenv("DISPLAY");
     assert_int_equal(program_shell(p, "head -c 6 filmed/pad.gif | grep -q GIF89a").code, 0);
     assert_int_equal(program_shell(p, "grep -q 'href=\"data:image/png;base64,iVBOR' filmed/report.html").code,
                      0);

@@ -165,9 +165,10 @@ sf_status sf_paraview_write(const sf_staging *output, const sf_results *r, const
 
 /* ---- the film ---- */
 
-static bool has_display(void) {
+/* Without a virtual display; one that DISPLAY names may be gone, or refuse this user. */
+static bool uses_display(void) {
     const char *display = getenv("DISPLAY");
-    return display && *display;
+    return display && *display && !sf_process_is_in_path("xvfb-run");
 }
 
 sf_status sf_paraview_check_film(const char *kind, const char **film, sf_error *err) {
@@ -180,10 +181,24 @@ sf_status sf_paraview_check_film(const char *kind, const char **film, sf_error *
     if (!*film)
         return SF_FAIL(err, SF_ERR_INPUT, "--film=%s: a film is mp4 or gif", kind);
     for (size_t k = 0; k < sizeof needed / sizeof needed[0]; k++)
-        if (!(k == 2 && has_display()) && !sf_process_is_in_path(needed[k].program))
+        if (!(k == 2 && uses_display()) && !sf_process_is_in_path(needed[k].program))
             return SF_FAIL(err, SF_ERR_INPUT, "--film needs %s, which %s: install the package %s of Debian",
                            needed[k].program, needed[k].use, needed[k].package);
     return SF_OK;
+}
+
+/* Takes out the sequences that colour a terminal. */
+static void strip_colours(char *line) {
+    char *to = line;
+    for (const char *c = line; *c; c++)
+        if (c[0] == '\033' && c[1] == '[') {
+            c += 1 + strcspn(c + 1, "@ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz");
+            if (!*c)
+                break;
+        } else {
+            *to++ = *c;
+        }
+    *to = '\0';
 }
 
 /* The last line of what the programs printed that says something; "" if there is none. */
@@ -195,6 +210,7 @@ static void read_reason(const sf_staging *output, char *line, size_t size) {
         for (char *k = strtok_r(text, "\n", &rest); k; k = strtok_r(NULL, "\n", &rest))
             if (!*line || strncmp(k, "pad_paraview: ", 14) == 0)
                 snprintf(line, size, "%s", k);
+    strip_colours(line);
     sf_error_clean(line);
     free(text);
     free(path);
@@ -219,7 +235,7 @@ sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error 
         return err->status;
     snprintf(display, sizeof display, "%d", 1000 + (int)(getpid() % 30000));
     const sf_process process = {
-        .arguments = has_display() ? words + OF_XVFB : words, .folder = output->aside, .log = LOG};
+        .arguments = uses_display() ? words + OF_XVFB : words, .folder = output->aside, .log = LOG};
     int problem = sf_staging_has(output, STATE) ? sf_process_run(&process, &code) : 0;
     if (!sf_staging_has(output, STATE))
         SF_FAIL(err, SF_ERR_INPUT, "there are no frames or no %s to make a film of", STATE);
