@@ -146,13 +146,13 @@ demo)
     demo
     ;;
 test)
-    install_packages build run test
+    install_packages build run show test
     build
     # One test per core and one thread per test; tests of threading set their own number.
     OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(nproc)"
     ;;
 slow)
-    install_packages build run test slow cluster slurm
+    install_packages build run show test slow cluster slurm
     build
     run_tests --label-regex slow --parallel "$(nproc)" # those that use every core run alone
     ;;
@@ -161,7 +161,7 @@ build)
     build_programs
     ;;
 package)
-    install_packages build package
+    install_packages build run package
     build_programs
     make_package
     ;;

@@ -63,10 +63,8 @@ debootstrap --variant=minbase --include="ca-certificates$([ -n "$with" ] || prin
     fail "debootstrap failed; its last line: $(tail -n 1 "$system.log"); all of them: $system.log"
 rm -f "$system.log"
 cp /etc/resolv.conf "$system/etc/"
-for file in /etc/apt/apt.conf.d/*; do # access to the archive: the lines about it, no hooks
-    ! grep -si '^Acquire::' "$file" >"$system/etc/apt/apt.conf.d/${file##*/}" || continue
-    rm "$system/etc/apt/apt.conf.d/${file##*/}"
-done
+# Access to the archive (proxies, dates), in a file of another name than those of packages.
+apt-config dump | grep -E '^Acquire::(https?::|Check-|Proxy|Retries)' >"$system/etc/apt/apt.conf.d/90access" || true
 if [ -n "$with" ]; then
     cp -r "$with" "$system/softfall"
     chmod -R go+rX "$system/softfall"
