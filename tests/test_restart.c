@@ -136,10 +136,23 @@ static void rate_factor_goes_on_with_the_same_bits(void **state) {
     run_assert_same(p, "rate_full.h5", "rate_parts.h5");
 }
 
-/* Runs to the end with a signal after a random time, again and again, at least `least` times. The file opens
- * after each; post-processing reads it. */
+/* When the file was written, 0: it is not there. */
+static struct timespec written_at(const char *folder, const char *name) {
+    struct stat info;
+    char path[2048];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0, 0};
+}
+
+/* Is `b` there, and another file than `a`? */
+static bool is_other(struct timespec a, struct timespec b) {
+    return b.tv_sec != 0 && (a.tv_sec != b.tv_sec || a.tv_nsec != b.tv_nsec);
+}
+
+/* Runs to the end with a signal after a random time, again and again, at least `least` times; `after_steps`:
+ * not before it has a checkpoint of its own steps. The file opens after each; post-processing reads it. */
 static void run_with_signals(const program_place *p, const char *results, const int *numbers, int count,
-                             int least) {
+                             int least, bool after_steps) {
     char checkpoint[64];
     uint64_t seed = 7;
     double longest = 1.2 * run_time / least;
@@ -148,11 +161,14 @@ static void run_with_signals(const program_place *p, const char *results, const 
     for (int turn = 0; turn < 100 * least; turn++) {
         const char *anew[] = {"model.h5", "-o", results, "--force", "--checkpoint-every", "0.02 s", NULL};
         const char *again[] = {"--restart", results, "--checkpoint-every", "0.02 s", NULL};
-        pid_t child = run_start(p, run_is_there(p, checkpoint) ? again : anew);
+        struct timespec before = written_at(p->folder, checkpoint);
+        pid_t child = run_start(p, before.tv_sec ? again : anew);
         int status = 0, number = numbers[turn % count];
         double wait =
             killed < least ? start_time + 0.5 * longest * (1 + fixture_random(&seed)) : 1e3 * run_time;
-        while (time_of(child) < wait && waitpid(child, &status, WNOHANG) == 0)
+        while ((time_of(child) < wait ||
+                (after_steps && !is_other(before, written_at(p->folder, checkpoint)))) &&
+               waitpid(child, &status, WNOHANG) == 0)
             run_sleep(0.002);
         if (kill(child, number) == 0 && waitpid(child, &status, 0) == child)
             killed++;
@@ -179,13 +195,13 @@ static void run_with_signals(const program_place *p, const char *results, const 
 
 static void interrupted_run_goes_on(void **state) {
     static const int numbers[] = {SIGINT, SIGTERM};
-    run_with_signals(*state, "interrupted.h5", numbers, 2, 6);
+    run_with_signals(*state, "interrupted.h5", numbers, 2, 6, true);
     assert_true(restarts_of(*state, "interrupted.h5") >= 5);
 }
 
 static void killed_run_loses_nothing(void **state) {
     static const int numbers[] = {SIGKILL};
-    run_with_signals(*state, "killed.h5", numbers, 1, kill_count());
+    run_with_signals(*state, "killed.h5", numbers, 1, kill_count(), false);
     assert_false(run_is_there(*state, "killed.h5.run"));
 }
 
@@ -637,19 +653,6 @@ static void campaign_goes_on_with_an_interrupted_drop(void **state) {
     assert_null(strstr(program_shell(p, "ls campaign_two/*").out, "model"));
     sf_runner_result_free(&one);
     sf_runner_result_free(&two);
-}
-
-/* When the file was written, 0: it is not there. */
-static struct timespec written_at(const char *folder, const char *name) {
-    struct stat info;
-    char path[2048];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0, 0};
-}
-
-/* Is `b` there, and another file than `a`? */
-static bool is_other(struct timespec a, struct timespec b) {
-    return b.tv_sec != 0 && (a.tv_sec != b.tv_sec || a.tv_nsec != b.tv_nsec);
 }
 
 /* A drop of a campaign that is killed with its programs (or alone) as soon as it has a new model or
