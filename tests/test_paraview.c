@@ -36,6 +36,12 @@ static int set_up(void **state) {
         program_coarse(20));
     program_succeed(p, "solve", "half.h5 -o half_results.h5 -t 1");
     program_succeed(p, "post", "half_results.h5 -o half");
+    program_succeed(
+        p, "pre",
+        "'%s' -o flat.h5 %s --set geometry.missile_parameters.element_size=15 --set solver.end_time='0.5 ms'",
+        fixture_source("examples/flat-disc/case.cfg"), program_coarse(20));
+    program_succeed(p, "solve", "flat.h5 -o flat_results.h5 -t 1");
+    program_succeed(p, "post", "flat_results.h5 -o flat");
     return 0;
 }
 
@@ -71,6 +77,16 @@ static void the_state_knows_symmetry_missile_and_peak(void **state) {
 static void the_state_reflects_at_the_planes_of_the_model_only(void **state) {
     const program_place *p = *state;
     assert_facts(p, "half", "d['mirrors'] == [['Y', 0]] and abs(d['axis'][0]) < 1e-9 and d['axis'][1] == 0");
+}
+
+/* Of a flat missile, too, whose lowest points lie all around its axis. */
+static void the_section_lies_under_the_axis(void **state) {
+    const program_place *p = *state;
+    assert_facts(p, "flat", "max(abs(a) for a in d['axis']) < 1e-9");
+    program_result r = program_shell(
+        p,
+        "awk -F, '$1 == \"axis\" { n++; far += $3^2 + $4^2 > 1e-12 } END { print n, far + 0 }' flat/section.csv");
+    assert_string_equal(r.out, "41 0\n");
 }
 
 static void forget_planes(const program_place *p, const char *name) {
@@ -138,7 +154,7 @@ static void a_film_without_its_programs_names_the_package(void **state) {
         "chmod +x some/pvbatch");
     assert_no_film(p, "some", "--film", "install the package ffmpeg");
     program_shell(p, "cp some/pvbatch some/ffmpeg");
-    assert_no_film(p, "some", "--film=gif", "install the package xvfb and xauth");
+    assert_no_film(p, "some", "--film=gif", "install the packages xvfb and xauth");
     assert_no_film(p, "some", "--film=avi", "--film=avi: a film is mp4 or gif");
     /* One that fails: its own words, and no output at all. */
     program_result r =
@@ -203,6 +219,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_state_knows_symmetry_missile_and_peak),
         cmocka_unit_test(the_state_reflects_at_the_planes_of_the_model_only),
+        cmocka_unit_test(the_section_lies_under_the_axis),
         cmocka_unit_test(a_plane_that_cannot_be_told_is_no_mirror),
         cmocka_unit_test(planes_that_contradict_the_factor_are_refused),
         cmocka_unit_test(a_state_without_its_template_is_a_warning),

@@ -2,7 +2,7 @@
 #include "post/cut.h"
 
 #include "post/cells.h"
-#include "post/section.h"
+#include "post/axis.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -155,19 +155,21 @@ static sf_status cut_missile(sf_cut *cut, sf_error *err) {
     return SF_OK;
 }
 
-/* The plane, and whether the pad ends at the missile's axis because it is modelled in part. */
+/* The plane, and whether the pad goes on beyond the missile's axis as its mirror image. */
 static void find_plane(sf_cut *cut) {
     const sf_results *r = cut->results;
-    double axis[2], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double axis[2], place[2], low[3] = {INFINITY, INFINITY, INFINITY},
+                              high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int64_t i = 0; i < r->node_count; i++)
         for (int k = 0; k < 3; k++) {
             low[k] = fmin(low[k], r->position[3 * i + k]);
             high[k] = fmax(high[k], r->position[3 * i + k]);
         }
-    sf_section_axis(r, axis);
+    sf_axis_find(r, axis);
+    sf_axis_planes(r, place);
     double near = 1e-6 * fmax(high[0] - low[0], high[1] - low[1]);
     cut->axis = axis[0];
-    cut->mirrored = r->symmetry_factor > 1 && (axis[0] - low[0] < near || high[0] - axis[0] < near);
+    cut->mirrored = isfinite(place[0]);
     cut->plane = axis[1] + (axis[1] + near < high[1] ? near : -near);
     cut->x[0] = low[0];
     cut->x[1] = high[0];

@@ -3,6 +3,7 @@
 
 #include "io/plain_file.h"
 #include "io/process.h"
+#include "post/axis.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,8 +13,6 @@
 static const char STATE[] = "pad_paraview.py", PICTURE[] = "pad.png", LOG[] = "film.log";
 /* The line of the template that the facts replace. */
 static const char FACTS[] = "\nDROP = {}";
-/* Of the thickness: what lies closer to an end is at it. */
-static const double AT_END = 1e-6;
 
 /* ---- the facts ---- */
 
@@ -38,62 +37,14 @@ static void put_colouring(FILE *f, const sf_xdmf *made) {
     fputs("    \"array\": None, \"label\": None, \"factor\": None, \"largest\": None,\n", f);
 }
 
-/* Extent of points along x (0) or y. */
-static void find_extent(const double *position, int64_t count, int k, double extent[2]) {
-    extent[0] = INFINITY;
-    extent[1] = -INFINITY;
-    for (int64_t i = 0; i < count; i++) {
-        extent[0] = fmin(extent[0], position[3 * i + k]);
-        extent[1] = fmax(extent[1], position[3 * i + k]);
-    }
-}
-
-/* Files of earlier versions do not say where the planes are, nor do those where all nodes of a plane are of
- * the base too. A symmetry plane is an end of the modelled pad, where a whole missile has its middle, or one
- * that is modelled in part ends too: how many of the pad's two ends are such; *place (m) of the last. */
-static int count_common_ends(const sf_results *r, int k, double *place) {
-    double pad[2], missile[2];
-    int count = 0;
-    find_extent(r->position, r->node_count, k, pad);
-    find_extent(r->surface_position, r->surface_node_count, k, missile);
-    const double marks[3] = {0.5 * (missile[0] + missile[1]), missile[0], missile[1]};
-    for (int end = 0; end < 2; end++) {
-        double off = INFINITY;
-        for (int mark = 0; mark < 3; mark++)
-            off = fmin(off, fabs(marks[mark] - pad[end]));
-        if (off > AT_END * r->thickness)
-            continue;
-        *place = pad[end];
-        count++;
-    }
-    return count;
-}
-
-/* Places (m) of the symmetry planes normal to x and y; NaN: none. False: they cannot be told. */
-static bool find_mirrors(const sf_results *r, double place[2]) {
-    place[0] = r->symmetry_place[0];
-    place[1] = r->symmetry_place[1];
-    if (r->symmetry_factor == 1 << (isfinite(place[0]) + isfinite(place[1])))
-        return true;
-    double end[2];
-    const int count[2] = {count_common_ends(r, 0, &end[0]), count_common_ends(r, 1, &end[1])};
-    bool known = r->symmetry_factor == 4 ? count[0] == 1 && count[1] == 1 : count[0] + count[1] == 1;
-    for (int k = 0; k < 2; k++)
-        place[k] = known && count[k] ? end[k] : NAN;
-    return known;
-}
-
-/* The symmetry planes; the missile's axis lies in them, and else in the middle of the missile. */
 static void put_mirrors(FILE *f, const sf_results *r) {
-    double place[2], axis[2], missile[2];
-    find_mirrors(r, place);
+    double place[2], axis[2];
+    sf_axis_planes(r, place);
+    sf_axis_find(r, axis);
     fputs("    \"mirrors\": [", f);
-    for (int k = 0; k < 2; k++) {
-        find_extent(r->surface_position, r->surface_node_count, k, missile);
-        axis[k] = isfinite(place[k]) ? place[k] : 0.5 * (missile[0] + missile[1]);
+    for (int k = 0; k < 2; k++)
         if (isfinite(place[k]))
             fprintf(f, "[\"%c\", %.9g], ", "XY"[k], place[k]);
-    }
     fprintf(f, "], \"axis\": [%.9g, %.9g],\n", axis[0], axis[1]);
 }
 
@@ -146,7 +97,7 @@ sf_status sf_paraview_write(const sf_staging *output, const sf_results *r, const
         return SF_OK;
     }
     double place[2];
-    if (!find_mirrors(r, place))
+    if (!sf_axis_planes(r, place))
         snprintf(
             warning, size,
             "%s shows the modelled part of the pad only, as results.h5 does not say where the symmetry planes lie",
@@ -174,15 +125,16 @@ static bool uses_display(void) {
 sf_status sf_paraview_check_film(const char *kind, const char **film, sf_error *err) {
     static const struct {
         const char *program, *package, *use;
-    } needed[] = {{"pvbatch", "paraview", "draws its pictures"},
-                  {"ffmpeg", "ffmpeg", "puts them together"},
-                  {"xvfb-run", "xvfb and xauth", "stands in for a display, as there is none here"}};
+    } needed[] = {
+        {"pvbatch", "the package paraview", "draws its pictures"},
+        {"ffmpeg", "the package ffmpeg", "puts them together"},
+        {"xvfb-run", "the packages xvfb and xauth", "stands in for a display, as there is none here"}};
     *film = !kind || strcmp(kind, "mp4") == 0 ? "pad.mp4" : strcmp(kind, "gif") == 0 ? "pad.gif" : NULL;
     if (!*film)
         return SF_FAIL(err, SF_ERR_INPUT, "--film=%s: a film is mp4 or gif", kind);
     for (size_t k = 0; k < sizeof needed / sizeof needed[0]; k++)
         if (!(k == 2 && uses_display()) && !sf_process_is_in_path(needed[k].program))
-            return SF_FAIL(err, SF_ERR_INPUT, "--film needs %s, which %s: install the package %s of Debian",
+            return SF_FAIL(err, SF_ERR_INPUT, "--film needs %s, which %s: install %s of Debian",
                            needed[k].program, needed[k].use, needed[k].package);
     return SF_OK;
 }
@@ -234,11 +186,17 @@ sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error 
     if (!log)
         return err->status;
     snprintf(display, sizeof display, "%d", 1000 + (int)(getpid() % 30000));
-    const sf_process process = {
-        .arguments = uses_display() ? words + OF_XVFB : words, .folder = output->aside, .log = LOG};
+    const sf_process process = {.arguments = uses_display() ? words + OF_XVFB : words,
+                                .folder = output->aside,
+                                .log = LOG,
+                                .stoppable = true,
+                                .apart = true};
+    sf_process_handle_signals(); /* else its programs would outlive this one */
     int problem = sf_staging_has(output, STATE) ? sf_process_run(&process, &code) : 0;
     if (!sf_staging_has(output, STATE))
         SF_FAIL(err, SF_ERR_INPUT, "there are no frames or no %s to make a film of", STATE);
+    else if (sf_process_stopped())
+        SF_FAIL(err, SF_INTERRUPTED, "interrupted while the film was made; nothing was written");
     else if (problem != 0)
         SF_FAIL(err, SF_ERR_IO, "the film was not made, as pvbatch cannot be run: %s", strerror(problem));
     else if (code != 0 || !sf_staging_has(output, film) || !sf_staging_has(output, PICTURE)) {

@@ -6,9 +6,9 @@
 
 #include "post/xdmf.h"
 
-/* After pad.xdmf, if that has frames. If the template is missing or another one, `warning` (size bytes) says
- * so and there is no state; if the planes of a half or
- * quarter model cannot be told, that the state shows the modelled part only; otherwise it is "". */
+/* After pad.xdmf, if that has frames. `warning` (size bytes) says that the template is missing or another
+ * one, and there is no state; or that the planes of a half or quarter model cannot be told, and the state
+ * shows the modelled part only. Else it is "". */
 sf_status sf_paraview_write(const sf_staging *output, const sf_results *results, const sf_xdmf *made,
                             char *warning, size_t size, sf_error *err);
 

@@ -58,12 +58,11 @@ typedef struct sf_results {
     double thickness;         /* m */
     double density;           /* kg m-3, mean */
     double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
-    double slit_fraction;   /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
-                               the file does not say */
-    double informed_strain; /* -, up to which data inform the material (of layers the least); NaN: the file
-                               does not say */
-    double
-        sphere_radius; /* m, of the exact sphere of the contact, NaN: triangles, or the file does not say */
+    double slit_fraction;    /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
+                                the file does not say */
+    double informed_strain;  /* -, up to which data inform the material (of layers the least); NaN: the file
+                                does not say */
+    double sphere_radius;    /* m, of the contact's exact sphere; NaN: triangles, or the file does not say */
     double sphere_centre[3]; /* m, at t = 0; 0 without it */
     double anvil_depth;  /* m, below the undeformed pad's top; 0: there is none; NaN: the file does not say */
     int layer_count;     /* of a pad of several materials; 0: one */

@@ -2,38 +2,11 @@
 #include "post/section.h"
 
 #include "core/mat3.h"
+#include "post/axis.h"
 #include "post/cells.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-void sf_section_axis(const sf_results *r, double axis[2]) {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, extreme = -INFINITY, size = 0;
-    for (int64_t i = 0; i < r->surface_node_count; i++) {
-        const double *x = &r->surface_position[3 * i];
-        extreme = fmax(extreme, sf_results_along(r, x));
-        for (int k = 0; k < 2; k++) {
-            low[k] = fmin(low[k], x[k]);
-            high[k] = fmax(high[k], x[k]);
-            size = fmax(size, high[k] - low[k]);
-        }
-    }
-    axis[0] = (low[0] + high[0]) / 2;
-    axis[1] = (low[1] + high[1]) / 2;
-    if (r->symmetry_factor == 1)
-        return;
-    double sum[2] = {0, 0}, count = 0;
-    for (int64_t i = 0; i < r->surface_node_count; i++) {
-        const double *x = &r->surface_position[3 * i];
-        if (sf_results_along(r, x) < extreme - 1e-6 * size)
-            continue;
-        sum[0] += x[0];
-        sum[1] += x[1];
-        count++;
-    }
-    axis[0] = sum[0] / count;
-    axis[1] = sum[1] / count;
-}
 
 /* Barycentric weights of `x` in the tetrahedron; false if that is flat. */
 static bool tetrahedron_weights(const double *const p[4], const double x[3], double weight[4]) {
@@ -108,7 +81,7 @@ double sf_section_stations(const sf_results *r, sf_section_point station[SF_SECT
         bottom = fmin(bottom, r->position[3 * i + 2]);
         top = fmax(top, r->position[3 * i + 2]);
     }
-    sf_section_axis(r, axis);
+    sf_axis_find(r, axis);
     for (int s = 0; s < SF_SECTION_STATIONS; s++)
         station[s] = (sf_section_point){0};
     locate_stations(r, axis, bottom, top, station);
@@ -161,7 +134,7 @@ static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *fra
     size_t count = 0;
     if (!nodes)
         return err->status;
-    sf_section_axis(r, axis);
+    sf_axis_find(r, axis);
     top = sf_section_stations(r, station);
     for (int64_t i = 0; i < r->node_count; i++) {
         if (fabs(r->position[3 * i + 1] - axis[1]) < 0.499 * cbrt(r->volume[i]))

@@ -11,10 +11,6 @@
 
 enum { SF_SECTION_STATIONS = 41 }; /* points under the axis */
 
-/* Reference x and y (m) of the missile's axis: the centre of the surface's bounding box of a full model, the
- * lowest point of the surface of a half or quarter model, whose axis lies in the symmetry plane. */
-void sf_section_axis(const sf_results *results, double axis[2]);
-
 /* A point of the section: the mean of up to 4 nodes with barycentric weights. */
 typedef struct sf_section_point {
     int32_t node[4];

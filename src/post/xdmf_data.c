@@ -4,6 +4,7 @@
 #include "core/units.h"
 #include "io/provenance.h"
 #include "post/results_check.h"
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,7 +69,8 @@ typedef struct store {
     bool full;
 } store;
 
-/* Rounds to multiples of a power of two, the largest magnitude to SF_XDMF_BITS of them. */
+/* Rounds to multiples of a power of two, the largest magnitude to SF_XDMF_BITS of them; below the smallest
+ * float all are 0. */
 static void round_array(double *value, int64_t count) {
     double largest = 0;
     int exponent;
@@ -76,8 +78,8 @@ static void round_array(double *value, int64_t count) {
         largest = fmax(largest, fabs(value[i]));
     frexp(largest, &exponent);
     double unit = ldexp(1, exponent - SF_XDMF_BITS);
-    for (int64_t i = 0; i < count && largest > 0; i++)
-        value[i] = unit * rint(value[i] / unit);
+    for (int64_t i = 0; i < count; i++)
+        value[i] = largest < FLT_MIN ? 0 : unit * rint(value[i] / unit);
 }
 
 /* Writes an array of the pad or the missile; rounds it in its place. */
