@@ -143,9 +143,10 @@ bool sf_window_number(const char *name, double *number) {
 
 void sf_window_set_text(const char *name, const char *text) {
     char *copy = strdup(text);
+    void *const list = &copy; /* char ** in gmsh 4.8, const char *const * in 4.13 */
     int ierr = 0;
     if (copy)
-        gmshOnelabSetString(name, &copy, 1, &ierr);
+        gmshOnelabSetString(name, list, 1, &ierr);
     free(copy);
 }
 
