@@ -10,8 +10,7 @@
 # the system in a temporary folder, from the mirror of this machine's apt sources, in about half a minute. The command
 # runs there by chroot, as root, in the clone's folder. Afterwards the script removes the folder; with --fetch it first
 # copies the clone's out/ to DIR. With --with a copy of FOLDER takes the place of the clone, and git is not installed. The
-# exit code is that of the command, or 77 without root. Needs the packages debootstrap
-# and git.
+# exit code is that of the command, or 77 without root or its right to mount. Needs the packages debootstrap and git.
 set -euo pipefail
 
 fail() {
@@ -45,6 +44,10 @@ other) [ "$here" = trixie ] && release=bookworm || release=trixie ;;
 esac
 if [ "$(id -u)" -ne 0 ]; then
     echo "in_debian.sh: skipped: only root can make a Debian in a folder (debootstrap, mount, chroot)" >&2
+    exit 77
+fi
+if ! unshare --mount --propagation private true 2>/dev/null; then
+    echo "in_debian.sh: skipped: this machine, perhaps a container, permits root no mounts" >&2
     exit 77
 fi
 for program in debootstrap git unshare apt-get; do
