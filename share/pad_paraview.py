@@ -267,21 +267,34 @@ class Drop:
 
     # ---- products ----
 
+    def show(self, times, size):
+        """What is in the picture at these times."""
+        simple.Render(self.view)  # the first rendering places the camera
+        self.aim(times, size)
+        simple.Render(self.view)
+
+    def open(self):
+        """For the window, or a state file."""
+        self.show([self.times[0], self.peak], SIZE)
+
+    def save(self, path):
+        """A state file; a view that is in no layout would not be seen in the window."""
+        if simple.GetLayout(self.view) is None:
+            simple.AssignViewToLayout(self.view)
+        simple.SaveState(path)
+
     def picture(self, path, time, size=None):
         size = size or SIZE
         self.view.ViewSize = size
         self.go_to(time)
-        simple.Render(self.view)  # the first rendering places the camera
-        self.aim([time], size)
-        simple.Render(self.view)
+        self.show([time], size)
         simple.SaveScreenshot(path, self.view, ImageResolution=size, CompressionLevel="9")
 
     def film(self, path):
         times = self.film_times()
         rate = min(max(len(times) / FILM_SECONDS, 5), 30)
         self.view.ViewSize = SIZE
-        simple.Render(self.view)
-        self.aim([times[0], self.peak], SIZE)
+        self.show([times[0], self.peak], SIZE)
         with tempfile.TemporaryDirectory() as place:
             for k, time in enumerate(times):
                 self.go_to(time)
@@ -358,9 +371,9 @@ def main():
     if options.film:
         drop.film(options.film)
     if not options.picture and not options.film:
-        drop.aim([drop.times[0], drop.peak], SIZE)
+        drop.open()
     if options.state:
-        simple.SaveState(options.state)
+        drop.save(options.state)
 
 
 if __name__ in ("__main__", "__vtkconsole__"):

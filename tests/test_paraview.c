@@ -188,6 +188,18 @@ static void the_state_shows_a_missile_beside_the_middle_once(void **state) {
         fail_msg("%s", r.out);
 }
 
+static void a_state_file_has_the_view_and_its_camera(void **state) {
+    const program_place *p = *state;
+    need(p, "pvbatch xvfb-run");
+    program_result r = program_shell(
+        p,
+        "xvfb-run -a -n $((1000 + $$ %% 30000)) -s -noreset pvbatch full/pad_paraview.py --state full.pvsm 2>&1 && "
+        "python3 '%s' full.pvsm 2>&1",
+        fixture_source("tests/check_state.py"));
+    if (r.code != 0)
+        fail_msg("%s", r.out);
+}
+
 static void draw_pad_draws_a_prescribed_motion(void **state) {
     const program_place *p = *state;
     need(p, "pvbatch xvfb-run");
@@ -225,6 +237,7 @@ int main(void) {
         cmocka_unit_test(a_state_without_its_template_is_a_warning),
         cmocka_unit_test(a_film_without_its_programs_names_the_package),
         cmocka_unit_test(the_state_shows_a_missile_beside_the_middle_once),
+        cmocka_unit_test(a_state_file_has_the_view_and_its_camera),
         cmocka_unit_test(draw_pad_draws_a_prescribed_motion),
         cmocka_unit_test(a_film_and_its_picture_stand_beside_the_report),
     };
