@@ -201,7 +201,8 @@ static void check_mesher(const program_place *p, const char *script, const char 
     snprintf(bin, sizeof bin, "%s", kept ? kept : "");
     program_shell(
         p,
-        "mkdir -p fake && rm -f fake/softfall-mesh && cat > fake/softfall-mesh <<'E'\n#!/bin/bash\n%s\nE\n"
+        "mkdir -p fake && rm -f fake/softfall-mesh && cat > fake/softfall-mesh <<'E'\n#!/bin/bash\n"
+        "head -c 1 <&3 >/dev/null # the request, which softfall-pre could not send any more afterwards\n%s\nE\n"
         "chmod +x fake/softfall-mesh",
         script);
     setenv("SF_BIN_DIR", program_path(p, "fake"), 1);

@@ -220,7 +220,7 @@ static void a_merged_file_that_changed_makes_a_new_run(void **state) {
     need_display();
     program_write_text(
         p, "merge.script",
-        "set solver.end_time=4 ms\nset output.frame_interval=0.1 ms\nset solver.step_limit=2 us\n"
+        "set solver.end_time=4 ms\nset output.frame_interval=0.1 ms\nset solver.step_limit=0.4 us\n"
         "press run\nwait done 300\nframes\npress run\nactivity\n# the click\n"
         "wait 1 frames while running 120\nstatus\nframes\nquit\n");
     do_shell(
@@ -286,8 +286,9 @@ static void nothing_is_left_of_a_window_that_is_closed(void **state) {
                        "set solver.step_limit=0.2 us\npress run\nwait running 300\nactivity\n");
     do_shell(p, "{ has close.txt running && press_key ctrl+q; } & gui close; wait; gone");
     do_shell(
-        p, "rm close.txt; \"$SF_BIN_DIR/softfall-gui\" -t 1 --script close.script case.cfg >close.txt 2>&1 & "
-           "window=$!; has close.txt running; kill -9 $window; wait; gone");
+        p,
+        "rm close.txt close.txt.ended; \"$SF_BIN_DIR/softfall-gui\" -t 1 --script close.script case.cfg >close.txt 2>&1 & "
+        "window=$!; has close.txt running; kill -9 $window; wait; gone");
 }
 
 int main(void) {

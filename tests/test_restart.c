@@ -260,15 +260,20 @@ static void assert_same_peak(const program_place *p, const char *first, const ch
     sf_h5_close(&b, &err);
 }
 
+/* Does the run's folder hold a later peak than its checkpoint, which holds one, too? */
+static bool is_before_the_peak(const program_place *p) {
+    double kept = number_of(p, "late.h5.restart", "/peak/time");
+    return kept > 0 && number_of(p, "late.h5.run/peak.h5", "/peak/time") > kept;
+}
+
 /* A run is killed when its folder holds a later peak than its checkpoint. What goes on from there has the
  * peak of the checkpoint, and then that of one run. */
 static void restart_takes_the_peak_of_its_checkpoint(void **state) {
     const program_place *p = *state;
-    const char *const words[] = {"model.h5", "-o", "late.h5", "--checkpoint-time", "11 ms", NULL};
+    const char *const words[] = {"model.h5", "-o", "late.h5", "--checkpoint-time", "2 ms", NULL};
     int status = 0;
     pid_t child = run_start(p, words);
-    while (waitpid(child, &status, WNOHANG) == 0 && !(number_of(p, "late.h5.run/peak.h5", "/peak/time") >
-                                                      number_of(p, "late.h5.restart", "/peak/time")))
+    while (waitpid(child, &status, WNOHANG) == 0 && !is_before_the_peak(p))
         run_sleep(0.001);
     assert_int_equal(kill(child, SIGKILL), 0);
     waitpid(child, &status, 0);
@@ -602,7 +607,8 @@ static void rebounded_run_goes_on_when_an_end_time_is_given(void **state) {
 
 /* ---- campaigns ---- */
 
-static const char *step_of_drops = "solver.step_safety=0.1"; /* small: there is time to interrupt */
+#define SMALL_STEP "solver.step_safety=0.1" /* there is time to interrupt */
+static const char *step_of_drops = SMALL_STEP;
 
 static void run_drop(const program_place *p, const char *folder, sf_runner_result *result, sf_error *err) {
     char path[1024], source[1024];
@@ -711,6 +717,7 @@ static void killed_campaign_makes_progress_in_every_life(void **state) {
         sf_runner_result_free(&two);
     }
     sf_runner_result_free(&one);
+    step_of_drops = SMALL_STEP;
 }
 
 int main(void) {

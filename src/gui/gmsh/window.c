@@ -16,8 +16,8 @@ void sf_window_option(const char *name, double value) {
 }
 
 static int initialize(void) {
-    char name[] = "softfall-gui";
-    char *argv[] = {name, NULL};
+    static char name[] = "softfall-gui"; /* gmsh reads it again when it opens its window */
+    static char *argv[] = {name, NULL};
     int ierr = 0;
 #if GMSH_API_VERSION_MAJOR > 4 || GMSH_API_VERSION_MINOR >= 9
     gmshInitialize(1, argv, 1, 0, &ierr);
