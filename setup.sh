@@ -11,7 +11,7 @@ usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
   test     build, then run the tests (all but the slow ones)
   slow     build, then run the slow tests
   build    build only: the programs are in build/bin
-  package  build, then make the Debian package build/softfall_VERSION_ARCHITECTURE.deb and check it with lintian
+  package  build, then make the Debian package build/softfall_VERSION-REVISION_ARCHITECTURE.deb and check it with lintian
 
     --force        demo: run the drop again even if its results are up to date
   --label LABEL  test: only the tests with this label: unit, pipeline or verify, or several joined by |
@@ -101,7 +101,7 @@ demo() {
     echo "  $dir/model.h5           the model of softfall-pre"
     echo "  $dir/results.h5         the results of softfall-solve"
     echo "  $report         the lines above"
-    echo "The files are in $PWD. Next: README.md explains how to read the results and change the case."
+    echo "The files are in $PWD. Next: docs/guide.md explains how to read the results and change the case."
 }
 
 # The package of this Debian release. Its files are as old as the last commit.
