@@ -107,6 +107,25 @@ static void damaged_frame_is_left_out_of_the_reading(void **state) {
     assert_has(&r, SF_ERR_IO, "the file of its run that holds ");
 }
 
+/* A run in progress moves its frames: one that is gone is no frame without fields. */
+static void moved_frame_is_told(void **state) {
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    sf_results r;
+    sf_frame frame;
+    copy_killed(p);
+    assert_int_equal(sf_results_open(program_path(p, "broken/killed.h5"), &r, &err), SF_OK);
+    assert_true(r.frame_count > 3);
+    assert_int_equal(sf_frame_read(&r, &r.frames[1], &frame, &err), SF_OK);
+    assert_non_null(frame.field[SF_FRAME_VON_MISES]);
+    sf_frame_free(&frame);
+    program_shell(p, "rm broken/killed.h5.run/frame-*.h5");
+    assert_int_equal(sf_frame_read(&r, &r.frames[2], &frame, &err), SF_ERR_IO);
+    assert_non_null(strstr(err.text, "read the results again"));
+    assert_null(frame.field[SF_FRAME_DISPLACEMENT]);
+    sf_results_close(&r);
+}
+
 /* A run that is continued after its end takes its frames from its results, and computes a lost one too. */
 static void frame_lost_from_the_results_is_computed_again(void **state) {
     const program_place *p = *state;
@@ -247,6 +266,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(damaged_frame_is_computed_again),
         cmocka_unit_test(damaged_frame_is_left_out_of_the_reading),
+        cmocka_unit_test(moved_frame_is_told),
         cmocka_unit_test(frame_lost_from_the_results_is_computed_again),
         cmocka_unit_test(damage_during_a_run_stops_its_end_and_no_restart),
         cmocka_unit_test(frame_that_leads_elsewhere_is_not_read),

@@ -47,8 +47,8 @@ The studies in `verify/` print every table and plot of this page, and this comma
     tools/verification.sh            # all, or: tools/verification.sh NAME...
     tools/verification.sh --ran      # from what the last ./setup.sh test and ./setup.sh slow of this tree left
 
-A study measures, compares with the required bounds, and fails if it misses one. `ctest -L verify` runs the short
-studies, `ctest -L slow` the long ones (base, calculix, coverage_drop, hyperfoam, mesh, sensitivity). A study without a section below has not been run
+A study measures, compares with the required bounds, and fails if it misses one. `ctest --test-dir build -L verify` runs the short
+studies, with `-L slow` the long ones (base, calculix, coverage_drop, hyperfoam, mesh, sensitivity). A study without a section below has not been run
 for this document yet. Equation numbers are those of [theory.md](theory.md). Wall times depend on the machine; all
 other figures repeat to the last digit on one machine.
 

@@ -395,8 +395,18 @@ sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *h
         const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
         char path[80];
         snprintf(path, sizeof path, "%s/%s", head->group, info->name);
-        if (!(fields >> f & 1) || !sf_h5_exists(results->file, path))
+        if (!(fields >> f & 1))
             continue;
+        if (!sf_h5_exists(results->file, path)) {
+            if (sf_h5_exists(results->file, head->group))
+                continue; /* not among output.fields */
+            sf_frame_free(frame);
+            return SF_FAIL(
+                err, SF_ERR_IO,
+                "%s is no longer where results.h5 named it: the run has gone on or ended meanwhile; "
+                "read the results again",
+                head->group);
+        }
         int64_t rows = results->node_count;
         if (read_array(results, path, SF_H5_F64, &rows, info->components, &frame->field[f], err) != SF_OK ||
             sf_results_check_finite(frame->field[f], rows * info->components, path, err) != SF_OK) {

@@ -15,18 +15,6 @@ void sf_window_option(const char *name, double value) {
     gmshOptionSetNumber(name, value, &ierr);
 }
 
-/* gmsh handles events, and draws, whenever it has a message for the user: in the midst of a change of views
- * or models, too. While it is held it does so in no function but those that let it. */
-static void hold(void) {
-    int ierr = 0;
-    gmshFltkLock(&ierr);
-}
-
-static void let_draw(void) {
-    int ierr = 0;
-    gmshFltkUnlock(&ierr);
-}
-
 static int initialize(void) {
     static char name[] = "softfall-gui"; /* gmsh reads it again when it opens its window */
     static char *argv[] = {name, NULL};
@@ -93,7 +81,6 @@ sf_status sf_window_open(sf_error *err) {
     gmshFltkInitialize(&ierr);
     if (ierr != 0)
         return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot open its window");
-    hold();
     return SF_OK;
 }
 
@@ -101,9 +88,7 @@ bool sf_window_wait(double seconds) {
     int ierr = 0;
     if (gmshFltkIsAvailable(&ierr) != 1)
         return false;
-    let_draw();
     gmshFltkWait(seconds, &ierr);
-    hold();
     return gmshFltkIsAvailable(&ierr) == 1;
 }
 
@@ -119,10 +104,8 @@ void sf_window_say(const char *text) {
 
 void sf_window_refresh(void) {
     int ierr = 0;
-    let_draw();
     gmshFltkUpdate(&ierr);
     gmshGraphicsDraw(&ierr);
-    hold();
 }
 
 void sf_window_branch(const char *name, bool open) {
@@ -318,8 +301,6 @@ void sf_window_fit(const double low[3], const double high[3], double left, doubl
 
 sf_status sf_window_write_picture(const char *path, sf_error *err) {
     int ierr = 0;
-    let_draw();
     gmshWrite(path, &ierr);
-    hold();
     return ierr == 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "gmsh cannot write the picture %s", path);
 }
