@@ -2,7 +2,7 @@
 """The drop in ParaView: the pad cut through the missile's axis, coloured by von Mises stress, and the missile.
 
     paraview --script=pad_paraview.py                  opens the drop in ParaView's window, at the peak
-    pvpython pad_paraview.py --state drop.pvsm         writes it as a state file of ParaView
+    xvfb-run -a -s -noreset pvpython pad_paraview.py --state drop.pvsm       writes it as a state file of ParaView
     xvfb-run -a -s -noreset pvbatch --force-offscreen-rendering pad_paraview.py --picture P.png [--time MS] [--whole]
     xvfb-run -a -s -noreset pvbatch --force-offscreen-rendering pad_paraview.py --film F.mp4 [--whole]
 
@@ -273,10 +273,6 @@ class Drop:
         self.aim(times, size)
         simple.Render(self.view)
 
-    def open(self):
-        """For the window, or a state file."""
-        self.show([self.times[0], self.peak], SIZE)
-
     def save(self, path):
         """A state file; a view that is in no layout would not be seen in the window."""
         if simple.GetLayout(self.view) is None:
@@ -371,7 +367,7 @@ def main():
     if options.film:
         drop.film(options.film)
     if not options.picture and not options.film:
-        drop.open()
+        drop.show([drop.times[0], drop.peak], SIZE)
     if options.state:
         drop.save(options.state)
 

@@ -12,7 +12,14 @@
 #include <cmocka.h>
 #include <hdf5.h>
 
-/* The coarse example with a full model, hit beside its middle; and a compression test, for a few steps. */
+/* NAME.h5 into NAME_results.h5 and the folder NAME. */
+static void simulate(const program_place *p, const char *name) {
+    program_succeed(p, "solve", "%s.h5 -o %s_results.h5 -t 1", name, name);
+    program_succeed(p, "post", "%s_results.h5 -o %s", name, name);
+}
+
+/* The coarse example with a full model, hit beside its middle; a compression test,
+ * half a pad hit at its edge, and a flat missile, for a few steps. */
 static int set_up(void **state) {
     program_group_example(state);
     const program_place *p = *state;
@@ -21,27 +28,23 @@ static int set_up(void **state) {
         "good.cfg -o full.h5 %s --set solver.end_time='1.5 ms' --set geometry.parameters.quarter=0 "
         "--set geometry.missile_parameters.quarter=0 --set 'missile.position=[\"40 mm\",\"-30 mm\"]'",
         program_coarse(20));
-    program_succeed(p, "solve", "full.h5 -o full_results.h5 -t 1");
-    program_succeed(p, "post", "full_results.h5 -o full");
+    simulate(p, "full");
     program_succeed(p, "pre",
                     "'%s' -o pressed.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=5 ms'",
                     fixture_source("examples/compression/case.cfg"));
-    program_succeed(p, "solve", "pressed.h5 -o pressed_results.h5 -t 1");
-    program_succeed(p, "post", "pressed_results.h5 -o pressed");
+    simulate(p, "pressed");
     /* Half a pad that is hit at an edge: the middle of the whole missile is an end of the pad along x too. */
     program_succeed(
         p, "pre",
         "good.cfg -o half.h5 %s --set solver.end_time='0.5 ms' --set 'pad.symmetry=[\"symmetry_y\"]' "
         "--set geometry.missile_parameters.quarter=0",
         program_coarse(20));
-    program_succeed(p, "solve", "half.h5 -o half_results.h5 -t 1");
-    program_succeed(p, "post", "half_results.h5 -o half");
+    simulate(p, "half");
     program_succeed(
         p, "pre",
         "'%s' -o flat.h5 %s --set geometry.missile_parameters.element_size=15 --set solver.end_time='0.5 ms'",
         fixture_source("examples/flat-disc/case.cfg"), program_coarse(20));
-    program_succeed(p, "solve", "flat.h5 -o flat_results.h5 -t 1");
-    program_succeed(p, "post", "flat_results.h5 -o flat");
+    simulate(p, "flat");
     return 0;
 }
 

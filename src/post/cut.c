@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/cut.h"
 
-#include "post/cells.h"
 #include "post/axis.h"
+#include "post/cells.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

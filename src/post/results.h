@@ -109,7 +109,8 @@ typedef struct sf_results {
 sf_status sf_results_open(const char *path, sf_results *results, sf_error *err);
 void sf_results_close(sf_results *results);
 
-/* Every field that the group holds, checked for shape and finiteness; release with sf_frame_free. */
+/* Every field that the group holds, checked for shape and finiteness; release with sf_frame_free. SF_ERR_IO:
+ * the group is gone, too, as a run in progress moves its frames: open the results again. */
 sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame, sf_error *err);
 /* Of them those in `fields`, bits SF_FIELD_*. */
 sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
