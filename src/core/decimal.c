@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/decimal.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +13,7 @@ static const char DIGITS[] = "0123456789";
 /* Length of a word of C for a number that is not finite. */
 static size_t not_finite(const char *text) {
     static const char *const words[] = {"infinity", "inf", "nan"};
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; isalpha((unsigned char)*text) && k < 3; k++)
         if (strncasecmp(text, words[k], strlen(words[k])) == 0)
             return strlen(words[k]);
     return 0;
@@ -20,9 +21,10 @@ static size_t not_finite(const char *text) {
 
 const char *sf_decimal_read(const char *text, double *value) {
     const char *at = text + (*text == '+' || *text == '-');
-    if (not_finite(at) > 0) {
+    size_t word = not_finite(at);
+    if (word > 0) {
         *value = NAN;
-        return at + not_finite(at);
+        return at + word;
     }
     size_t whole = strspn(at, DIGITS), part = 0;
     char *end = NULL;

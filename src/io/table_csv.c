@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/table_csv.h"
 
-#include "core/decimal.h"
 #include "io/plain_file.h"
 #include "io/table_heading.h"
 #include <ctype.h>
@@ -128,12 +127,13 @@ static bool is_data(const char *line) {
     bool data = false;
     for (const char *s = SEPARATORS; *s && !data; s++) {
         sf_table_cells cells;
+        double number;
         char *copy = strdup(line);
         if (!copy)
             return false;
         sf_table_split(copy, *s, false, &cells);
-        data = cells.count > 1 && cells.count <= SF_TABLE_COLUMNS && sf_table_is_number(cells.cell[0]) &&
-               sf_table_is_number(cells.cell[1]);
+        data = cells.count > 1 && cells.count <= SF_TABLE_COLUMNS &&
+               sf_table_number(cells.cell[0], &number) && sf_table_number(cells.cell[1], &number);
         free(copy);
     }
     return data;
@@ -220,11 +220,10 @@ static bool is_decimal(const char *text) {
     return first == comma || *first == '0' || strspn(comma + 1, "0123456789") != 3 || comma - first > 3;
 }
 
-/* Takes the marks of the number into account and writes it with a decimal point. */
-static sf_status unify(csv *file, const char *name, const char *text, char copy[64], sf_error *err) {
-    char *comma = strchr(copy, ',');
-    file->point = file->point || strchr(copy, '.');
-    if (!comma)
+/* Takes the mark of the number, a decimal point or a comma, into account. */
+static sf_status check_mark(csv *file, const char *name, const char *text, sf_error *err) {
+    file->point = file->point || strchr(text, '.');
+    if (!strchr(text, ','))
         return file->point && file->comma
                    ? SF_FAIL(err, SF_ERR_INPUT,
                              "%s:%d: %s \"%s\" has a decimal point after numbers with a "
@@ -248,23 +247,16 @@ static sf_status unify(csv *file, const char *name, const char *text, char copy[
         snprintf(file->comma_text, sizeof file->comma_text, "%.31s", text);
     }
     file->comma = true;
-    file->decimal = file->decimal || is_decimal(copy);
-    *comma = '.';
+    file->decimal = file->decimal || is_decimal(text);
     return SF_OK;
 }
 
 static sf_status read_number(csv *file, const char *name, const char *text, double *value, sf_error *err) {
-    char copy[64];
-    bool fits = snprintf(copy, sizeof copy, "%s", text) < (int)sizeof copy;
-    if (!fits || !sf_table_is_number(text))
+    if (!sf_table_number(text, value))
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number", file->path, file->line, name,
                        text);
-    if (unify(file, name, text, copy, err) != SF_OK)
+    if (check_mark(file, name, text, err) != SF_OK)
         return err->status;
-    const char *end = sf_decimal_read(copy, value);
-    if (!end || *end)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number", file->path, file->line, name,
-                       text);
     if (!isfinite(*value))
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not finite", file->path, file->line, name,
                        text);

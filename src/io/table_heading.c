@@ -94,15 +94,15 @@ void sf_table_split(char *line, char separator, bool heading, sf_table_cells *ce
     }
 }
 
-bool sf_table_is_number(const char *cell) {
+bool sf_table_number(const char *cell, double *value) {
     char copy[64];
-    double value;
-    if (snprintf(copy, sizeof copy, "%s", cell) >= (int)sizeof copy)
+    size_t length = strlen(cell);
+    if (length >= sizeof copy)
         return false;
-    for (char *c = copy; *c; c++)
-        if (*c == ',')
-            *c = '.';
-    const char *end = sf_decimal_read(copy, &value);
+    memcpy(copy, cell, length + 1);
+    for (char *c = copy; (c = strchr(c, ','));)
+        *c = '.';
+    const char *end = sf_decimal_read(copy, value);
     return end && *end == '\0';
 }
 
@@ -372,9 +372,10 @@ static void find_column(const reading *r, int c) {
 /* A line without a number that has as many cells as the heading at most: units, if they are. */
 static bool may_hold_units(const sf_table_cells *cells, const sf_table_cells *below) {
     bool any = false;
+    double number;
     for (int i = 0; below && i < below->count; i++) {
         any = any || below->cell[i][0];
-        if (sf_table_is_number(below->cell[i]))
+        if (sf_table_number(below->cell[i], &number))
             return false;
     }
     return any && below->count <= cells->count;
