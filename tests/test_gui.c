@@ -232,6 +232,55 @@ static void a_merged_file_that_changed_makes_a_new_run(void **state) {
     assert_in_range(atoi(program_shell(p, "sed -n 's/^frames = //p' merge.txt | tail -n 1").out), 1, 30);
 }
 
+/* Another view of the same values comes between, and the report is lost: no step is computed again. */
+static void a_finished_run_is_not_computed_again(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(
+        p, "again.script",
+        "set solver.end_time=1.7 ms\npress run\nwait done 300\nprint 1Drop/82run folder\n"
+        "press mesh\nwait meshed 300\npress run\nactivity\npress mesh\nwait meshed 300\nstatus\n"
+        "# the click\nwait done 300\nquit\n");
+    do_shell(
+        p,
+        "{ has again.txt '^meshed' && cd \"$(sed -n 's/^1Drop.82run folder = //p' again.txt)\" && "
+        "stat -c '%i %z' results.h5 >\"$OLDPWD/results.before\" && rm report/report.html && cd \"$OLDPWD\" && "
+        "click_run; } & gui again; wait; cat again.err; ! test -s again.err");
+    do_shell(p, "cd \"$(sed -n 's/^1Drop.82run folder = //p' again.txt)\" && test -f report/report.html && "
+                "stat -c '%i %z' results.h5 | diff \"$OLDPWD/results.before\" -");
+    assert_string_equal(line_of(p, "again.txt", "activity = done"), "");
+}
+
+/* What the user has changed outlives a case that cannot be read for a while, and a cache that is removed. */
+static void a_change_outlives_what_happens_outside(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(
+        p, "outside.script",
+        "set geometry.parameters.thickness=60\npress mesh\nwait meshed 300\nactivity\nwait ready 60\n"
+        "press mesh\nwait failed 60\nactivity\nwait ready 60\n"
+        "print geometry.parameters.thickness\npress mesh\nwait meshed 300\nquit\n");
+    do_shell(
+        p,
+        "{ has outside.txt 'activity = meshed' && cp case.cfg kept.cfg && sed -i 's/pad.geo/padd.geo/' case.cfg && "
+        "has outside.txt 'activity = failed' && rm -r cache && mv kept.cfg case.cfg; } & gui outside; wait; "
+        "cat outside.err; ! test -s outside.err");
+    assert_string_equal(line_of(p, "outside.txt", "geometry.parameters.thickness = "), "60");
+}
+
+static void one_name_for_two_parameters_is_refused(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(p, "names.script", "status\npress mesh\nwait failed 60\nquit\n");
+    do_shell(
+        p,
+        "cp geo/hemisphere.geo good.geo; sed -i 's|Missile/1 Diameter|Pad/2 Thickness|' geo/hemisphere.geo; "
+        "gui names; cp good.geo geo/hemisphere.geo; cat names.err; ! test -s names.err");
+    assert_non_null(strstr(line_of(p, "names.txt", "error: "),
+                           "geometry.parameters.thickness and "
+                           "geometry.missile_parameters.diameter have one"));
+}
+
 static void two_windows_do_not_share_a_run(void **state) {
     const program_place *p = *state;
     need_display();
@@ -298,6 +347,9 @@ int main(void) {
         cmocka_unit_test(a_wrong_value_has_the_sentence_of_the_command_line),
         cmocka_unit_test(a_run_is_that_of_its_values_and_files),
         cmocka_unit_test(a_merged_file_that_changed_makes_a_new_run),
+        cmocka_unit_test(a_finished_run_is_not_computed_again),
+        cmocka_unit_test(a_change_outlives_what_happens_outside),
+        cmocka_unit_test(one_name_for_two_parameters_is_refused),
         cmocka_unit_test(two_windows_do_not_share_a_run),
         cmocka_unit_test(without_a_place_for_runs_nothing_runs),
         cmocka_unit_test(a_mark_stays_when_the_case_is_read_anew),

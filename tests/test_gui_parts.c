@@ -41,6 +41,8 @@ static void run_goes_through_its_programs(void **state) {
     assert_int_equal(FOLLOW(SF_PRESS_RUN, SF_CHILD_DONE), SF_RUNNING);
     assert_int_equal(FOLLOW(SF_PRESS_RUN, SF_CHILD_DONE, SF_CHILD_DONE), SF_REPORTING);
     assert_int_equal(FOLLOW(SF_PRESS_RUN, SF_CHILD_DONE, SF_CHILD_DONE, SF_CHILD_DONE), SF_DONE);
+    assert_int_equal(FOLLOW(SF_PRESS_RUN, SF_CHILD_DONE, SF_CHILD_DONE, SF_CHILD_DONE, SF_PRESS_RUN),
+                     SF_REPORTING);
     assert_int_equal(FOLLOW(SF_PRESS_MESH, SF_CHILD_DONE), SF_MESHED);
     assert_int_equal(FOLLOW(SF_PRESS_MESH, SF_CHILD_FAILED), SF_FAILED);
 }

@@ -240,8 +240,30 @@ bool sf_fields_enter(const sf_fields *fields, const char *key, const char *text)
 
 /* ---- overrides ---- */
 
+static bool is_same_group(const sf_field *f, const sf_field *g) {
+    return strncmp(f->key, g->key, (size_t)(strrchr(f->key, '.') + 1 - f->key)) == 0;
+}
+
+/* One entry of the tree can stand for two parameters only if the case gives both the same value: else one of
+ * them would be run with the value of the other. */
+static sf_status check_names(const sf_fields *fields, sf_error *err) {
+    for (int k = 0; k < fields->count; k++)
+        for (int j = 0; j < k && fields->field[k].of_geometry; j++) {
+            const sf_field *f = &fields->field[k], *g = &fields->field[j];
+            bool same = f->in_case && g->in_case && strcmp(f->given, g->given) == 0;
+            if (g->of_geometry && !same && strcmp(f->name, g->name) == 0 && !is_same_group(f, g))
+                return SF_FAIL(
+                    err, SF_ERR_INPUT,
+                    "%s and %s have one Name, \"%s\": the window cannot tell them apart; give them "
+                    "different ones in the geometry files, or one value in the case",
+                    g->key, f->key, f->name);
+        }
+    return SF_OK;
+}
+
 sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_error *err) {
     *out = (sf_overrides){0};
+    SF_TRY(check_names(fields, err));
     for (int k = 0; k < fields->count; k++) {
         const sf_field *f = &fields->field[k];
         if (strcmp(f->now, f->given) == 0)

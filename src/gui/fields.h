@@ -63,7 +63,8 @@ void sf_fields_take(sf_fields *fields, bool *case_changed, bool *geometry_change
 bool sf_fields_enter(const sf_fields *fields, const char *key, const char *text);
 const sf_field *sf_fields_find(const sf_fields *fields, const char *key);
 
-/* The overrides; release with sf_overrides_free, also on failure. SF_ERR_INPUT: too many. */
+/* The overrides; release with sf_overrides_free, also on failure. SF_ERR_INPUT: too many, or
+ * parameters of both geometries in one entry of the tree. */
 sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_error *err);
 void sf_overrides_free(sf_overrides *overrides);
 

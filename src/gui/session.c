@@ -174,6 +174,8 @@ static sf_status read_case(sf_session *s, sf_error *err) {
             add_geometry(fresh.missile.path, "geometry.missile_parameters", &fresh.missile, before,
                          &s->fields, err);
     }
+    if (err->status != SF_OK)
+        s->fields = *before; /* with what the user has changed */
     free(before);
     return err->status;
 }
@@ -258,7 +260,8 @@ static void unlock(sf_session *s) {
 /* Makes that folder, and locks it against another window of the case until the last program has ended. */
 static sf_status locate(sf_session *s, sf_overrides *o, sf_error *err) {
     unlock(s);
-    if (name_run(s, o, err) != SF_OK || sf_folder_own(s->at.path, err) != SF_OK ||
+    if (sf_cache_find(s->cache, sizeof s->cache, err) != SF_OK || /* it may have been removed */
+        name_run(s, o, err) != SF_OK || sf_folder_own(s->at.path, err) != SF_OK ||
         sf_folder_lock(s->at.path, &s->lock, err) != SF_OK)
         s->at.path[0] = '\0';
     show_folder(s);
@@ -349,7 +352,8 @@ static void start(sf_session *s) {
         start_solve(s, is_there(s->at.checkpoint) && is_there(s->at.results), &err);
         break;
     case SF_REPORTING:
-        if (open_log(s, &err) == SF_OK)
+        if ((s->lock > 0 || sf_folder_lock(s->at.path, &s->lock, &err) == SF_OK) &&
+            open_log(s, &err) == SF_OK)
             sf_programs_post(&s->child, &s->at, s->log, &err);
         break;
     case SF_SAVING:
@@ -504,8 +508,9 @@ static void tell_done(sf_session *s) {
 }
 
 static void fail(sf_session *s, const char *log, int code) {
-    char sentence[1024];
-    sf_checks_sentence(log ? log : "", sentence, sizeof sentence);
+    char sentence[1024] = "";
+    if (code < 128) /* a program that a signal has ended did not say so: its last words are a warning */
+        sf_checks_sentence(log ? log : "", sentence, sizeof sentence);
     if (!*sentence)
         snprintf(sentence, sizeof sentence, "the program ended with exit code %d; see %.900s", code,
                  s->at.log);
@@ -667,10 +672,15 @@ static bool is_shown(sf_session *s) {
 
 static void press(sf_session *s, sf_event event) {
     check_edits(s);
-    if (event == SF_PRESS_RUN && s->activity == SF_DONE && !is_shown(s))
+    bool run = event == SF_PRESS_RUN && !sf_activity_is_busy(s->activity);
+    if (run && s->activity == SF_DONE && !is_shown(s))
         begin_anew(s, true);
+    else if (run && s->activity != SF_DONE) {
+        sf_plain_forget();
+        show_finished(s); /* Mesh, Save case or Stop of the report came after it */
+    }
     sf_activity before = s->activity;
-    if (event == SF_PRESS_RUN && before == SF_DONE && has_report(s))
+    if (run && before == SF_DONE && has_report(s))
         return; /* the run of these values is what is shown */
     s->activity = sf_activity_next(s->activity, event);
     if (s->activity == before && event != SF_PRESS_STOP && sf_activity_is_busy(before))

@@ -55,7 +55,7 @@ sf_activity sf_activity_next(sf_activity a, sf_event event) {
     case SF_PRESS_MESH:
         return busy ? a : SF_MESHING;
     case SF_PRESS_RUN:
-        return busy ? a : SF_PREPARING;
+        return busy ? a : a == SF_DONE ? SF_REPORTING : SF_PREPARING;
     case SF_PRESS_SAVE:
         return busy ? a : SF_SAVING;
     case SF_PRESS_STOP:

@@ -27,7 +27,7 @@ typedef enum sf_activity { SF_ACTIVITIES(SF_ACTIVITY_CONSTANT) SF_ACTIVITY_COUNT
 
 typedef enum sf_event {
     SF_PRESS_MESH,
-    SF_PRESS_RUN,
+    SF_PRESS_RUN, /* of what is done: its report */
     SF_PRESS_STOP,
     SF_PRESS_SAVE,
     SF_CHILD_DONE,        /* the program ended well */
