@@ -219,6 +219,26 @@ static void a_killed_copy_is_named(void **state) {
         err.text, "its process was ended by signal 9; finished drops are kept: run the same command again"));
 }
 
+static void a_drop_that_its_case_refuses_leaves_the_others(void **state) {
+    const program_place *p = *state;
+    char folder[600], source[1024];
+    sf_runner_result result[2];
+    sf_error failure[2], err = SF_ERROR_INIT;
+    program_shell(p, "rm -rf runs");
+    write_program(p, "softfall-pre", "/bin/sh", MAKE_MODEL);
+    write_program(p, "softfall-solve", "/bin/sh", "exit 5");
+    snprintf(folder, sizeof folder, "%s/runs", p->folder);
+    snprintf(source, sizeof source, "%s", fixture_source(EXAMPLE));
+    sf_runner runner = {.folder = folder, .threads = 1};
+    const sf_runner_drop drop[2] = {
+        {.label = "bad", .case_path = source, .override_count = 1, .overrides = {"missile.mass=-1 kg"}},
+        {.label = "good", .case_path = source}};
+    assert_int_equal(sf_runner_run_each(&runner, 2, drop, result, failure, &err), SF_OK);
+    assert_int_equal(failure[0].status, SF_ERR_INPUT);
+    assert_non_null(strstr(failure[0].text, "missile.mass"));
+    assert_int_equal(failure[1].status, SF_ERR_NUMERIC); /* it was run */
+}
+
 /* --threads 1 with --jobs 2 uses two processors, which is said. */
 static void more_drops_than_threads_are_said(void **state) {
     const program_place *p = *state;
@@ -268,6 +288,7 @@ int main(void) {
         cmocka_unit_test(an_interrupted_drop_goes_on_or_starts_anew),
         cmocka_unit_test(a_signal_is_passed_on_to_the_drop_that_runs),
         cmocka_unit_test(a_killed_copy_is_named),
+        cmocka_unit_test(a_drop_that_its_case_refuses_leaves_the_others),
         cmocka_unit_test(more_drops_than_threads_are_said),
         cmocka_unit_test(one_text_in_two_folders_is_not_one_drop),
     };

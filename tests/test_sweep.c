@@ -15,8 +15,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <signal.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 #include "post_check.h"
@@ -186,6 +189,24 @@ static void the_inputs_are_known_by_their_contents(void **state) {
     }
     assert_true(hash[0] == hash[1]);
     assert_true(hash[0] != hash[2]);
+}
+
+static void geometries_of_one_text_in_two_folders_are_refused(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_error err = SF_ERROR_INIT;
+    uint64_t hash;
+    program_shell(p, "mkdir -p one two; cp '%s' one; cp one/pad.geo two", fixture_source("geo/pad.geo"));
+    read_plan(p, "{ key = \"geometry.file\"; files = [\"one/pad.geo\", \"two/pad.geo\"]; }", &plan);
+    assert_int_equal(sf_sweep_check_inputs(&plan, &hash, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "one/pad.geo and two/pad.geo have the same text in different folders"));
+    sf_plan_free(&plan);
+    err = (sf_error)SF_ERROR_INIT;
+    program_shell(p, "echo '// two' >>two/pad.geo");
+    read_plan(p, "{ key = \"geometry.file\"; files = [\"one/pad.geo\", \"two/pad.geo\"]; }", &plan);
+    if (sf_sweep_check_inputs(&plan, &hash, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    sf_plan_free(&plan);
 }
 
 /* ---- samples ---- */
@@ -420,6 +441,7 @@ typedef struct formula {
     int64_t fails;   /* this row fails; -1: none */
     bool changed;    /* whatever was there is not used again */
     int64_t other;   /* from this row on; 0: none */
+    int64_t dies_at; /* the process ends after that many; 0: not */
 } formula;
 
 static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh,
@@ -434,6 +456,8 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
             return SF_FAIL(err, SF_INTERRUPTED, "interrupted");
         f->calls++;
         *fresh += 1;
+        if (f->dies_at > 0 && f->calls == f->dies_at)
+            _exit(0);
         if (row[k] == f->fails) {
             sf_runs_failed(runs, row[k], "it failed, and said \"no\"; see log", err);
             continue;
@@ -521,6 +545,53 @@ static void runs_are_looked_at_again_when_what_they_read_has_changed(void **stat
     assert_int_equal(rows_done(p, &plan, &f, false, 2), 0);
     f.changed = true; /* what only the engine sees */
     assert_int_equal(rows_done(p, &plan, &f, false, 2), 61);
+    sf_plan_free(&plan);
+}
+
+/* In a process of its own, which may write files of so many bytes (0: any). */
+static void run_in_child(const program_place *p, const sf_plan *plan, formula f, uint64_t inputs,
+                         rlim_t most) {
+    pid_t child = fork();
+    if (child == 0) {
+        const struct rlimit limit = {most, most};
+        sf_runs runs;
+        sf_error err;
+        signal(SIGXFSZ, SIG_IGN);
+        if (most > 0)
+            setrlimit(RLIMIT_FSIZE, &limit);
+        campaign(p, plan, &f, false, inputs, &runs, &err);
+        _exit(0);
+    }
+    waitpid(child, NULL, 0);
+}
+
+/* Killed after it has found that what only the engine sees has changed, in the sample or in the first run
+ * after it: the sample is there now, the other rows are not. */
+static void a_killed_look_leaves_no_old_figures(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    read_plan(p, GRID, &plan);
+    for (int dies_at = 1; dies_at < 3; dies_at++) {
+        program_shell(p, "rm -f runs.csv sweep.key");
+        formula f = {.fails = -1};
+        rows_done(p, &plan, &f, false, 1);
+        run_in_child(p, &plan, (formula){.fails = -1, .changed = true, .dies_at = dies_at}, 1, 0);
+        f.other = 1;
+        assert_true(rows_done(p, &plan, &f, false, 1) >= 60);
+    }
+    sf_plan_free(&plan);
+}
+
+/* The key of new inputs is small enough for the disk, the table is not. */
+static void a_table_that_cannot_be_written_is_not_that_of_new_inputs(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    formula f = {.fails = -1};
+    read_plan(p, GRID, &plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    rows_done(p, &plan, &f, false, 1);
+    run_in_child(p, &plan, f, 2, 400);
+    assert_int_equal(rows_done(p, &plan, &f, false, 2), 60);
     sf_plan_free(&plan);
 }
 
@@ -703,6 +774,7 @@ int main(void) {
         cmocka_unit_test(plans_that_cannot_be_meant_are_refused),
         cmocka_unit_test(keys_and_units_that_a_case_does_not_take_are_refused),
         cmocka_unit_test(the_inputs_are_known_by_their_contents),
+        cmocka_unit_test(geometries_of_one_text_in_two_folders_are_refused),
         cmocka_unit_test(a_latin_hypercube_has_one_point_in_each_stratum),
         cmocka_unit_test(the_sobol_sequence_begins_as_it_is_known_and_has_its_limit),
         cmocka_unit_test(a_sample_of_saltelli_mixes_two_samples),
@@ -717,6 +789,8 @@ int main(void) {
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),
+        cmocka_unit_test(a_killed_look_leaves_no_old_figures),
+        cmocka_unit_test(a_table_that_cannot_be_written_is_not_that_of_new_inputs),
         cmocka_unit_test(each_geometry_is_looked_at),
         cmocka_unit_test(a_surface_of_very_many_rows_has_every_level),
         cmocka_unit_test(draws_are_taken_from_the_whole_posterior),

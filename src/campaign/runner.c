@@ -230,12 +230,12 @@ static double now(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Finds the drop's folder and whether it is finished, or has failed earlier. */
-static sf_status prepare(const sf_runner *runner, const sf_runner_drop *drop, request *r, sf_error *failure,
-                         sf_error *err) {
+/* Finds the drop's folder and whether it is finished, or has failed earlier. A drop that its case refuses has
+ * failed: the others go on. */
+static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request *r, sf_error *failure) {
     located l;
-    if (locate(runner, drop, &l, err) != SF_OK)
-        return err->status;
+    if (locate(runner, drop, &l, failure) != SF_OK)
+        return;
     r->key = l.at.key;
     r->geometry = sf_hash_bytes(SF_HASH_START, l.at.pad_folder, strlen(l.at.pad_folder) + 1);
     r->geometry = sf_hash_bytes(r->geometry, l.at.missile_folder, strlen(l.at.missile_folder) + 1);
@@ -246,7 +246,6 @@ static sf_status prepare(const sf_runner *runner, const sf_runner_drop *drop, re
         sf_run_folder_forget_failure(&l.at);
     else
         sf_run_folder_has_failed(&l.at, failure);
-    return SF_OK;
 }
 
 /* By the process that simulated the drop, so that nobody reads the results of many drops one by one. */
@@ -485,7 +484,7 @@ static sf_status run_held(batch *b, sf_error *failure, sf_error *err) {
     if (err->status == SF_OK)
         sf_engine_check(&b->runner->engine, err);
     for (int k = 0; k < b->count && err->status == SF_OK; k++)
-        prepare(b->runner, &b->drop[k], &b->request[k], &failure[k], err);
+        prepare(b->runner, &b->drop[k], &b->request[k], &failure[k]);
     if (err->status == SF_OK && sf_process_stopped())
         sf_run_folder_interrupted(err);
     if (err->status == SF_OK) {

@@ -174,22 +174,30 @@ static sf_status look_at(const sf_sweep_engine *engine, sf_runs *runs, int64_t c
     return err->status;
 }
 
-/* A file that only the geometry knows of may have changed: one finished run of each geometry is given to the
- * engine again. If it has to be simulated, every run is looked at again. */
-static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
-                       sf_error *err) {
-    int64_t count = 0, *sample = pick_samples(runs, &count, err);
+/* Writes the table with the sampled rows open: if the process is killed while they are looked at, the next
+ * one takes other samples. */
+static sf_status write_samples_open(sf_runs *runs, const char *table, int64_t count, const int64_t *sample,
+                                    sf_error *err) {
+    for (int64_t k = 0; k < count; k++)
+        runs->state[sample[k]] = SF_SWEEP_OPEN;
+    sf_runs_write(runs, table, err);
+    for (int64_t k = 0; k < count; k++)
+        runs->state[sample[k]] = SF_SWEEP_DONE;
+    return err->status;
+}
+
+/* A file that only the geometry knows of may have changed: one finished run of each geometry, the samples, is
+ * given to the engine again. If it has to be simulated, every run is looked at again. */
+static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, const char *table,
+                       sf_runs *runs, int64_t count, const int64_t *sample, sf_error *err) {
     int fresh = 0;
-    if (err->status == SF_OK)
-        look_at(engine, runs, count, sample, &fresh, err);
-    free(sample);
-    if (err->status != SF_OK || fresh == 0)
+    if (look_at(engine, runs, count, sample, &fresh, err) != SF_OK || fresh == 0)
         return err->status;
     open_all(runs, SF_SWEEP_DONE);
     if (c->log)
         fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
               c->log);
-    return SF_OK;
+    return sf_runs_write(runs, table, err);
 }
 
 /* ---- the work ---- */
@@ -233,20 +241,24 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
     return err->status;
 }
 
-/* runs.csv is written in any case; the first failure counts. */
+/* runs.csv is written before sweep.key, as an old table would be believed under a new key, and again in any
+ * case; the first failure counts. */
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err) {
     path table = file_of(c, "runs.csv");
     int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
+    int64_t count = 0, *sample = NULL;
     if (!row || take_over(c, runs, err) != SF_OK)
         goto done;
-    if (write_keys(c, err) == SF_OK && sf_runs_write(runs, table.text, err) == SF_OK &&
-        probe(c, engine, runs, err) == SF_OK)
+    sample = pick_samples(runs, &count, err);
+    if (err->status == SF_OK && write_samples_open(runs, table.text, count, sample, err) == SF_OK &&
+        write_keys(c, err) == SF_OK && probe(c, engine, table.text, runs, count, sample, err) == SF_OK)
         work(c, engine, table.text, runs, row, err);
     sf_error second = SF_ERROR_INIT;
     if (sf_runs_write(runs, table.text, &second) != SF_OK && err->status == SF_OK)
         *err = second;
 done:
+    free(sample);
     free(row);
     return err->status;
 }

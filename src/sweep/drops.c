@@ -2,6 +2,7 @@
 #include "sweep/drops.h"
 
 #include "campaign/engine.h"
+#include "io/process.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,10 +65,10 @@ static sf_status take_result(sf_runs *runs, int64_t row, const sf_runner_result 
                         result->grade == SF_GRADE_VALID ? NULL : result->verdict, err);
 }
 
-/* Not the drop's own, as a disk that is full: it ends the campaign. */
+/* Not the drop's own, as a disk that is full, or a process that was killed: it ends the campaign. */
 static bool is_of_the_machine(const sf_error *failure) {
     return failure->status == SF_ERR_IO || failure->status == SF_ERR_MEMORY ||
-           failure->status == SF_INTERRUPTED;
+           failure->status == SF_INTERRUPTED || strstr(failure->text, SF_PROCESS_KILLED);
 }
 
 static sf_status take_row(const piece *p, int k, sf_runs *runs, int64_t row, int *fresh, sf_error *err) {

@@ -4,6 +4,7 @@
 #include "campaign/key.h"
 #include "core/hash.h"
 #include "pre/mesh/geo_parameters.h"
+#include <stdlib.h>
 #include <string.h>
 
 /* A row of the plan in which one factor has another value. */
@@ -33,17 +34,18 @@ sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_er
     return read_variant(&v, c, err);
 }
 
-static sf_status check(const variant *v, uint64_t *hash, sf_error *err) {
+/* Enters the key of the variant, which is 0 if it is refused, into the hash. */
+static sf_status check(const variant *v, uint64_t *hash, uint64_t *own, sf_error *err) {
     sf_case c;
     sf_error inner = SF_ERROR_INIT;
-    uint64_t key = 0;
+    *own = 0;
     if (read_variant(v, &c, &inner) == SF_OK) {
         if (sf_geo_parameters_check_alone(&c.pad, &inner) == SF_OK &&
             sf_geo_parameters_check_alone(&c.missile, &inner) == SF_OK)
-            sf_campaign_key(&c, &key, &inner);
+            sf_campaign_key(&c, own, &inner);
         sf_case_free(&c);
     }
-    *hash = sf_hash_bytes(*hash, &key, sizeof key);
+    *hash = sf_hash_bytes(*hash, own, sizeof *own);
     if (inner.status == SF_OK)
         return SF_OK;
     return SF_FAIL(err, inner.status, "%s: %.900s",
@@ -59,18 +61,39 @@ static sf_status check_extremes(const sf_plan *p, int factor, uint64_t *hash, sf
         high = f->value[k] > high ? f->value[k] : high;
     }
     const variant least = {p, 0, factor, low}, greatest = {p, 0, factor, high};
-    return check(&least, hash, err) == SF_OK ? check(&greatest, hash, err) : err->status;
+    uint64_t key;
+    return check(&least, hash, &key, err) == SF_OK ? check(&greatest, hash, &key, err) : err->status;
+}
+
+/* The key of a run knows a geometry by its own text; what that merges lies beside it. */
+static sf_status refuse_double(const sf_factor *f, const uint64_t *key, int64_t k, sf_error *err) {
+    for (int64_t i = 0; i < k && strncmp(f->key, "geometry.", 9) == 0; i++)
+        if (key[i] == key[k] && strcmp(f->text[i], f->text[k]) != 0)
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: %.300s and %.300s have the same text in different folders: they may merge "
+                           "different files; make a difference in their text, a comment for example",
+                           f->where, f->label[i], f->label[k]);
+    return SF_OK;
+}
+
+static sf_status check_words(const sf_plan *p, int factor, uint64_t *hash, sf_error *err) {
+    const sf_factor *f = &p->factor[factor];
+    uint64_t *key = sf_alloc(err, (unsigned long)f->count, sizeof *key, "keys");
+    for (int64_t k = 0; k < f->count && err->status == SF_OK; k++) {
+        const variant v = {p, 0, factor, (double)k};
+        if (check(&v, hash, &key[k], err) == SF_OK)
+            refuse_double(f, key, k, err);
+    }
+    free(key);
+    return err->status;
 }
 
 sf_status sf_sweep_check_inputs(const sf_plan *p, uint64_t *hash, sf_error *err) {
     *hash = SF_HASH_START;
     for (int f = 0; f < p->factor_count && err->status == SF_OK; f++) {
-        const sf_factor *factor = &p->factor[f];
-        for (int64_t k = 0; k < factor->count && factor->words && err->status == SF_OK; k++) {
-            const variant v = {p, 0, f, (double)k};
-            check(&v, hash, err);
-        }
-        if (!factor->words)
+        if (p->factor[f].words)
+            check_words(p, f, hash, err);
+        else
             check_extremes(p, f, hash, err);
     }
     return err->status;

@@ -427,16 +427,18 @@ static void put_map(FILE *g, const sf_analysis *a, int figure, const int *block)
     put_level_tics(g, "x", p, block[0]);
     put_level_tics(g, "y", p, block[1]);
     fprintf(g, "$q%d << EOD\n", figure);
-    for (int64_t k = 0; k < a->probability.cells; k++)
-        fprintf(g, "%lld,%lld,%.6g\n", (long long)(k / ny), (long long)(k % ny),
-                a->probability.cell[figure * a->probability.cells + k].share);
+    for (int64_t k = 0; k < a->probability.cells; k++) {
+        const sf_probability *c = &a->probability.cell[figure * a->probability.cells + k];
+        fprintf(g, "%lld,%lld,%.6g,%.6g,%.6g\n", (long long)(k / ny), (long long)(k % ny), c->share, c->low,
+                c->high);
+    }
     fprintf(g,
             "EOD\nset cbrange [0:1]\nset palette defined (0 '#cb181d', 0.5 '#fee8a0', 1 '#238b45')\n"
-            "set title 'P(%s < %g)'\n",
+            "set title 'P(%s < %g), 95 %% interval'\n",
             p->figure[figure].figure, p->figure[figure].limit);
     fprintf(g,
             "plot $q%d using 1:2:(0.5):(0.5):3 with boxxyerror fs solid lc palette notitle, \\\n"
-            "     '' using 1:2:(sprintf('%%.2f', $3)) with labels notitle\n",
+            "     '' using 1:2:(sprintf(\"%%.2f\\n%%.2f-%%.2f\", $3, $4, $5)) with labels notitle\n",
             figure);
 }
 
