@@ -421,9 +421,11 @@ static void put_level_tics(FILE *g, const char *axis, const sf_plan *p, int bloc
     fputc('\n', g);
 }
 
+enum { MAP_INTERVALS = 8 }; /* columns of a map in which there is room for them */
+
 static void put_map(FILE *g, const sf_analysis *a, int figure, const int *block) {
     const sf_plan *p = a->plan;
-    int64_t ny = p->block[block[1]].rows;
+    int64_t nx = p->block[block[0]].rows, ny = p->block[block[1]].rows;
     put_level_tics(g, "x", p, block[0]);
     put_level_tics(g, "y", p, block[1]);
     fprintf(g, "$q%d << EOD\n", figure);
@@ -434,12 +436,17 @@ static void put_map(FILE *g, const sf_analysis *a, int figure, const int *block)
     }
     fprintf(g,
             "EOD\nset cbrange [0:1]\nset palette defined (0 '#cb181d', 0.5 '#fee8a0', 1 '#238b45')\n"
-            "set title 'P(%s < %g), 95 %% interval'\n",
-            p->figure[figure].figure, p->figure[figure].limit);
-    fprintf(g,
-            "plot $q%d using 1:2:(0.5):(0.5):3 with boxxyerror fs solid lc palette notitle, \\\n"
-            "     '' using 1:2:(sprintf(\"%%.2f\\n%%.2f-%%.2f\", $3, $4, $5)) with labels notitle\n",
-            figure);
+            "set title 'P(%s < %g)%s'\n",
+            p->figure[figure].figure, p->figure[figure].limit, nx <= MAP_INTERVALS ? ", 95 % interval" : "");
+    fprintf(
+        g,
+        "plot $q%d using 1:2:(0.5):(0.5):3 with boxxyerror fs solid lc palette notitle, \\\n     '' using 1:2:",
+        figure);
+    if (nx <= MAP_INTERVALS)
+        fprintf(g, "(sprintf(\"%%.2f\\n%%.2f-%%.2f\", $3, $4, $5)) with labels font ',%.3g' notitle\n",
+                fmin(16, 64.0 / (double)nx));
+    else
+        fprintf(g, "(sprintf('%%.2f', $3)) with labels font ',%.3g' notitle\n", fmin(16, 150.0 / (double)nx));
 }
 
 static void put_line(FILE *g, const sf_analysis *a, int figure, const int *block) {
