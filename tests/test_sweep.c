@@ -202,8 +202,9 @@ static void geometries_of_one_text_in_two_folders_are_refused(void **state) {
     assert_non_null(strstr(err.text, "one/pad.geo and two/pad.geo have the same text in different folders"));
     sf_plan_free(&plan);
     err = (sf_error)SF_ERROR_INIT;
-    program_shell(p, "echo '// two' >>two/pad.geo");
-    read_plan(p, "{ key = \"geometry.file\"; files = [\"one/pad.geo\", \"two/pad.geo\"]; }", &plan);
+    program_shell(p, "cp one/pad.geo one/copy.geo; echo '// two' >>two/pad.geo");
+    read_plan(p, "{ key = \"geometry.file\"; files = [\"one/pad.geo\", \"one/copy.geo\", \"two/pad.geo\"]; }",
+              &plan);
     if (sf_sweep_check_inputs(&plan, &hash, &err) != SF_OK)
         fail_msg("%s", err.text);
     sf_plan_free(&plan);
@@ -494,6 +495,13 @@ static int64_t rows_done(const program_place *p, const sf_plan *plan, formula *f
     return f->calls;
 }
 
+/* A campaign of GRID that is finished. */
+static void finish_grid(const program_place *p, sf_plan *plan, formula *f) {
+    read_plan(p, GRID, plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    rows_done(p, plan, f, false, 1);
+}
+
 static void an_interrupted_campaign_goes_on_with_the_same_table(void **state) {
     const program_place *p = *state;
     sf_plan plan;
@@ -520,9 +528,7 @@ static void a_failed_run_keeps_its_sentence_and_is_done_again_on_request(void **
     sf_runs runs;
     sf_error err;
     formula f = {.fails = 3};
-    read_plan(p, GRID, &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
-    rows_done(p, &plan, &f, false, 1);
+    finish_grid(p, &plan, &f);
     f.fails = -1;
     assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
     assert_int_equal(f.calls, 0);
@@ -538,9 +544,7 @@ static void runs_are_looked_at_again_when_what_they_read_has_changed(void **stat
     const program_place *p = *state;
     sf_plan plan;
     formula f = {.fails = -1};
-    read_plan(p, GRID, &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
-    rows_done(p, &plan, &f, false, 1);
+    finish_grid(p, &plan, &f);
     assert_int_equal(rows_done(p, &plan, &f, false, 2), 60); /* contents of a file */
     assert_int_equal(rows_done(p, &plan, &f, false, 2), 0);
     f.changed = true; /* what only the engine sees */
@@ -587,9 +591,7 @@ static void a_table_that_cannot_be_written_is_not_that_of_new_inputs(void **stat
     const program_place *p = *state;
     sf_plan plan;
     formula f = {.fails = -1};
-    read_plan(p, GRID, &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
-    rows_done(p, &plan, &f, false, 1);
+    finish_grid(p, &plan, &f);
     run_in_child(p, &plan, f, 2, 400);
     assert_int_equal(rows_done(p, &plan, &f, false, 2), 60);
     sf_plan_free(&plan);
@@ -619,9 +621,7 @@ static void the_folder_of_another_plan_is_refused(void **state) {
     sf_runs runs;
     sf_error err;
     formula f = {.fails = -1};
-    read_plan(p, GRID, &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
-    rows_done(p, &plan, &f, false, 1);
+    finish_grid(p, &plan, &f);
     sf_plan_free(&plan);
     program_bytes before = program_read_file(program_path(p, "runs.csv"));
     read_plan(p, "{ key = \"a.x\"; values = [1.0, 2.0]; }, { key = \"a.y\"; values = [1]; }", &plan);

@@ -3,7 +3,8 @@
 # tools/campaign_rows.sh [ROWS]: what a plan of ROWS rows (5000) costs beside its drops. softfall-pre and softfall-solve are
 # replaced by programs that only link the files of one real drop. Prints seconds and the largest memory of: the dry run; the campaign
 # with these programs; the same command again, when runs.csv is there; and again when runs.csv is lost, so that every drop is looked
-# at and collected anew. 100000 rows take about half an hour, for the programs' sake. For docs/performance.md.
+# at and collected anew. 2000 rows take two and a half minutes, 100000 about two
+# hours, for the programs' sake. For docs/performance.md.
 set -euo pipefail
 
 rows=${1:-5000}

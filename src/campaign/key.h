@@ -12,6 +12,11 @@
  * only after it was read: sf_campaign_geometry_is_same. */
 sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 
+/* Why two geometry files of one text in two folders are refused. */
+#define SF_CAMPAIGN_SAME_TEXT                                                                                \
+    "the same text in different folders: they may merge different files; make a difference in their text, "  \
+    "a comment for example"
+
 /* The part of it that is of the case alone, without geometry files and programs. */
 uint64_t sf_campaign_case_hash(const sf_case *c);
 

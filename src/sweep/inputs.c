@@ -65,14 +65,21 @@ static sf_status check_extremes(const sf_plan *p, int factor, uint64_t *hash, sf
     return check(&least, hash, &key, err) == SF_OK ? check(&greatest, hash, &key, err) : err->status;
 }
 
+static size_t folder_length(const char *path) {
+    const char *last = strrchr(path, '/');
+    return last ? (size_t)(last - path) : 0;
+}
+
+static bool is_same_folder(const char *a, const char *b) {
+    return folder_length(a) == folder_length(b) && strncmp(a, b, folder_length(a)) == 0;
+}
+
 /* The key of a run knows a geometry by its own text; what that merges lies beside it. */
 static sf_status refuse_double(const sf_factor *f, const uint64_t *key, int64_t k, sf_error *err) {
     for (int64_t i = 0; i < k && strncmp(f->key, "geometry.", 9) == 0; i++)
-        if (key[i] == key[k] && strcmp(f->text[i], f->text[k]) != 0)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: %.300s and %.300s have the same text in different folders: they may merge "
-                           "different files; make a difference in their text, a comment for example",
-                           f->where, f->label[i], f->label[k]);
+        if (key[i] == key[k] && !is_same_folder(f->text[i], f->text[k]))
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %.300s and %.300s have " SF_CAMPAIGN_SAME_TEXT, f->where,
+                           f->label[i], f->label[k]);
     return SF_OK;
 }
 

@@ -423,6 +423,7 @@ static void put_level_tics(FILE *g, const char *axis, const sf_plan *p, int bloc
 
 enum { MAP_INTERVALS = 8 }; /* columns of a map in which there is room for them */
 
+/* A cell with unknown runs, which its share leaves out, has a "?". */
 static void put_map(FILE *g, const sf_analysis *a, int figure, const int *block) {
     const sf_plan *p = a->plan;
     int64_t nx = p->block[block[0]].rows, ny = p->block[block[1]].rows;
@@ -431,8 +432,8 @@ static void put_map(FILE *g, const sf_analysis *a, int figure, const int *block)
     fprintf(g, "$q%d << EOD\n", figure);
     for (int64_t k = 0; k < a->probability.cells; k++) {
         const sf_probability *c = &a->probability.cell[figure * a->probability.cells + k];
-        fprintf(g, "%lld,%lld,%.6g,%.6g,%.6g\n", (long long)(k / ny), (long long)(k % ny), c->share, c->low,
-                c->high);
+        fprintf(g, "%lld,%lld,%.6g,%.6g,%.6g,%lld\n", (long long)(k / ny), (long long)(k % ny), c->share,
+                c->low, c->high, (long long)c->unknown);
     }
     fprintf(g,
             "EOD\nset cbrange [0:1]\nset palette defined (0 '#cb181d', 0.5 '#fee8a0', 1 '#238b45')\n"
@@ -443,10 +444,13 @@ static void put_map(FILE *g, const sf_analysis *a, int figure, const int *block)
         "plot $q%d using 1:2:(0.5):(0.5):3 with boxxyerror fs solid lc palette notitle, \\\n     '' using 1:2:",
         figure);
     if (nx <= MAP_INTERVALS)
-        fprintf(g, "(sprintf(\"%%.2f\\n%%.2f-%%.2f\", $3, $4, $5)) with labels font ',%.3g' notitle\n",
-                fmin(16, 64.0 / (double)nx));
+        fprintf(
+            g,
+            "(sprintf(\"%%.2f%%s\\n%%.2f-%%.2f\", $3, $6 > 0 ? '?' : '', $4, $5)) with labels font ',%.3g' notitle\n",
+            fmin(16, 64.0 / (double)nx));
     else
-        fprintf(g, "(sprintf('%%.2f', $3)) with labels font ',%.3g' notitle\n", fmin(16, 150.0 / (double)nx));
+        fprintf(g, "(sprintf('%%.2f%%s', $3, $6 > 0 ? '?' : '')) with labels font ',%.3g' notitle\n",
+                fmin(16, 150.0 / (double)nx));
 }
 
 static void put_line(FILE *g, const sf_analysis *a, int figure, const int *block) {
