@@ -2,6 +2,7 @@
 /* Compression tests and cushion curves as data of softfall-fit drop: a synthetic foam, whose test is that of
  * the solver's law and whose cushion curve is that of a block, from each, from both, and with drops;
  * refusals. */
+#include "cfh/posterior.h"
 #include "fit/drop/average.h"
 #include "fit/drop/input.h"
 #include "fit/material_point.h"
@@ -300,7 +301,31 @@ typedef struct finding {
     bool predicted_inside;
 } finding;
 
-static void sample(bench *b, finding *out) {
+/* Writing is interrupted at the fifth draw: what is left is no posterior for softfall-cfh. */
+static void write_in_part(const program_place *place, const sf_drop_average *average) {
+    static const char folder[] = "posterior";
+    sf_error err = SF_ERROR_INIT;
+    sf_cfh_draws draws;
+    assert_int_equal(program_shell(place, "rm -rf %s && mkdir -p %s/draw-005.cfg", folder, folder).code, 0);
+    assert_true(sf_drop_average_write(average, program_path(place, folder), &err) != SF_OK);
+    assert_int_equal(program_shell(place,
+                                   "cd %s && test -e draw-200.cfg && test -e draw-006.cfg && "
+                                   "test ! -e draw-001.cfg && rmdir draw-005.cfg",
+                                   folder)
+                         .code,
+                     0);
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_cfh_draws_read(program_path(place, folder), "case.cfg", 0, NULL, NULL, &draws, &err),
+                     SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "draw-006.cfg is there, but draw-001.cfg is not"));
+    sf_cfh_draws_free(&draws);
+    assert_true(
+        program_shell(place, "'%s/tools/thin_posterior.py' %s 5 thin", getenv("SF_SOURCE_DIR"), folder)
+            .code != 0);
+    assert_int_equal(program_shell(place, "test -e thin").code, 1);
+}
+
+static void sample(const program_place *place, bench *b, finding *out) {
     static const double ends[2] = {0.025, 0.975};
     sf_drop_inference inference;
     sf_drop_average average;
@@ -327,6 +352,7 @@ static void sample(bench *b, finding *out) {
     double held = exp(y[b->fit.row[MEASURED]]);
     out->predicted = log(value[1] / value[0]);
     out->predicted_inside = value[0] < held && held < value[1];
+    write_in_part(place, &average);
     sf_drop_inference_free(&inference);
 }
 
@@ -346,7 +372,7 @@ static finding find(const program_place *place, bool joint) {
             out.sd[k] = sqrt((out.sd[k] * out.sd[k] * n + sd * sd) / (n + 1));
         }
         if (n == 0)
-            sample(b, &out);
+            sample(place, b, &out);
         sf_mapping_free(&b->fit.result);
         sf_fit_input_free(&b->in);
     }

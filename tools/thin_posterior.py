@@ -11,6 +11,8 @@ if len(sys.argv) != 4 or not sys.argv[2].isdigit():
     sys.exit(__doc__)
 source, count, target = pathlib.Path(sys.argv[1]), int(sys.argv[2]), pathlib.Path(sys.argv[3])
 there = len(list(source.glob("draw-*.cfg")))
+if missing := [k for k in range(1, there + 1) if not (source / f"draw-{k:03d}.cfg").exists()]:
+    sys.exit(f"{source} is not a whole posterior: it holds {there} draws, but no draw-{missing[0]:03d}.cfg")
 if not 0 < count <= there:
     sys.exit(f"{source} holds {there} draws, not {count}")
 target.mkdir(parents=True, exist_ok=True)

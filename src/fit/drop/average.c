@@ -205,10 +205,12 @@ static sf_status write_draw(const sf_drop_average *a, int k, const sf_posterior_
     return err->status;
 }
 
+/* The first draw comes last: without it the folder is no posterior for those who read it, and the draws that
+ * an interruption leaves, which stand model by model, are not taken for the whole. */
 sf_status sf_drop_average_write(const sf_drop_average *a, const char *folder, sf_error *err) {
     sf_posterior_draw draw[SF_POSTERIOR_DRAWS];
     sf_drop_average_draw(a, draw);
-    for (int k = 0; k < SF_POSTERIOR_DRAWS && err->status == SF_OK; k++)
+    for (int k = SF_POSTERIOR_DRAWS - 1; k >= 0 && err->status == SF_OK; k--)
         write_draw(a, k, &draw[k], folder, err);
     return err->status;
 }

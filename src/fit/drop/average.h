@@ -55,7 +55,8 @@ sf_status sf_drop_average_discrepancy(const sf_drop_average *average, int k, con
                                       double *delta, sf_response_error *error, sf_error *err);
 
 /* Writes draw-001.cfg ... with their curves, delta in them, and response_error into a folder that is
- * softfall's own; a file of an earlier run is replaced. */
+ * softfall's own; a file of an earlier run is replaced. From the last to the first: a folder without
+ * draw-001.cfg is not complete. */
 sf_status sf_drop_average_write(const sf_drop_average *average, const char *folder, sf_error *err);
 
 #endif
