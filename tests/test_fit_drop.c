@@ -414,6 +414,10 @@ static void bad_input_gets_one_sentence(void **state) {
          "drops = ( { name = \"a\"; case = \"case.cfg\"; HIC = 3.0; }, { name = \"a\"; case = \"case.cfg\"; "
          "HIC = 3.0; } );\n",
          "two drops are called \"a\""},
+        {MATERIAL "drops = ( { name = \"a\"; case = \"case.cfg\"; HIC = 3.0; },\n"
+                  "{ name = \"b\"; case = \"case.cfg\"; HIC = 3.5; },\n"
+                  "{ name = \"c\"; case = \"./link.cfg\"; HIC = 3.0; HIC_sd = 0.1; } );\n",
+         "fit.cfg:4: the drop \"c\" has the case and every measured value of \"a\": give the same data once"},
         {MATERIAL DROPS("HIC = 3.0; curve = \"start.csv\"; curve_filter = \"60|180\";"), "must be one of"},
         {MATERIAL DROPS("HIC = 3.0; x = 1; y = 2; z = 3;"), "unknown key \"x\"; unknown too: y, z; the keys"},
         {MATERIAL "drops = ( { name = \"" LONG_NAME "\"; case = \"case.cfg\"; HIC = 3.0; } );\n",
@@ -453,6 +457,7 @@ static void bad_input_gets_one_sentence(void **state) {
     program_place place;
     program_set_up(&place);
     put_case(&place);
+    program_shell(&place, "ln -s case.cfg link.cfg");
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         program_write_text(&place, "fit.cfg", bad[k].text);
         program_result r = program_run(&place, "fit", "drop fit.cfg -o out");

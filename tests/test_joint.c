@@ -422,10 +422,25 @@ static void bad_data_get_one_sentence(void **state) {
         {"compressions = ( { file = \"start.csv\"; } );\n", "rate is missing"},
         {"compressions = ( { file = \"none.csv\"; rate = \"0.1 1/s\"; } );\n", "none.csv cannot be read"},
         {"compressions = ( { file = \"start.csv\"; rate = \"0.1 1/s\"; sd = 0.0; } );\n", "sd is 0, outside"},
+        {"compressions = ( { file = \"test.csv\"; rate = \"0.1 1/s\"; name = \"slow\"; },\n"
+         "{ file = \"copy.csv\"; rate = \"1 1/s\"; } );\n",
+         "fit.cfg:4: the contents of the file are those of \"slow\": give the same data once"},
+        {"cushions = ( { " CUSHION "file = \"cushion.csv\"; },\n"
+         "{ file = \"./cushion.csv\"; thickness = \"30 mm\"; drop_height = \"0.6 m\"; } );\n",
+         "fit.cfg:4: the contents of the file are those of \"cushion 1\": give the same data once"},
+        {"cushions = ( { " CUSHION "points = ( [2.0, 60.0], [3.0, 50.0] ); },\n"
+         "{ name = \"b\"; " CUSHION "points = ( [2.0, 60.0], [3.0, 50.0] ); } );\n",
+         "fit.cfg:4: thickness, drop height and all points are those of \"cushion 1\""},
     };
     program_place place;
+    sf_material_law law;
     program_set_up(&place);
     put_start(&place);
+    build_true(&place, &law);
+    put_test(&place, &law);
+    put_cushion(&place, &law);
+    sf_material_law_free(&law);
+    program_shell(&place, "cp test.csv copy.csv");
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         char text[1024];
         sf_fit_input in;

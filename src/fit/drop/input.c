@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const double SAMPLE_INTERVAL = 0.5e-3; /* s, of a measured curve */
 static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are left out */
@@ -147,6 +148,34 @@ static sf_status read_measurement(const sf_config *config, const config_setting_
     return err->status;
 }
 
+static bool is_same_file(const char *a, const char *b) {
+    struct stat first, second;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+/* Everything that was measured, number by number and sample by sample. */
+static bool is_same_measurement(const sf_fit_drop *a, const sf_fit_drop *b) {
+    bool same = a->samples == b->samples;
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+        same = same && (a->value[kind] == b->value[kind] || (isnan(a->value[kind]) && isnan(b->value[kind])));
+    for (int k = 0; k < a->samples && same; k++)
+        same = a->sample_time[k] == b->sample_time[k] && a->sample_value[k] == b->sample_value[k];
+    return same;
+}
+
+/* Twice, a drop would weigh more than it tells, and would foretell itself where it is left out. */
+static sf_status check_drop(const sf_config *config, const config_setting_t *group, const sf_fit_input *in,
+                            const sf_fit_drop *drop, sf_error *err) {
+    for (const sf_fit_drop *earlier = in->drop; earlier < drop; earlier++)
+        if (is_same_measurement(earlier, drop) && is_same_file(earlier->case_path, drop->case_path))
+            return sf_config_refuse(config, group, err,
+                                    "the drop \"%s\" has the case and every measured value of \"%s\": give "
+                                    "the same data once (of drops that were repeated, the mean)",
+                                    drop->name, earlier->name);
+    return SF_OK;
+}
+
 #define KIND_KEYS(name, key, error_key, ...) key "|" SF_DROP_SD(error_key) "|"
 
 static sf_status read_drop(const sf_config *config, const config_setting_t *group, bool predicted,
@@ -165,7 +194,10 @@ static sf_status read_drop(const sf_config *config, const config_setting_t *grou
     in->drop_count++; /* from here on released with the input */
     if (sf_config_file(config, group, "case", true, &drop->case_path, err) != SF_OK)
         return err->status;
-    return predicted ? SF_OK : read_measurement(config, group, drop, err);
+    if (predicted)
+        return SF_OK;
+    SF_TRY(read_measurement(config, group, drop, err));
+    return check_drop(config, group, in, drop, err);
 }
 
 static sf_status read_drops(const sf_config *config, const config_setting_t *root, const char *name,

@@ -16,6 +16,7 @@ enum { SF_JOINT_MOST = 8, SF_JOINT_POINTS = 48, SF_JOINT_NAME = 64, SF_JOINT_UND
 
 typedef struct sf_joint_test {
     char name[SF_JOINT_NAME];
+    uint64_t file;                        /* hash of its text */
     double rate;                          /* s-1, nominal */
     double turn;                          /* -, largest strain */
     int count, loading;                   /* points; the first of them are loading */
@@ -28,6 +29,7 @@ typedef struct sf_joint_test {
 
 typedef struct sf_joint_cushion {
     char name[SF_JOINT_NAME];
+    uint64_t file;            /* hash of its text; 0: no file */
     double thickness, height; /* m; of free fall */
     int count;
     double static_stress[SF_JOINT_POINTS]; /* Pa, weight over area */
@@ -44,7 +46,7 @@ typedef struct sf_joint {
 } sf_joint;
 
 /* The lists `compressions` and `cushions` of a fit file; absent: none. SF_ERR_INPUT names file, line and
- * key. */
+ * key; data that are there twice are refused. */
 sf_status sf_joint_read(const sf_config *config, const config_setting_t *root, sf_joint *joint,
                         sf_error *err);
 

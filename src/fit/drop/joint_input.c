@@ -3,6 +3,7 @@
 
 #include "core/units.h"
 #include "fit/compression/config.h"
+#include "io/plain_file.h"
 #include "io/table_csv.h"
 #include <math.h>
 #include <stdlib.h>
@@ -23,6 +24,12 @@ static sf_status read_name(const sf_config *config, const config_setting_t *entr
     else
         snprintf(name, SF_JOINT_NAME, "%s %d", kind, number);
     return SF_OK;
+}
+
+/* Twice, data would weigh more than they tell. */
+static sf_status refuse_again(const sf_config *config, const config_setting_t *entry, const char *what,
+                              const char *earlier, sf_error *err) {
+    return sf_config_refuse(config, entry, err, "%s those of \"%s\": give the same data once", what, earlier);
 }
 
 /* ---- compression tests ---- */
@@ -63,12 +70,39 @@ static void take_points(const sf_compression_test *t, sf_joint_test *out) {
         put_point(t, t->loading - 1, t->count, GRID * k, out);
 }
 
+/* The text of the file, at whatever rate it is said to be, is that of no other test. */
+static sf_status check_test_file(const sf_config *config, const config_setting_t *entry, const char *path,
+                                 sf_joint *joint, sf_error *err) {
+    sf_joint_test *test = &joint->test[joint->test_count];
+    SF_TRY(sf_plain_hash(path, NULL, SF_PLAIN_TEXT, &test->file, err));
+    for (int t = 0; t < joint->test_count; t++)
+        if (joint->test[t].file == test->file)
+            return refuse_again(config, config_setting_get_member(entry, "file"),
+                                "the contents of the file are", joint->test[t].name, err);
+    return SF_OK;
+}
+
+static sf_status take_test(const sf_config *config, const config_setting_t *entry,
+                           const sf_compression_source *source, sf_joint *joint, sf_error *err) {
+    sf_joint_test *test = &joint->test[joint->test_count];
+    sf_compression_test read;
+    sf_error inner = SF_ERROR_INIT;
+    SF_TRY(check_test_file(config, entry, source->path, joint, err));
+    if (sf_compression_test_read(source, &read, &inner) != SF_OK)
+        return SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
+                       config_setting_source_line(entry));
+    take_points(&read, test);
+    snprintf(test->understood, sizeof test->understood, "%s: %.500s", source->path, read.understood);
+    sf_compression_test_free(&read);
+    joint->rows += test->count;
+    joint->test_count++;
+    return SF_OK;
+}
+
 static sf_status read_test(const sf_config *config, const config_setting_t *entry, sf_joint *joint,
                            sf_error *err) {
     sf_joint_test *test = &joint->test[joint->test_count];
-    sf_compression_test read;
     sf_compression_source source;
-    sf_error inner = SF_ERROR_INIT;
     char *path = NULL;
     *test = (sf_joint_test){.sd = 0.05};
     SF_TRY(sf_config_names(config, entry, "name|file|rate|specimen|toe_correction|invert|sd", err));
@@ -78,16 +112,7 @@ static sf_status read_test(const sf_config *config, const config_setting_t *entr
     SF_TRY(sf_config_file(config, entry, "file", true, &path, err));
     source.path = path;
     test->rate = source.rate;
-    if (sf_compression_test_read(&source, &read, &inner) != SF_OK) {
-        SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
-                config_setting_source_line(entry));
-    } else {
-        take_points(&read, test);
-        snprintf(test->understood, sizeof test->understood, "%s: %.500s", path, read.understood);
-        sf_compression_test_free(&read);
-        joint->rows += test->count;
-        joint->test_count++;
-    }
+    take_test(config, entry, &source, joint, err);
     free(path);
     return err->status;
 }
@@ -187,6 +212,30 @@ static sf_status read_energy(const sf_config *config, const config_setting_t *gr
     return SF_OK;
 }
 
+static bool are_equal(const double *a, const double *b, int count) {
+    bool equal = true;
+    for (int k = 0; k < count; k++)
+        equal = equal && a[k] == b[k];
+    return equal;
+}
+
+/* No other cushion curve has its file, or its points at the same thickness and height. */
+static sf_status check_cushion(const sf_config *config, const config_setting_t *entry, const sf_joint *joint,
+                               sf_error *err) {
+    const sf_joint_cushion *added = &joint->cushion[joint->cushion_count];
+    for (int c = 0; c < joint->cushion_count; c++) {
+        const sf_joint_cushion *old = &joint->cushion[c];
+        if (added->file != 0 && old->file == added->file)
+            return refuse_again(config, config_setting_get_member(entry, "file"),
+                                "the contents of the file are", old->name, err);
+        if (old->thickness == added->thickness && old->height == added->height &&
+            old->count == added->count && are_equal(old->static_stress, added->static_stress, added->count) &&
+            are_equal(old->peak_g, added->peak_g, added->count))
+            return refuse_again(config, entry, "thickness, drop height and all points are", old->name, err);
+    }
+    return SF_OK;
+}
+
 static sf_status read_cushion(const sf_config *config, const config_setting_t *entry, sf_joint *joint,
                               sf_error *err) {
     sf_joint_cushion *cushion = &joint->cushion[joint->cushion_count];
@@ -212,10 +261,14 @@ static sf_status read_cushion(const sf_config *config, const config_setting_t *e
     if (path && read_table(path, cushion, &inner) != SF_OK)
         SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
                 config_setting_source_line(entry));
+    else if (path)
+        sf_plain_hash(path, NULL, SF_PLAIN_TEXT, &cushion->file, err);
     free(path);
+    SF_TRY(err->status);
+    SF_TRY(check_cushion(config, entry, joint, err));
     joint->rows += cushion->count;
     joint->cushion_count++;
-    return err->status;
+    return SF_OK;
 }
 
 sf_status sf_joint_read(const sf_config *config, const config_setting_t *root, sf_joint *joint,
