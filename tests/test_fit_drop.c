@@ -452,6 +452,30 @@ static void bad_input_gets_one_sentence(void **state) {
         {GOOD "unknown = ( { name = \"eta\"; } );\n", "eta is 0 in the start material"},
         {GOOD "unknown = ( { name = \"p0\"; }, { name = \"p0\"; } );\n", "p0 is unknown twice"},
         {GOOD "unknown = ( { name = \"p0\"; prior_sd = 0.0; } );\n", "prior_sd is 0, outside"},
+        {GOOD "start: { avalle_A = \"40 kPa\"; };\n",
+         "fit.cfg:3: start: avalle_A is no parameter of curve_form = \"gas\""},
+        {GOOD "start: { solid_fraction = 0.05; };\n", "start: solid_fraction is no parameter of"},
+        {GOOD
+         "start: { rusch_A = \"40 kPa\"; }; forms = ( { curve = \"gas\"; }, { curve = \"avalle\"; } );\n",
+         "start: rusch_A is a parameter of none of the forms"},
+        {GOOD
+         "start: { avalle_A = \"40 kPa\"; };\n"
+         "forms = ( { curve = \"gas\"; start: { avalle_A = \"40 kPa\"; }; }, { curve = \"avalle\"; } );\n",
+         "fit.cfg:4: start: avalle_A is no parameter of curve = \"gas\""},
+        {GOOD "forms = ( { curve = \"gas\"; rate = \"maxwell\"; start: { rate_factor = 0.2; }; } );\n",
+         "fit.cfg:3: start: rate_factor is of the rate factor, which a model with rate = \"maxwell\""},
+        {GOOD "forms = ( { curve = \"gas\"; rate = \"none\"; start: { rate_factor = 0.2; }; } );\n",
+         "start: rate_factor is of the rate factor"},
+        {GOOD "forms = ( { curve = \"gas\"; rate = \"factor\"; start: { ED = \"1 MPa\"; }; } );\n",
+         "start: ED is of the Maxwell branch, which a model with rate = \"factor\" does not have"},
+        {GOOD
+         "unknown = ( { name = \"rate_factor\"; } ); forms = ( { curve = \"gas\"; rate = \"none\"; } );\n",
+         "fit.cfg:3: rate_factor is of the rate factor, which a model with rate = \"none\""},
+        {GOOD
+         "unknown = ( { name = \"rate_factor\"; } ); forms = ( { curve = \"gas\"; rate = \"maxwell\"; } );\n",
+         "rate_factor is of the rate factor, which a model with rate = \"maxwell\""},
+        {GOOD "unknown = ( { name = \"ED\"; } ); forms = ( { curve = \"gas\"; rate = \"factor\"; } );\n",
+         "ED is of the Maxwell branch, which a model with rate = \"factor\""},
         {GOOD "start = ;\n", "syntax error"},
     };
     program_place place;
@@ -490,6 +514,29 @@ static void every_unknown_is_identified(void **state) {
     assert_int_equal(input.unknown_count, 15);
     assert_true(factor && maxwell);
     sf_fit_input_free(&input);
+    program_tear_down(&place);
+}
+
+/* A start of all models is for those that use it; with `rate` as without it. */
+static void common_start_values_are_for_the_models_that_use_them(void **state) {
+    (void)state;
+    program_place place;
+    program_set_up(&place);
+    put_case(&place);
+    program_write_text(&place, "fit.cfg",
+                       GOOD "start: { avalle_A = \"41 kPa\"; rate_factor = 0.2; ED = \"1 MPa\"; };\n"
+                            "forms = ( { curve = \"gas\"; rate = \"none\"; }, { curve = \"avalle\"; rate = "
+                            "\"factor\"; start: { rate_reference = \"2 1/s\"; }; } );\n");
+    for (int m = 0; m < 2; m++) {
+        sf_fit_input input;
+        sf_error err = SF_ERROR_INIT;
+        if (sf_fit_input_read(program_path(&place, "fit.cfg"), m, &input, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_true(input.start[SF_PARAMETER_ED] == 0);
+        assert_true(input.start[SF_PARAMETER_RATE_FACTOR] == (m == 0 ? 0 : 0.2));
+        assert_true(m == 0 || input.start[SF_PARAMETER_AVALLE_A] == 41e3);
+        sf_fit_input_free(&input);
+    }
     program_tear_down(&place);
 }
 
@@ -858,6 +905,7 @@ int main(void) {
         cmocka_unit_test(mapping_passes_on_a_failed_simulation),
         cmocka_unit_test(bad_input_gets_one_sentence),
         cmocka_unit_test(every_unknown_is_identified),
+        cmocka_unit_test(common_start_values_are_for_the_models_that_use_them),
         cmocka_unit_test(measured_curves_are_filtered_like_the_simulated),
         cmocka_unit_test(hidden_foam_is_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),

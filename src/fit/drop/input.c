@@ -329,6 +329,34 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     return read_solid(config, root, in, err);
 }
 
+/* By the model, or, of a start of all models, by one of them. An unknown form is refused by its model. */
+static bool is_used(const config_setting_t *root, const config_setting_t *holder, const sf_fit_input *in,
+                    sf_foam_parameter p) {
+    const config_setting_t *list = config_setting_get_member(root, "forms");
+    bool used = sf_curve_form_uses(in->form.curve, p);
+    for (int m = 0; list && holder == root && m < in->model_count; m++) {
+        const char *name = NULL;
+        config_setting_lookup_string(config_setting_get_elem(list, (unsigned)m), "curve", &name);
+        const sf_curve_form *form = name ? sf_curve_form_find(name) : NULL;
+        used = used || !form || sf_curve_form_uses(form, p);
+    }
+    return used;
+}
+
+static sf_status check_used(const sf_config *config, const config_setting_t *holder,
+                            const config_setting_t *item, const sf_fit_input *in, sf_foam_parameter p,
+                            sf_error *err) {
+    const config_setting_t *root = config_root_setting(&config->config),
+                           *list = config_setting_get_member(root, "forms");
+    const char *name = sf_parameter_get(p)->name;
+    if (is_used(root, holder, in, p))
+        return SF_OK;
+    if (list && holder == root)
+        return sf_config_refuse(config, item, err, "start: %s is a parameter of none of the forms", name);
+    return sf_config_refuse(config, item, err, "start: %s is no parameter of %s = \"%s\"", name,
+                            list ? "curve" : "curve_form", in->form.curve->name);
+}
+
 static sf_status read_start(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
                             sf_error *err) {
     const config_setting_t *group = config_setting_get_member(holder, "start");
@@ -343,6 +371,7 @@ static sf_status read_start(const sf_config *config, const config_setting_t *hol
             return sf_config_refuse(config, item, err, "\"%.80s\" is no parameter of the foam",
                                     config_setting_name(item));
         const sf_parameter_info *about = sf_parameter_get(p);
+        SF_TRY(check_used(config, holder, item, in, p, err));
         if (about->quantity == SF_QUANTITY_COUNT)
             sf_config_number(config, group, about->name, true, about->low, about->high, &in->start[p], err);
         else
@@ -367,6 +396,48 @@ static sf_status check_start(const sf_config *config, const config_setting_t *ro
     sf_foam_card_free(&card);
     return SF_OK;
 }
+
+/* ---- rate terms ---- */
+
+enum { FACTOR = 1, MAXWELL = 2 };
+
+static const char RATE_WORDS[] = "none|factor|maxwell|both";
+
+/* The term of the rate that the parameter belongs to; 0: none. */
+static int term_of(sf_foam_parameter p) {
+    if (p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE)
+        return FACTOR;
+    return p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1 ? MAXWELL : 0;
+}
+
+/* A parameter of a term that the model's `rate` does not name has no effect. `what`: "start: ED". */
+static sf_status check_term(const sf_config *config, const config_setting_t *item,
+                            const config_setting_t *model, sf_foam_parameter p, const char *what,
+                            sf_error *err) {
+    int rate = -1, term = term_of(p);
+    const char *name = NULL;
+    if (sf_config_choice(config, model, "rate", RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
+        (rate & term) == term)
+        return err->status;
+    SF_TRY(sf_config_text(config, model, "rate", true, &name, err));
+    return sf_config_refuse(config, item, err,
+                            "%s is of the %s, which a model with rate = \"%s\" does not have", what,
+                            term == FACTOR ? "rate factor" : "Maxwell branch", name);
+}
+
+/* The start values of the model alone; those of all models may be for other models. */
+static sf_status check_terms(const sf_config *config, const config_setting_t *model, sf_error *err) {
+    const config_setting_t *group = config_setting_get_member(model, "start");
+    for (int k = 0; group && k < config_setting_length(group); k++) {
+        const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
+        char what[64];
+        snprintf(what, sizeof what, "start: %s", config_setting_name(item));
+        SF_TRY(check_term(config, item, model, sf_parameter_find(config_setting_name(item)), what, err));
+    }
+    return SF_OK;
+}
+
+/* ---- unknowns ---- */
 
 /* One more unknown, with its usual prior; SF_ERR_INPUT names `where` if there are too many. */
 static sf_status put_unknown(const sf_config *config, const config_setting_t *where, sf_fit_input *in,
@@ -398,6 +469,7 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
     for (int k = 0; k < in->unknown_count; k++)
         if (in->unknown[k] == p)
             return sf_config_refuse(config, entry, err, "%s is unknown twice", name);
+    SF_TRY(check_term(config, entry, model_of(config_root_setting(&config->config), in), p, name, err));
     if (p == SF_PARAMETER_RATE_FACTOR)
         sf_foam_form_start_rate(in->start);
     if (!(in->start[p] > 0))
@@ -443,9 +515,9 @@ static sf_status add_usual(const sf_config *config, const config_setting_t *mode
 /* The rate terms of an entry of `forms`: those that it names are unknown, the others are not there. */
 static sf_status read_rate(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
                            sf_error *err) {
-    enum { FACTOR = 1, MAXWELL = 2 };
     int rate = -1;
-    if (sf_config_choice(config, model, "rate", "none|factor|maxwell|both", &rate, err) != SF_OK || rate < 0)
+    if (sf_config_choice(config, model, "rate", RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
+        check_terms(config, model, err) != SF_OK)
         return err->status;
     if (rate & MAXWELL && !(in->start[SF_PARAMETER_ED] > 0 && in->start[SF_PARAMETER_BETA1] > 0))
         return sf_config_refuse(config, model, err,
