@@ -455,11 +455,49 @@ static void bad_data_get_one_sentence(void **state) {
     program_tear_down(&place);
 }
 
+/* Below the strain at which a file begins nothing was measured; a first strain within 0.01 is the rest. */
+static void no_points_are_taken_where_nothing_was_measured(void **state) {
+    (void)state;
+    static const struct {
+        double begin, end, first;
+        int points;
+    } cases[] = {{0.005, 0.42, 0.025, 9}, {0.02, 0.42, 0.05, 8}, {0.12, 0.42, 0.15, 6}, {0.095, 0.14, 0, 0}};
+    program_place place;
+    program_set_up(&place);
+    put_start(&place);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        sf_fit_input in;
+        sf_error err = SF_ERROR_INIT;
+        FILE *file = fopen(program_path(&place, "test.csv"), "w");
+        assert_non_null(file);
+        fputs("strain,stress_kPa\n", file);
+        for (int i = 0; i <= 40; i++) {
+            double strain = cases[k].begin + (cases[k].end - cases[k].begin) * i / 40;
+            fprintf(file, "%.6f,%.6f\n", strain, 100 * strain);
+        }
+        assert_int_equal(fclose(file), 0);
+        sf_fit_input_read(program_write_text(&place, "fit.cfg", START TEST), 0, &in, &err);
+        const sf_joint_test *test = &in.joint.test[0];
+        if (cases[k].points == 0) {
+            assert_non_null(strstr(err.text, "holds 0 of the points 0.05 apart"));
+        } else {
+            assert_int_equal(err.status, SF_OK);
+            assert_int_equal(test->loading, cases[k].points);
+            assert_true(fabs(test->strain[0] - cases[k].first) < 1e-12);
+            for (int i = cases[k].begin < 0.01; i < test->loading; i++) /* what was measured, no clamp */
+                assert_true(fabs(test->stress[i] - 1e5 * test->strain[i]) < 1);
+        }
+        sf_fit_input_free(&in);
+    }
+    program_tear_down(&place);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_tell_more_than_each),
         cmocka_unit_test(all_three_find_more_than_drops),
         cmocka_unit_test(bad_data_get_one_sentence),
+        cmocka_unit_test(no_points_are_taken_where_nothing_was_measured),
     };
     gsl_set_error_handler_off();
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,6 +10,7 @@
 #include <string.h>
 
 static const double GRID = 0.05, SPREAD = 0.01; /* strain: between points, and over which each is a mean */
+enum { LEAST_POINTS = 2 };                      /* of loading */
 
 /* The text, or "compression 2". */
 static sf_status read_name(const sf_config *config, const config_setting_t *entry, const char *kind,
@@ -56,14 +57,19 @@ static void put_point(const sf_compression_test *t, int first, int last, double 
     out->stress[out->count++] = sum / (2 * HALF + 1);
 }
 
-/* Points of both branches, half a step and whole steps from rest, clear of the turn. */
+/* Points of both branches, half a step and whole steps from rest, clear of the turn and of the strain that
+ * loading begins with: below it nothing was measured. A file that begins within SPREAD of rest begins there.
+ */
 static void take_points(const sf_compression_test *t, sf_joint_test *out) {
     int n = (int)floor((t->largest_strain - SPREAD) / GRID);
+    double first = t->strain[0] > SPREAD ? t->strain[0] + SPREAD : 0;
     out->turn = t->largest_strain;
     out->scale = t->largest_stress;
-    put_point(t, 0, t->loading, GRID / 2, out);
+    if (GRID / 2 >= first)
+        put_point(t, 0, t->loading, GRID / 2, out);
     for (int k = 1; k <= n; k++)
-        put_point(t, 0, t->loading, GRID * k, out);
+        if (GRID * k >= first)
+            put_point(t, 0, t->loading, GRID * k, out);
     out->loading = out->count;
     double least = t->strain[t->count - 1];
     for (int k = n; k >= 1 && t->count > t->loading + 1 && GRID * k > least + SPREAD; k--)
@@ -93,7 +99,14 @@ static sf_status take_test(const sf_config *config, const config_setting_t *entr
                        config_setting_source_line(entry));
     take_points(&read, test);
     snprintf(test->understood, sizeof test->understood, "%s: %.500s", source->path, read.understood);
+    if (test->loading < LEAST_POINTS)
+        sf_config_refuse(config, config_setting_get_member(entry, "file"), err,
+                         "%s: loading from a strain of %.3g to %.3g holds %d of the points %g apart that are "
+                         "compared; at least %d are needed",
+                         source->path, read.strain[0], read.largest_strain, test->loading, GRID,
+                         LEAST_POINTS);
     sf_compression_test_free(&read);
+    SF_TRY(err->status);
     joint->rows += test->count;
     joint->test_count++;
     return SF_OK;
