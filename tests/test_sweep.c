@@ -552,6 +552,25 @@ static void runs_are_looked_at_again_when_what_they_read_has_changed(void **stat
     sf_plan_free(&plan);
 }
 
+/* As a spreadsheet saves it: rows in another order, a figure or a level with fewer digits. */
+static void a_table_that_was_edited_is_not_believed(void **state) {
+    const program_place *p = *state;
+    static const char *const edits[] = {
+        "(head -1 runs.csv; tail -n +2 runs.csv | sort -r) > new", "sed '5s/933.333333/933/' runs.csv > new",
+        "sed '8s/1.33333333333/1.33/' runs.csv > new", "sed '$d' runs.csv > new"};
+    for (size_t k = 0; k < sizeof edits / sizeof edits[0]; k++) {
+        sf_plan plan;
+        formula f = {.fails = -1};
+        finish_grid(p, &plan, &f);
+        program_bytes whole = program_read_file(program_path(p, "runs.csv"));
+        assert_int_equal(program_shell(p, "%s && ! cmp new runs.csv && mv new runs.csv", edits[k]).code, 0);
+        if (rows_done(p, &plan, &f, false, 1) != 60)
+            fail_msg("after %s rows are believed", edits[k]);
+        program_assert_unchanged(program_path(p, "runs.csv"), &whole);
+        sf_plan_free(&plan);
+    }
+}
+
 /* In a process of its own, which may write files of so many bytes (0: any). */
 static void run_in_child(const program_place *p, const sf_plan *plan, formula f, uint64_t inputs,
                          rlim_t most) {
@@ -787,6 +806,7 @@ int main(void) {
         cmocka_unit_test(an_interrupted_campaign_goes_on_with_the_same_table),
         cmocka_unit_test(a_failed_run_keeps_its_sentence_and_is_done_again_on_request),
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
+        cmocka_unit_test(a_table_that_was_edited_is_not_believed),
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),
         cmocka_unit_test(a_killed_look_leaves_no_old_figures),
