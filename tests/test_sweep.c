@@ -552,6 +552,41 @@ static void runs_are_looked_at_again_when_what_they_read_has_changed(void **stat
     sf_plan_free(&plan);
 }
 
+/* A run that failed may have read what has changed, too. */
+static void a_failed_run_is_looked_at_again_when_what_only_the_geometry_reads_has_changed(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_error err;
+    formula f = {.fails = 3};
+    finish_grid(p, &plan, &f);
+    f.fails = -1;
+    f.changed = true;
+    assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
+    assert_int_equal(runs.state[3], SF_SWEEP_DONE);
+    assert_int_equal(sf_runs_count(&runs, SF_SWEEP_DONE), 60);
+    sf_runs_free(&runs);
+    sf_plan_free(&plan);
+}
+
+/* There is no finished run by which a change of its files would show. */
+static void failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    formula f = {.fails = 1};
+    read_plan(p,
+              "{ key = \"geometry.parameters.thickness\"; values = [40, 50, 60]; },"
+              "{ key = \"a.y\"; values = [1]; }",
+              &plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 3);
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 1);
+    f.fails = -1;
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 1);
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 0);
+    sf_plan_free(&plan);
+}
+
 /* As a spreadsheet saves it: rows in another order, a figure or a level with fewer digits. */
 static void a_table_that_was_edited_is_not_believed(void **state) {
     const program_place *p = *state;
@@ -806,6 +841,8 @@ int main(void) {
         cmocka_unit_test(an_interrupted_campaign_goes_on_with_the_same_table),
         cmocka_unit_test(a_failed_run_keeps_its_sentence_and_is_done_again_on_request),
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
+        cmocka_unit_test(a_failed_run_is_looked_at_again_when_what_only_the_geometry_reads_has_changed),
+        cmocka_unit_test(failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again),
         cmocka_unit_test(a_table_that_was_edited_is_not_believed),
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),

@@ -139,12 +139,15 @@ static uint64_t geometry_of(const sf_plan *plan, int64_t row) {
 
 typedef struct geometry {
     uint64_t hash;
+    bool failed;
     int64_t row;
 } geometry;
 
+/* By geometry; of one, rows that are done come first. */
 static int compare_geometries(const void *a, const void *b) {
     const geometry *p = a, *q = b;
     int order = (p->hash > q->hash) - (p->hash < q->hash);
+    order = order ? order : p->failed - q->failed;
     return order ? order : (p->row > q->row) - (p->row < q->row);
 }
 
@@ -153,20 +156,34 @@ static int compare_rows(const void *a, const void *b) {
     return (p > q) - (p < q);
 }
 
-/* The first row that is done of each geometry, in the order of rows; from malloc. */
-static int64_t *pick_samples(const sf_runs *runs, int64_t *count, sf_error *err) {
-    int64_t done = sf_runs_count(runs, SF_SWEEP_DONE), n = 0;
-    geometry *list = sf_alloc(err, (unsigned long)done, sizeof *list, "geometries");
-    int64_t *sample = sf_alloc(err, (unsigned long)done, sizeof *sample, "geometries");
-    *count = 0;
-    for (int64_t row = 0; row < runs->count && list && sample; row++)
-        if (runs->state[row] == SF_SWEEP_DONE)
-            list[n++] = (geometry){geometry_of(runs->plan, row), row};
+/* The rows that are done or failed, sorted. */
+static int64_t list_geometries(const sf_runs *runs, geometry *list) {
+    int64_t n = 0;
+    for (int64_t row = 0; row < runs->count; row++)
+        if (runs->state[row] != SF_SWEEP_OPEN)
+            list[n++] = (geometry){geometry_of(runs->plan, row), runs->state[row] == SF_SWEEP_FAILED, row};
     if (n > 0)
         qsort(list, (size_t)n, sizeof *list, compare_geometries);
-    for (int64_t k = 0; k < n; k++)
-        if (k == 0 || list[k].hash != list[k - 1].hash)
+    return n;
+}
+
+/* The first row that is done of each geometry, in the order of rows; from malloc. Rows of a geometry of which
+ * all have failed are opened: the files that they read may have changed, too. */
+static int64_t *pick_samples(sf_runs *runs, int64_t *count, sf_error *err) {
+    int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
+    geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
+    int64_t *sample = sf_alloc(err, (unsigned long)ended, sizeof *sample, "geometries");
+    int64_t n = list && sample ? list_geometries(runs, list) : 0;
+    bool all_failed = false;
+    *count = 0;
+    for (int64_t k = 0; k < n; k++) {
+        bool first = k == 0 || list[k].hash != list[k - 1].hash;
+        all_failed = first ? list[k].failed : all_failed;
+        if (all_failed)
+            sf_runs_open(runs, list[k].row);
+        else if (first)
             sample[(*count)++] = list[k].row;
+    }
     if (*count > 0)
         qsort(sample, (size_t)*count, sizeof *sample, compare_rows);
     free(list);
@@ -197,13 +214,15 @@ static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, i
 }
 
 /* A file that only the geometry knows of may have changed: one finished run of each geometry, the samples, is
- * given to the engine again. If it has to be simulated, every run is looked at again. */
+ * given to the engine again. If it has to be simulated, every run is looked at again, those that failed, too.
+ */
 static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                        int64_t count, const int64_t *sample, sf_error *err) {
     int fresh = 0;
     if (look_at(engine, runs, count, sample, &fresh, err) != SF_OK || fresh == 0)
         return err->status;
     open_all(runs, SF_SWEEP_DONE);
+    open_all(runs, SF_SWEEP_FAILED);
     if (c->log)
         fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
               c->log);
