@@ -437,13 +437,22 @@ static void probabilities_have_the_interval_of_their_counts(void **state) {
 /* ---- campaigns, with a formula in place of the drops ---- */
 
 typedef struct formula {
-    int64_t calls;   /* rows so far */
-    int64_t stop_at; /* interrupted before that many; 0: not */
-    int64_t fails;   /* this row fails; -1: none */
-    bool changed;    /* whatever was there is not used again */
-    int64_t other;   /* from this row on; 0: none */
-    int64_t dies_at; /* the process ends after that many; 0: not */
+    int64_t calls;    /* rows so far */
+    int64_t stop_at;  /* interrupted before that many; 0: not */
+    int64_t fails;    /* this row fails; -1: none */
+    bool changed;     /* whatever was there is not used again */
+    int64_t other;    /* from this row on; 0: none */
+    int64_t dies_at;  /* the process ends after that many; 0: not */
+    int64_t edits_at; /* the inputs change after that many; 0: not */
 } formula;
+
+static uint64_t present_inputs;
+
+static sf_status look_at_inputs(const sf_plan *plan, uint64_t *hash, sf_error *err) {
+    (void)plan;
+    *hash = present_inputs;
+    return err->status;
+}
 
 static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh,
                           sf_error *err) {
@@ -459,6 +468,8 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
         *fresh += 1;
         if (f->dies_at > 0 && f->calls == f->dies_at)
             _exit(0);
+        if (f->edits_at > 0 && f->calls == f->edits_at)
+            present_inputs = 99;
         if (row[k] == f->fails) {
             sf_runs_failed(runs, row[k], "it failed, and said \"no\"; see log", err);
             continue;
@@ -477,7 +488,9 @@ static const char *const GRID = "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 
 static sf_status campaign(const program_place *p, const sf_plan *plan, formula *f, bool retry,
                           uint64_t inputs, sf_runs *runs, sf_error *err) {
     const sf_sweep_engine engine = {evaluate, f, 7};
-    const sf_sweep_campaign c = {.plan = plan, .folder = p->folder, .inputs = inputs, .retry = retry};
+    const sf_sweep_campaign c = {
+        .plan = plan, .folder = p->folder, .inputs = inputs, .look = look_at_inputs, .retry = retry};
+    present_inputs = inputs;
     *err = (sf_error)SF_ERROR_INIT;
     f->calls = 0;
     if (sf_runs_create(plan, runs, err) == SF_OK)
@@ -585,6 +598,28 @@ static void failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again
     assert_int_equal(rows_done(p, &plan, &f, false, 1), 1);
     assert_int_equal(rows_done(p, &plan, &f, false, 1), 0);
     sf_plan_free(&plan);
+}
+
+/* Rows before and after the change are not mixed, also where the inputs are put back before the next start,
+ * and where the campaign was interrupted meanwhile. */
+static void inputs_that_change_while_it_runs_leave_no_row(void **state) {
+    const program_place *p = *state;
+    for (int64_t stop_at = 0; stop_at < 80; stop_at += 40) {
+        sf_plan plan;
+        sf_runs runs;
+        sf_error err;
+        formula f = {.fails = 3, .edits_at = 25, .stop_at = stop_at};
+        read_plan(p, GRID, &plan);
+        program_shell(p, "rm -f runs.csv sweep.key");
+        assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), stop_at ? SF_INTERRUPTED : SF_ERR_IO);
+        if (!stop_at)
+            assert_non_null(strstr(err.text, "the inputs of the campaign changed while it ran"));
+        assert_int_equal(sf_runs_count(&runs, SF_SWEEP_OPEN), 60);
+        sf_runs_free(&runs);
+        f.edits_at = f.stop_at = 0;
+        assert_int_equal(rows_done(p, &plan, &f, false, 1), 60);
+        sf_plan_free(&plan);
+    }
 }
 
 /* As a spreadsheet saves it: rows in another order, a figure or a level with fewer digits. */
@@ -843,6 +878,7 @@ int main(void) {
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
         cmocka_unit_test(a_failed_run_is_looked_at_again_when_what_only_the_geometry_reads_has_changed),
         cmocka_unit_test(failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again),
+        cmocka_unit_test(inputs_that_change_while_it_runs_leave_no_row),
         cmocka_unit_test(a_table_that_was_edited_is_not_believed),
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),

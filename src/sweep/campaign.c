@@ -110,6 +110,31 @@ static void open_all(sf_runs *runs, sf_sweep_state state) {
             sf_runs_open(runs, row);
 }
 
+/* Rows since the last look may be of other inputs than those before. All are opened, as a row that is there
+ * is soon found again. */
+static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+    uint64_t inputs = c->inputs;
+    sf_error refused = SF_ERROR_INIT;
+    if (!c->look || (c->look(c->plan, &inputs, &refused) == SF_OK && inputs == c->inputs))
+        return SF_OK;
+    open_all(runs, SF_SWEEP_DONE);
+    open_all(runs, SF_SWEEP_FAILED);
+    return SF_FAIL(err, SF_ERR_IO,
+                   "the inputs of the campaign changed while it ran: %.700s; finished drops are kept: repeat "
+                   "the command",
+                   refused.status != SF_OK ? refused.text
+                                           : "a file that the case or the plan leads to, or a program");
+}
+
+/* No row of other inputs comes into the table. It is written in any case; the first failure counts. */
+static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+    sf_error second = SF_ERROR_INIT;
+    check_unchanged(c, runs, err);
+    if (write_table(c, runs, &second) != SF_OK && err->status == SF_OK)
+        *err = second;
+    return err->status;
+}
+
 static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
     keys k;
     bool known = false;
@@ -226,7 +251,7 @@ static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine
     if (c->log)
         fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
               c->log);
-    return write_table(c, runs, err);
+    return save(c, runs, err);
 }
 
 /* ---- the work ---- */
@@ -262,7 +287,7 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
         double time = now();
         if (time - written < WRITE_INTERVAL || time - written < WRITE_SHARE * duration)
             continue;
-        write_table(c, runs, err);
+        save(c, runs, err);
         written = now();
         duration = written - time;
         tell_progress(c, runs->count - open, done, open, start);
@@ -270,7 +295,6 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
     return err->status;
 }
 
-/* The table is written in any case; the first failure counts. */
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err) {
     int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
@@ -281,9 +305,7 @@ sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engin
     if (err->status == SF_OK && write_samples_open(c, runs, count, sample, err) == SF_OK &&
         probe(c, engine, runs, count, sample, err) == SF_OK)
         work(c, engine, runs, row, err);
-    sf_error second = SF_ERROR_INIT;
-    if (write_table(c, runs, &second) != SF_OK && err->status == SF_OK)
-        *err = second;
+    save(c, runs, err);
 done:
     free(sample);
     free(row);

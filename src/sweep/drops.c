@@ -83,6 +83,15 @@ static sf_status take_row(const piece *p, int k, sf_runs *runs, int64_t row, int
     return sf_runs_failed(runs, row, failure->text, err);
 }
 
+/* Some rows of the piece may be of the files before, others of those after. */
+static void open_changed(const piece *p, sf_runs *runs, const int64_t *row) {
+    bool changed = false;
+    for (int k = 0; k < p->count; k++)
+        changed |= p->failure[k].status != SF_OK && strstr(p->failure[k].text, SF_RUNNER_CHANGED);
+    for (int k = 0; k < p->count && changed; k++)
+        sf_runs_open(runs, row[k]);
+}
+
 static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh, sf_error *err) {
     sf_runner *runner = context;
     piece p;
@@ -95,6 +104,7 @@ static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row
             if (take_row(&p, k, runs, row[k], fresh, &own) != SF_OK && first.status == SF_OK)
                 first = own;
         }
+        open_changed(&p, runs, row);
         *err = first;
     }
     end_piece(&p);
