@@ -7,6 +7,7 @@
 #include "sweep/analysis.h"
 #include "sweep/campaign.h"
 #include "sweep/cost.h"
+#include "sweep/drops.h"
 #include "sweep/inputs.h"
 #include <math.h>
 #include <setjmp.h>
@@ -641,6 +642,14 @@ static void a_table_that_was_edited_is_not_believed(void **state) {
     }
 }
 
+/* Few drops for each job would leave processors idle at the end of each piece. */
+static void a_piece_has_as_many_rows_for_each_job(void **state) {
+    (void)state;
+    sf_runner runner = {.threads = 1};
+    assert_int_equal(sf_sweep_drops(&runner, 1).piece, 32);
+    assert_int_equal(sf_sweep_drops(&runner, 64).piece, 64 * 32);
+}
+
 /* In a process of its own, which may write files of so many bytes (0: any). */
 static void run_in_child(const program_place *p, const sf_plan *plan, formula f, uint64_t inputs,
                          rlim_t most) {
@@ -880,6 +889,7 @@ int main(void) {
         cmocka_unit_test(failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again),
         cmocka_unit_test(inputs_that_change_while_it_runs_leave_no_row),
         cmocka_unit_test(a_table_that_was_edited_is_not_believed),
+        cmocka_unit_test(a_piece_has_as_many_rows_for_each_job),
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),
         cmocka_unit_test(a_killed_look_leaves_no_old_figures),

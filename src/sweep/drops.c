@@ -113,7 +113,7 @@ static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row
 
 sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
     runner->figures_only = true;
-    int abreast = jobs < 1 ? 1 : jobs < SF_SWEEP_JOBS ? jobs : SF_SWEEP_JOBS;
+    int abreast = jobs < 1 ? 1 : jobs < SF_PROCESS_JOBS ? jobs : SF_PROCESS_JOBS;
     return (sf_sweep_engine){.run = run,
                              .context = runner,
                              .piece = sf_engine_is_local(&runner->engine) ? SF_SWEEP_PIECE * abreast
