@@ -7,6 +7,7 @@
 #include "sweep/analysis.h"
 #include "sweep/campaign.h"
 #include "sweep/cost.h"
+#include "sweep/drops.h"
 #include "sweep/inputs.h"
 #include <math.h>
 #include <setjmp.h>
@@ -437,13 +438,22 @@ static void probabilities_have_the_interval_of_their_counts(void **state) {
 /* ---- campaigns, with a formula in place of the drops ---- */
 
 typedef struct formula {
-    int64_t calls;   /* rows so far */
-    int64_t stop_at; /* interrupted before that many; 0: not */
-    int64_t fails;   /* this row fails; -1: none */
-    bool changed;    /* whatever was there is not used again */
-    int64_t other;   /* from this row on; 0: none */
-    int64_t dies_at; /* the process ends after that many; 0: not */
+    int64_t calls;    /* rows so far */
+    int64_t stop_at;  /* interrupted before that many; 0: not */
+    int64_t fails;    /* this row fails; -1: none */
+    bool changed;     /* whatever was there is not used again */
+    int64_t other;    /* from this row on; 0: none */
+    int64_t dies_at;  /* the process ends after that many; 0: not */
+    int64_t edits_at; /* the inputs change after that many; 0: not */
 } formula;
+
+static uint64_t present_inputs;
+
+static sf_status look_at_inputs(const sf_plan *plan, uint64_t *hash, sf_error *err) {
+    (void)plan;
+    *hash = present_inputs;
+    return err->status;
+}
 
 static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh,
                           sf_error *err) {
@@ -459,6 +469,8 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
         *fresh += 1;
         if (f->dies_at > 0 && f->calls == f->dies_at)
             _exit(0);
+        if (f->edits_at > 0 && f->calls == f->edits_at)
+            present_inputs = 99;
         if (row[k] == f->fails) {
             sf_runs_failed(runs, row[k], "it failed, and said \"no\"; see log", err);
             continue;
@@ -477,7 +489,9 @@ static const char *const GRID = "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 
 static sf_status campaign(const program_place *p, const sf_plan *plan, formula *f, bool retry,
                           uint64_t inputs, sf_runs *runs, sf_error *err) {
     const sf_sweep_engine engine = {evaluate, f, 7};
-    const sf_sweep_campaign c = {.plan = plan, .folder = p->folder, .inputs = inputs, .retry = retry};
+    const sf_sweep_campaign c = {
+        .plan = plan, .folder = p->folder, .inputs = inputs, .look = look_at_inputs, .retry = retry};
+    present_inputs = inputs;
     *err = (sf_error)SF_ERROR_INIT;
     f->calls = 0;
     if (sf_runs_create(plan, runs, err) == SF_OK)
@@ -550,6 +564,90 @@ static void runs_are_looked_at_again_when_what_they_read_has_changed(void **stat
     f.changed = true; /* what only the engine sees */
     assert_int_equal(rows_done(p, &plan, &f, false, 2), 61);
     sf_plan_free(&plan);
+}
+
+/* A run that failed may have read what has changed, too. */
+static void a_failed_run_is_looked_at_again_when_what_only_the_geometry_reads_has_changed(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_error err;
+    formula f = {.fails = 3};
+    finish_grid(p, &plan, &f);
+    f.fails = -1;
+    f.changed = true;
+    assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
+    assert_int_equal(runs.state[3], SF_SWEEP_DONE);
+    assert_int_equal(sf_runs_count(&runs, SF_SWEEP_DONE), 60);
+    sf_runs_free(&runs);
+    sf_plan_free(&plan);
+}
+
+/* There is no finished run by which a change of its files would show. */
+static void failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    formula f = {.fails = 1};
+    read_plan(p,
+              "{ key = \"geometry.parameters.thickness\"; values = [40, 50, 60]; },"
+              "{ key = \"a.y\"; values = [1]; }",
+              &plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 3);
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 1);
+    f.fails = -1;
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 1);
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 0);
+    sf_plan_free(&plan);
+}
+
+/* Rows before and after the change are not mixed, also where the inputs are put back before the next start,
+ * and where the campaign was interrupted meanwhile. */
+static void inputs_that_change_while_it_runs_leave_no_row(void **state) {
+    const program_place *p = *state;
+    for (int64_t stop_at = 0; stop_at < 80; stop_at += 40) {
+        sf_plan plan;
+        sf_runs runs;
+        sf_error err;
+        formula f = {.fails = 3, .edits_at = 25, .stop_at = stop_at};
+        read_plan(p, GRID, &plan);
+        program_shell(p, "rm -f runs.csv sweep.key");
+        assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), stop_at ? SF_INTERRUPTED : SF_ERR_IO);
+        if (!stop_at)
+            assert_non_null(strstr(err.text, "the inputs of the campaign changed while it ran"));
+        assert_int_equal(sf_runs_count(&runs, SF_SWEEP_OPEN), 60);
+        sf_runs_free(&runs);
+        f.edits_at = f.stop_at = 0;
+        assert_int_equal(rows_done(p, &plan, &f, false, 1), 60);
+        sf_plan_free(&plan);
+    }
+}
+
+/* As a spreadsheet saves it: rows in another order, a figure or a level with fewer digits. */
+static void a_table_that_was_edited_is_not_believed(void **state) {
+    const program_place *p = *state;
+    static const char *const edits[] = {
+        "(head -1 runs.csv; tail -n +2 runs.csv | sort -r) > new", "sed '5s/933.333333/933/' runs.csv > new",
+        "sed '8s/1.33333333333/1.33/' runs.csv > new", "sed '$d' runs.csv > new"};
+    for (size_t k = 0; k < sizeof edits / sizeof edits[0]; k++) {
+        sf_plan plan;
+        formula f = {.fails = -1};
+        finish_grid(p, &plan, &f);
+        program_bytes whole = program_read_file(program_path(p, "runs.csv"));
+        assert_int_equal(program_shell(p, "%s && ! cmp new runs.csv && mv new runs.csv", edits[k]).code, 0);
+        if (rows_done(p, &plan, &f, false, 1) != 60)
+            fail_msg("after %s rows are believed", edits[k]);
+        program_assert_unchanged(program_path(p, "runs.csv"), &whole);
+        sf_plan_free(&plan);
+    }
+}
+
+/* Few drops for each job would leave processors idle at the end of each piece. */
+static void a_piece_has_as_many_rows_for_each_job(void **state) {
+    (void)state;
+    sf_runner runner = {.threads = 1};
+    assert_int_equal(sf_sweep_drops(&runner, 1).piece, 32);
+    assert_int_equal(sf_sweep_drops(&runner, 64).piece, 64 * 32);
 }
 
 /* In a process of its own, which may write files of so many bytes (0: any). */
@@ -787,6 +885,11 @@ int main(void) {
         cmocka_unit_test(an_interrupted_campaign_goes_on_with_the_same_table),
         cmocka_unit_test(a_failed_run_keeps_its_sentence_and_is_done_again_on_request),
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
+        cmocka_unit_test(a_failed_run_is_looked_at_again_when_what_only_the_geometry_reads_has_changed),
+        cmocka_unit_test(failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again),
+        cmocka_unit_test(inputs_that_change_while_it_runs_leave_no_row),
+        cmocka_unit_test(a_table_that_was_edited_is_not_believed),
+        cmocka_unit_test(a_piece_has_as_many_rows_for_each_job),
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),
         cmocka_unit_test(a_killed_look_leaves_no_old_figures),

@@ -102,6 +102,26 @@ static void what_a_run_reads_is_simulated_again_when_it_changes(void **state) {
     assert_non_null(strstr(r.out, "2 drops simulated, 2 were there"));
 }
 
+/* A material is edited while the first drop runs, and put back: no row is of other inputs or failed for good.
+ */
+static void inputs_that_change_meanwhile_end_the_campaign(void **state) {
+    const program_place *p = *state;
+    program_result r = program_shell(
+        p,
+        "cp foam.cfg kept.cfg; '%s/softfall-sweep' plan.cfg -o edited --jobs 1 & for k in $(seq 3000); do "
+        "ls edited/runs/drop-*/log.txt && break; sleep 0.01; done; sed -i 's/^HU = .*/HU = 0.3;/' foam.cfg; "
+        "wait $!",
+        getenv("SF_BIN_DIR"));
+    assert_int_equal(r.code, 3);
+    assert_non_null(strstr(r.err, "has changed while the batch ran; repeat the command"));
+    assert_int_equal(program_shell(p, "test -e edited/report.html").code, 1);
+    assert_int_equal(program_shell(p, "grep -c ',open,' edited/runs.csv | grep -qx 4").code, 0);
+    program_shell(p, "cp kept.cfg foam.cfg");
+    r = program_succeed(p, "sweep", "plan.cfg -o edited --jobs 1");
+    assert_non_null(strstr(r.out, "2 drops simulated, 2 were there"));
+    assert_non_null(strstr(r.out, "4 runs: 4 done, 0 failed, 0 open"));
+}
+
 /* Of the same folder: the figures are those of runs.csv, in columns. */
 static void runs_are_overlaid(void **state) {
     const program_place *p = *state;
@@ -170,6 +190,7 @@ int main(void) {
         cmocka_unit_test(a_dry_run_tells_the_table_and_the_cost_and_writes_nothing),
         cmocka_unit_test(a_sweep_writes_its_table_and_report_and_resumes),
         cmocka_unit_test(what_a_run_reads_is_simulated_again_when_it_changes),
+        cmocka_unit_test(inputs_that_change_meanwhile_end_the_campaign),
         cmocka_unit_test(runs_are_overlaid),
         cmocka_unit_test(folders_that_are_not_of_the_plan_or_taken_are_refused),
     };

@@ -263,7 +263,7 @@ static sf_status simulate(void *context, int index, sf_error *err) {
     if (locate(b->runner, drop, &l, err) != SF_OK)
         return err->status;
     if (l.at.key != b->request[b->pending[index]].key)
-        return SF_FAIL(err, SF_ERR_INPUT, "a file that %s leads to has changed while the batch ran",
+        return SF_FAIL(err, SF_ERR_IO, "a file that %s leads to " SF_RUNNER_CHANGED "; repeat the command",
                        drop->case_path);
     if (sf_run_folder_simulate(&l.at, drop->case_path, l.count, l.overrides, b->threads, err) == SF_OK)
         record(&l.at);

@@ -54,6 +54,9 @@ typedef struct sf_runner_result {
  * that never touched the pad; SF_INTERRUPTED when a program was interrupted. */
 sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
                         sf_error *err);
+/* In the sentence of a drop whose files are no longer those of its key (SF_ERR_IO): it was not simulated, and
+ * other drops of its batch may be of either. */
+#define SF_RUNNER_CHANGED "has changed while the batch ran"
 /* Several drops, side by side: the threads are shared among those that must be simulated, the bits are the
  * same. A finished drop is kept whatever happens to the others; a drop that is in the batch twice is
  * simulated once. result [count]: release each with sf_runner_result_free, also on failure. Errors: of the

@@ -34,34 +34,44 @@ static double now(void) {
 
 typedef struct keys {
     bool there;
-    uint64_t table, inputs;
+    uint64_t table, inputs, text; /* `text`: of runs.csv; 0: not known, by an earlier revision */
 } keys;
 
 static sf_status read_keys(const sf_sweep_campaign *c, keys *k, sf_error *err) {
     path p = file_of(c, "sweep.key");
-    unsigned long long table = 0, inputs = 0;
+    unsigned long long table = 0, inputs = 0, runs = 0;
     char *text = NULL;
     *k = (keys){0};
     if (access(p.text, F_OK) != 0)
         return SF_OK;
     if (sf_plain_read(p.text, NULL, KEY_SIZE, &text, NULL, err) == SF_OK &&
-        sscanf(text, "softfall-sweep table %16llx inputs %16llx", &table, &inputs) == 2)
-        *k = (keys){true, table, inputs};
+        sscanf(text, "softfall-sweep table %16llx inputs %16llx runs.csv %16llx", &table, &inputs, &runs) >=
+            2)
+        *k = (keys){true, table, inputs, runs};
     else if (err->status == SF_OK)
         SF_FAIL(err, SF_ERR_INPUT, "%s is not a file of softfall-sweep: give another directory", p.text);
     free(text);
     return err->status;
 }
 
-static sf_status write_keys(const sf_sweep_campaign *c, sf_error *err) {
+static sf_status write_keys(const sf_sweep_campaign *c, uint64_t runs, sf_error *err) {
     sf_replacement out;
     path p = file_of(c, "sweep.key");
     FILE *file = sf_replace_open(p.text, &out, err);
     if (!file)
         return err->status;
-    fprintf(file, "softfall-sweep table %016llx inputs %016llx\n", (unsigned long long)sf_plan_hash(c->plan),
-            (unsigned long long)c->inputs);
+    fprintf(file, "softfall-sweep table %016llx inputs %016llx runs.csv %016llx\n",
+            (unsigned long long)sf_plan_hash(c->plan), (unsigned long long)c->inputs,
+            (unsigned long long)runs);
     return sf_replace_close(&out, err);
+}
+
+/* sweep.key knows the table by its text: what something else has written, or was written under another key,
+ * is not believed. */
+static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, sf_error *err) {
+    path table = file_of(c, "runs.csv");
+    uint64_t hash = 0;
+    return sf_runs_write(runs, table.text, &hash, err) == SF_OK ? write_keys(c, hash, err) : err->status;
 }
 
 static sf_status check_keys(const sf_sweep_campaign *c, keys *k, bool *known, sf_error *err) {
@@ -91,13 +101,38 @@ sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, sf_e
     path table = file_of(c, "runs.csv");
     if (check_keys(c, &k, &known, err) != SF_OK || !known || access(table.text, F_OK) != 0)
         return err->status;
-    return sf_runs_read(runs, table.text, err);
+    return sf_runs_read(runs, table.text, k.text, err);
 }
 
 static void open_all(sf_runs *runs, sf_sweep_state state) {
     for (int64_t row = 0; row < runs->count; row++)
         if (runs->state[row] == state)
             sf_runs_open(runs, row);
+}
+
+/* Rows since the last look may be of other inputs than those before. All are opened, as a row that is there
+ * is soon found again. */
+static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+    uint64_t inputs = c->inputs;
+    sf_error refused = SF_ERROR_INIT;
+    if (!c->look || (c->look(c->plan, &inputs, &refused) == SF_OK && inputs == c->inputs))
+        return SF_OK;
+    open_all(runs, SF_SWEEP_DONE);
+    open_all(runs, SF_SWEEP_FAILED);
+    return SF_FAIL(err, SF_ERR_IO,
+                   "the inputs of the campaign changed while it ran: %.700s; finished drops are kept: repeat "
+                   "the command",
+                   refused.status != SF_OK ? refused.text
+                                           : "a file that the case or the plan leads to, or a program");
+}
+
+/* No row of other inputs comes into the table. It is written in any case; the first failure counts. */
+static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+    sf_error second = SF_ERROR_INIT;
+    check_unchanged(c, runs, err);
+    if (write_table(c, runs, &second) != SF_OK && err->status == SF_OK)
+        *err = second;
+    return err->status;
 }
 
 static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
@@ -129,12 +164,15 @@ static uint64_t geometry_of(const sf_plan *plan, int64_t row) {
 
 typedef struct geometry {
     uint64_t hash;
+    bool failed;
     int64_t row;
 } geometry;
 
+/* By geometry; of one, rows that are done come first. */
 static int compare_geometries(const void *a, const void *b) {
     const geometry *p = a, *q = b;
     int order = (p->hash > q->hash) - (p->hash < q->hash);
+    order = order ? order : p->failed - q->failed;
     return order ? order : (p->row > q->row) - (p->row < q->row);
 }
 
@@ -143,20 +181,34 @@ static int compare_rows(const void *a, const void *b) {
     return (p > q) - (p < q);
 }
 
-/* The first row that is done of each geometry, in the order of rows; from malloc. */
-static int64_t *pick_samples(const sf_runs *runs, int64_t *count, sf_error *err) {
-    int64_t done = sf_runs_count(runs, SF_SWEEP_DONE), n = 0;
-    geometry *list = sf_alloc(err, (unsigned long)done, sizeof *list, "geometries");
-    int64_t *sample = sf_alloc(err, (unsigned long)done, sizeof *sample, "geometries");
-    *count = 0;
-    for (int64_t row = 0; row < runs->count && list && sample; row++)
-        if (runs->state[row] == SF_SWEEP_DONE)
-            list[n++] = (geometry){geometry_of(runs->plan, row), row};
+/* The rows that are done or failed, sorted. */
+static int64_t list_geometries(const sf_runs *runs, geometry *list) {
+    int64_t n = 0;
+    for (int64_t row = 0; row < runs->count; row++)
+        if (runs->state[row] != SF_SWEEP_OPEN)
+            list[n++] = (geometry){geometry_of(runs->plan, row), runs->state[row] == SF_SWEEP_FAILED, row};
     if (n > 0)
         qsort(list, (size_t)n, sizeof *list, compare_geometries);
-    for (int64_t k = 0; k < n; k++)
-        if (k == 0 || list[k].hash != list[k - 1].hash)
+    return n;
+}
+
+/* The first row that is done of each geometry, in the order of rows; from malloc. Rows of a geometry of which
+ * all have failed are opened: the files that they read may have changed, too. */
+static int64_t *pick_samples(sf_runs *runs, int64_t *count, sf_error *err) {
+    int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
+    geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
+    int64_t *sample = sf_alloc(err, (unsigned long)ended, sizeof *sample, "geometries");
+    int64_t n = list && sample ? list_geometries(runs, list) : 0;
+    bool all_failed = false;
+    *count = 0;
+    for (int64_t k = 0; k < n; k++) {
+        bool first = k == 0 || list[k].hash != list[k - 1].hash;
+        all_failed = first ? list[k].failed : all_failed;
+        if (all_failed)
+            sf_runs_open(runs, list[k].row);
+        else if (first)
             sample[(*count)++] = list[k].row;
+    }
     if (*count > 0)
         qsort(sample, (size_t)*count, sizeof *sample, compare_rows);
     free(list);
@@ -176,28 +228,30 @@ static sf_status look_at(const sf_sweep_engine *engine, sf_runs *runs, int64_t c
 
 /* Writes the table with the sampled rows open: if the process is killed while they are looked at, the next
  * one takes other samples. */
-static sf_status write_samples_open(sf_runs *runs, const char *table, int64_t count, const int64_t *sample,
-                                    sf_error *err) {
+static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, int64_t count,
+                                    const int64_t *sample, sf_error *err) {
     for (int64_t k = 0; k < count; k++)
         runs->state[sample[k]] = SF_SWEEP_OPEN;
-    sf_runs_write(runs, table, err);
+    write_table(c, runs, err);
     for (int64_t k = 0; k < count; k++)
         runs->state[sample[k]] = SF_SWEEP_DONE;
     return err->status;
 }
 
 /* A file that only the geometry knows of may have changed: one finished run of each geometry, the samples, is
- * given to the engine again. If it has to be simulated, every run is looked at again. */
-static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, const char *table,
-                       sf_runs *runs, int64_t count, const int64_t *sample, sf_error *err) {
+ * given to the engine again. If it has to be simulated, every run is looked at again, those that failed, too.
+ */
+static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
+                       int64_t count, const int64_t *sample, sf_error *err) {
     int fresh = 0;
     if (look_at(engine, runs, count, sample, &fresh, err) != SF_OK || fresh == 0)
         return err->status;
     open_all(runs, SF_SWEEP_DONE);
+    open_all(runs, SF_SWEEP_FAILED);
     if (c->log)
         fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
               c->log);
-    return sf_runs_write(runs, table, err);
+    return save(c, runs, err);
 }
 
 /* ---- the work ---- */
@@ -220,8 +274,8 @@ static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t don
     }
 }
 
-static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine, const char *table,
-                      sf_runs *runs, int64_t *row, sf_error *err) {
+static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs, int64_t *row,
+                      sf_error *err) {
     int64_t from = 0, done = 0, open = sf_runs_count(runs, SF_SWEEP_OPEN);
     double start = now(), written = start, duration = 0;
     int count;
@@ -233,7 +287,7 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
         double time = now();
         if (time - written < WRITE_INTERVAL || time - written < WRITE_SHARE * duration)
             continue;
-        sf_runs_write(runs, table, err);
+        save(c, runs, err);
         written = now();
         duration = written - time;
         tell_progress(c, runs->count - open, done, open, start);
@@ -241,22 +295,17 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
     return err->status;
 }
 
-/* runs.csv is written before sweep.key, as an old table would be believed under a new key, and again in any
- * case; the first failure counts. */
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err) {
-    path table = file_of(c, "runs.csv");
     int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
     int64_t count = 0, *sample = NULL;
     if (!row || take_over(c, runs, err) != SF_OK)
         goto done;
     sample = pick_samples(runs, &count, err);
-    if (err->status == SF_OK && write_samples_open(runs, table.text, count, sample, err) == SF_OK &&
-        write_keys(c, err) == SF_OK && probe(c, engine, table.text, runs, count, sample, err) == SF_OK)
-        work(c, engine, table.text, runs, row, err);
-    sf_error second = SF_ERROR_INIT;
-    if (sf_runs_write(runs, table.text, &second) != SF_OK && err->status == SF_OK)
-        *err = second;
+    if (err->status == SF_OK && write_samples_open(c, runs, count, sample, err) == SF_OK &&
+        probe(c, engine, runs, count, sample, err) == SF_OK)
+        work(c, engine, runs, row, err);
+    save(c, runs, err);
 done:
     free(sample);
     free(row);

@@ -19,9 +19,11 @@ typedef struct sf_sweep_campaign {
     const sf_plan *plan;
     const char *folder; /* of the output; it exists */
     uint64_t inputs;    /* hash of the contents of all inputs */
-    bool retry;         /* failed rows are done again */
-    bool force;         /* another plan in the folder gives way */
-    FILE *log;          /* NULL: silent */
+    /* That hash as it is now, before each writing of the table; NULL: the inputs stay as they are. */
+    sf_status (*look)(const sf_plan *plan, uint64_t *hash, sf_error *err);
+    bool retry; /* failed rows are done again */
+    bool force; /* another plan in the folder gives way */
+    FILE *log;  /* NULL: silent */
 } sf_sweep_campaign;
 
 /* Is the folder that of a campaign, and of this plan? SF_ERR_INPUT if it is of another plan, without force.
@@ -29,7 +31,7 @@ typedef struct sf_sweep_campaign {
 sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_error *err);
 
 /* Takes over what runs.csv holds, does the rest and writes runs.csv, also when it ends early. `runs` is
- * created by sf_runs_create. */
+ * created by sf_runs_create. SF_ERR_IO: the inputs have changed meanwhile; all rows are open then. */
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err);
 

@@ -83,6 +83,15 @@ static sf_status take_row(const piece *p, int k, sf_runs *runs, int64_t row, int
     return sf_runs_failed(runs, row, failure->text, err);
 }
 
+/* Some rows of the piece may be of the files before, others of those after. */
+static void open_changed(const piece *p, sf_runs *runs, const int64_t *row) {
+    bool changed = false;
+    for (int k = 0; k < p->count; k++)
+        changed |= p->failure[k].status != SF_OK && strstr(p->failure[k].text, SF_RUNNER_CHANGED);
+    for (int k = 0; k < p->count && changed; k++)
+        sf_runs_open(runs, row[k]);
+}
+
 static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh, sf_error *err) {
     sf_runner *runner = context;
     piece p;
@@ -95,6 +104,7 @@ static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row
             if (take_row(&p, k, runs, row[k], fresh, &own) != SF_OK && first.status == SF_OK)
                 first = own;
         }
+        open_changed(&p, runs, row);
         *err = first;
     }
     end_piece(&p);
@@ -103,7 +113,7 @@ static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row
 
 sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
     runner->figures_only = true;
-    int abreast = jobs < 1 ? 1 : jobs < SF_SWEEP_JOBS ? jobs : SF_SWEEP_JOBS;
+    int abreast = jobs < 1 ? 1 : jobs < SF_PROCESS_JOBS ? jobs : SF_PROCESS_JOBS;
     return (sf_sweep_engine){.run = run,
                              .context = runner,
                              .piece = sf_engine_is_local(&runner->engine) ? SF_SWEEP_PIECE * abreast

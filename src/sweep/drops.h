@@ -9,7 +9,6 @@
 
 enum {
     SF_SWEEP_PIECE = 32,       /* rows at a time, for each drop that runs side by side */
-    SF_SWEEP_JOBS = 8,         /* up to so many of them */
     SF_SWEEP_ELSEWHERE = 20000 /* rows at a time by another engine, a thousand jobs of 20, which waits for the
                                   slowest job of a piece */
 };

@@ -161,6 +161,7 @@ static sf_status check(const options *o, job *j, bool *known, sf_error *err) {
         sf_sweep_check_inputs(&j->plan, &j->campaign.inputs, err) != SF_OK)
         return err->status;
     j->campaign.plan = &j->plan;
+    j->campaign.look = sf_sweep_check_inputs;
     j->campaign.folder = o->directory;
     j->campaign.retry = o->retry;
     j->campaign.force = o->force;

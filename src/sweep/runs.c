@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sweep/runs.h"
 
+#include "core/hash.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
 #include <math.h>
@@ -183,7 +184,14 @@ static void put_row(FILE *out, const sf_runs *r, int64_t row) {
     fputc('\n', out);
 }
 
-sf_status sf_runs_write(const sf_runs *r, const char *path, sf_error *err) {
+/* Of what has been written under the partial name, before anybody else knows the file. */
+static sf_status hash_written(const sf_replacement *out, uint64_t *hash, sf_error *err) {
+    if (fflush(out->file) != 0)
+        return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", out->path);
+    return sf_plain_hash(out->partial, "table of the runs", SF_PLAIN_ANY, hash, err);
+}
+
+sf_status sf_runs_write(const sf_runs *r, const char *path, uint64_t *hash, sf_error *err) {
     sf_replacement out;
     FILE *file = sf_replace_open(path, &out, err);
     if (!file)
@@ -191,6 +199,7 @@ sf_status sf_runs_write(const sf_runs *r, const char *path, sf_error *err) {
     put_heading(file, r);
     for (int64_t row = 0; row < r->count; row++)
         put_row(file, r, row);
+    hash_written(&out, hash, err);
     return sf_replace_close(&out, err);
 }
 
@@ -265,11 +274,13 @@ static char *own_heading(const sf_runs *r) {
     return NULL;
 }
 
-sf_status sf_runs_read(sf_runs *r, const char *path, sf_error *err) {
+sf_status sf_runs_read(sf_runs *r, const char *path, uint64_t hash, sf_error *err) {
     char *text = NULL, *heading = own_heading(r);
+    size_t size = 0;
     if (!heading)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the runs");
-    else if (sf_plain_read(path, "table of the runs", SF_PLAIN_ANY, &text, NULL, err) == SF_OK &&
+    else if (sf_plain_read(path, "table of the runs", SF_PLAIN_ANY, &text, &size, err) == SF_OK &&
+             sf_hash_bytes(SF_HASH_START, text, size) == hash &&
              strncmp(text, heading, strlen(heading)) == 0) {
         char *rest = text + strlen(heading), *line;
         for (int64_t row = 0; row < r->count && (line = strsep(&rest, "\n")) && *line; row++)

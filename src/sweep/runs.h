@@ -45,9 +45,10 @@ int64_t sf_runs_count(const sf_runs *runs, sf_sweep_state state);
 /* Can the figures of the row be used: done, and not "do not use"? */
 bool sf_runs_usable(const sf_runs *runs, int64_t row);
 
-/* Writes runs.csv aside and renames it. */
-sf_status sf_runs_write(const sf_runs *runs, const char *path, sf_error *err);
-/* Reads what sf_runs_write wrote. Rows stay open where the file is of another table. */
-sf_status sf_runs_read(sf_runs *runs, const char *path, sf_error *err);
+/* Writes runs.csv aside and renames it. `hash`: of its text. */
+sf_status sf_runs_write(const sf_runs *runs, const char *path, uint64_t *hash, sf_error *err);
+/* Reads what sf_runs_write wrote. All rows stay open if the file is of another table or has another hash:
+ * something else has written it. */
+sf_status sf_runs_read(sf_runs *runs, const char *path, uint64_t hash, sf_error *err);
 
 #endif
