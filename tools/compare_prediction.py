@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compares the predictions for the 50 mm pad and the critical fall heights with the paper's measurements.
 
-    tools/compare_prediction.py [docs/validation.md]
+    tools/compare_prediction.py [PAGE.md]
 
 Reads out/eva35/fit.json, out/cfh50/cfh.json and out/cfh70/cfh.json (tools/identify_examples.sh makes them) and examples/data, and
-prints the tables, or writes them into the document in place of those between `<!-- comparison -->` and `<!-- end -->`.
+prints the tables, or writes them into a copy of docs/validation.md in place of those between `<!-- comparison -->` and `<!-- end -->`.
 """
 import csv
 import json
