@@ -401,6 +401,39 @@ static void all_three_find_more_than_drops(void **state) {
     program_tear_down(&place);
 }
 
+/* Where the maximum has no correction of its own for a predicted drop (its columns collapse), the prediction
+ * has the mean one of the measured drops: the states whose columns bear the drop keep their values. */
+static void a_prediction_without_offset_takes_the_mean(void **state) {
+    (void)state;
+    program_place place;
+    bench *b = malloc(sizeof *b);
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    sf_drop_inference inference;
+    sf_inference_options o = sf_inference_defaults(1);
+    sf_error err = SF_ERROR_INIT;
+    assert_true(b && random);
+    program_set_up(&place);
+    put_start(&place);
+    begin(&place, false, b);
+    measure(b, random);
+    map(b);
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+        b->y[b->fit.row[MEASURED] + kind] = NAN; /* less the columns, it is the offset */
+    o.chains.burn_in_rounds = 1;
+    o.chains.round = o.chains.most_steps = 40;
+    o.evidence_draws = 0;
+    o.leave_one_out = false;
+    assert_int_equal(sf_drop_infer(&b->fit, &o, &inference, &err), SF_OK);
+    for (int k = 0; k < inference.chains.chains * inference.chains.kept * inference.quantities; k++)
+        assert_true(isfinite(inference.chains.quantity[k]));
+    sf_drop_inference_free(&inference);
+    sf_mapping_free(&b->fit.result);
+    sf_fit_input_free(&b->in);
+    gsl_rng_free(random);
+    free(b);
+    program_tear_down(&place);
+}
+
 static void bad_data_get_one_sentence(void **state) {
     (void)state;
     static const struct {
@@ -496,6 +529,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_tell_more_than_each),
         cmocka_unit_test(all_three_find_more_than_drops),
+        cmocka_unit_test(a_prediction_without_offset_takes_the_mean),
         cmocka_unit_test(bad_data_get_one_sentence),
         cmocka_unit_test(no_points_are_taken_where_nothing_was_measured),
     };

@@ -52,6 +52,13 @@ static void observe_normal(const void *context, const double *u, uint64_t seed, 
     quantity[1] = pow((u[n - 1] - (n - 1)) / deviation_of(n - 1), 2);
 }
 
+/* The same, but the first has no value beyond 2.5 standard deviations, and the second never has one. */
+static void observe_gaps(const void *context, const double *u, uint64_t seed, double *quantity) {
+    observe_normal(context, u, seed, quantity);
+    quantity[0] = u[0] > 2.5 * deviation_of(0) ? NAN : u[0];
+    quantity[1] = NAN;
+}
+
 /* x normal, y normal about 0.5 x^2: mean of y 0.5, its variance 0.1^2 + 0.5, integral 1. */
 static double banana(const void *context, const double *u) {
     (void)context;
@@ -109,15 +116,21 @@ static void fill_start(int n, double factor, double *start, double *covariance) 
     }
 }
 
-static sf_chains run_normal(const int *n, sf_chains_options options) {
+typedef void observer(const void *context, const double *u, uint64_t seed, double *quantity);
+
+static sf_chains run_observed(const int *n, observer *observe, sf_chains_options options) {
     double start[TEN], covariance[TEN * TEN];
     const sf_target target = {
-        .parameters = *n, .log_density = normal, .context = n, .quantities = 2, .observe = observe_normal};
+        .parameters = *n, .log_density = normal, .context = n, .quantities = 2, .observe = observe};
     sf_error err = SF_ERROR_INIT;
     sf_chains chains;
     fill_start(*n, 0.5, start, covariance);
     assert_int_equal(sf_chains_run(&target, start, covariance, &options, &chains, &err), SF_OK);
     return chains;
+}
+
+static sf_chains run_normal(const int *n, sf_chains_options options) {
+    return run_observed(n, observe_normal, options);
 }
 
 /* ---- tests ---- */
@@ -147,6 +160,21 @@ static void test_correlated_normal(void **state) {
         if (i > 0)
             assert_close(product, 0.9, 4 * sqrt(2 / c.effective[i]));
     }
+    sf_chains_free(&c);
+}
+
+/* A few states without a value of a quantity do not keep the chains from their criteria. */
+static void test_missing_values(void **state) {
+    (void)state;
+    const int n = 4;
+    sf_chains c = run_observed(&n, observe_gaps, sf_chains_defaults(1));
+    int missing = 0;
+    for (int k = 0; k < c.chains * c.kept; k++)
+        missing += isnan(c.quantity[2 * k]); /* what was observed stays */
+    assert_in_range(missing, 1, c.chains * c.kept / 20);
+    assert_true(c.converged);
+    assert_true(c.rhat[n] < 1.02 && c.effective[n] > 400);
+    assert_true(isnan(c.rhat[n + 1]) && isnan(c.effective[n + 1])); /* no state has it */
     sf_chains_free(&c);
 }
 
@@ -511,6 +539,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rhat_and_effective_size),
         cmocka_unit_test(test_correlated_normal),
+        cmocka_unit_test(test_missing_values),
         cmocka_unit_test(test_evidence),
         cmocka_unit_test(test_banana),
         cmocka_unit_test(test_evidence_is_marked),

@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Computes the critical fall heights of the 50 mm and the 70 mm pad of examples/ into out/cfh50 and out/cfh70, and prints
-# the table of docs/cfh.md and docs/validation.md.
+# the table of docs/cfh.md.
 #
 #     tools/cfh_examples.sh            some minutes; finished drops of an earlier call are used again
-#     tools/cfh_examples.sh --docs     the same, and writes tables and picture into docs/
+#     tools/cfh_examples.sh --docs     the same, and writes table and picture into docs/
+#
+# docs/validation.md has the table of the predictions, which stay as they were made (tools/compare_page.sh): it is never written;
+# with --docs the table goes into a copy of that page, $PAGE (default out/validation.md, made anew and compared).
 #
 # The intervals come from the draws of the foam in $POSTERIOR (default out/eva35/posterior, if that is there).
 # The programs are those in build/bin, or in $SF_BIN_DIR.
@@ -25,7 +28,9 @@ for pad in 50 70; do
         --rig examples/data/penta2018_table2_70mm.csv ${draws[@]+"${draws[@]}"} >&2
 done
 [ "${1:-}" != --docs ] || cp out/cfh50/cfh.png docs/images/cfh_eva50.png
-python3 - "${1:-}" <<'PYTHON'
+page=${PAGE:-out/validation.md}
+[ "${1:-}" != --docs ] || [ -n "${PAGE:-}" ] || cp docs/validation.md "$page"
+python3 - "${1:-}" "$page" <<'PYTHON'
 import json
 import sys
 
@@ -60,10 +65,11 @@ rows = [HEAD, ["---:", "---"] + ["---:"] * (len(HEAD) - 2), row_of(50), row_of(7
 table = ["| " + " | ".join(row) + " |" for row in rows]
 print("\n".join(table))
 if sys.argv[1] == "--docs":
-    for path in ("docs/cfh.md", "docs/validation.md"):
+    for path in ("docs/cfh.md", sys.argv[2]):
         with open(path) as stream:
             lines = stream.read().split("\n")
         begin = next(k for k, line in enumerate(lines) if line.startswith("| %s |" % HEAD[0]))
         with open(path, "w") as stream:
             stream.write("\n".join(lines[:begin] + table + lines[begin + len(rows):]))
 PYTHON
+[ "${1:-}" != --docs ] || [ -n "${PAGE:-}" ] || tools/compare_page.sh docs/validation.md "$page"

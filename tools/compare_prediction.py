@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compares the predictions for the 50 mm pad and the critical fall heights with the paper's measurements.
 
-    tools/compare_prediction.py [docs/validation.md]
+    tools/compare_prediction.py [PAGE.md]
 
 Reads out/eva35/fit.json, out/cfh50/cfh.json and out/cfh70/cfh.json (tools/identify_examples.sh makes them) and examples/data, and
-prints the tables, or writes them into the document in place of those between `<!-- comparison -->` and `<!-- end -->`.
+prints the tables, or writes them into a copy of docs/validation.md in place of those between `<!-- comparison -->` and `<!-- end -->`.
 """
 import csv
 import json
@@ -28,7 +28,12 @@ def off(value, measured):
 
 
 def verdict(measured, low, high):
-    return "yes" if low <= measured <= high else "**no**"
+    inside = (low is not None and low <= measured) and (high is None or measured <= high)  # None: open above
+    return "yes" if inside else "**no**"
+
+
+def interval(form, low, high):
+    return "open above" if low is None else "from " + form % low + ", open above" if high is None else (form + " to " + form) % (low, high)
 
 
 def drops():
@@ -43,11 +48,10 @@ def drops():
             p = found["eva50-v" + speed, key]
             measured = float(row[real]) if real else float(row["t_f_ms"]) - float(row["t_i_ms"])
             others = []
-            for value in (float(row[simulated]) if simulated else None, FIRST[speed].get(key)):
+            for value in (float(row[simulated]) if simulated else None, FIRST[speed].get(key), p["median"]):
                 others += ["–", ""] if value is None else [form % value, off(value, measured)]
-            yield "| " + " | ".join(["eva50-v" + speed, name, form % measured, *others, form % p["median"], off(p["median"], measured),
-                                     (form + " to " + form) % (p["low95"], p["high95"]),
-                                     verdict(measured, p["low95"], p["high95"])]) + " |"
+            yield "| " + " | ".join(["eva50-v" + speed, name, form % measured, *others,
+                                     interval(form, p["low95"], p["high95"]), verdict(measured, p["low95"], p["high95"])]) + " |"
 
 
 def heights():

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes sections of a report.html as Markdown into a document.
 
-    tools/report_sections.py report.html document.md
+    tools/report_sections.py report.html document.md [OTHER...]
 
 Replaces the text between the lines `<!-- NAME -->` and `<!-- end -->` of the document by the paragraphs and tables of the
-section whose heading, in small letters with hyphens, is NAME. A name that the report does not have is an error.
+section whose heading, in small letters with hyphens, is NAME. A name that the report does not have is an error,
+unless it is one of OTHER: those sections come from elsewhere and stay as they are.
 """
 import re
 import sys
@@ -39,7 +40,7 @@ def sections(path):
     return found
 
 
-def main(report, document):
+def main(report, document, *others):
     found, inside, out = sections(report), False, []
     for line in open(document, encoding="utf-8").read().splitlines():
         if line == "<!-- end -->":
@@ -47,7 +48,7 @@ def main(report, document):
         if not inside:
             out.append(line)
         name = re.fullmatch(r"<!-- ([a-z,-]+) -->", line)
-        if name and name[1] != "end":
+        if name and name[1] not in ("end", *others):
             if name[1] not in found:
                 sys.exit(f"report_sections.py: {report} has no section {name[1]}")
             out += "\n".join(found[name[1]]).strip().splitlines()
@@ -57,6 +58,6 @@ def main(report, document):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit("usage: tools/report_sections.py report.html document.md")
+    if len(sys.argv) < 3:
+        sys.exit("usage: tools/report_sections.py report.html document.md [OTHER...]")
     main(*sys.argv[1:])

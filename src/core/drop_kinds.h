@@ -12,15 +12,15 @@
 
 /* X(name, key in the fit file, key in response_error, default of the standard deviation, standard deviation
  * of the model's error at kappa = 1, stem and unit in fit.json, name and unit in reports, digits there,
- * always shown, what it needs of a drop). The key of a standard deviation is SF_DROP_SD(key in
- * response_error), in both files. */
+ * always shown, what it needs of a drop, is it above every value where the foam collapses). The key of a
+ * standard deviation is SF_DROP_SD(key in response_error), in both files. */
 /* clang-format off */
 #define SF_DROP_KINDS(X)                                                                                       \
-    X(A_MAX, "a_max_g", "a_max", 0.02, 0.01, "a_max", "_g", "a_max", "g", 1, true, "contact")                     \
-    X(HIC, "HIC", "HIC", 0.04, 0.02, "hic", "", "HIC", "", 0, true, "contact")                                    \
-    X(WINDOW, "HIC_window_ms", "HIC_window", 0.03, 0.02, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact") \
-    X(REBOUND, "v_rebound_m_s", "v_rebound", 0.03, 0.02, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound") \
-    X(CONTACT, "contact_time_ms", "contact_time", 0.03, 0.02, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound")
+    X(A_MAX, "a_max_g", "a_max", 0.02, 0.01, "a_max", "_g", "a_max", "g", 1, true, "contact", true)                     \
+    X(HIC, "HIC", "HIC", 0.04, 0.02, "hic", "", "HIC", "", 0, true, "contact", true)                                    \
+    X(WINDOW, "HIC_window_ms", "HIC_window", 0.03, 0.02, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact", false) \
+    X(REBOUND, "v_rebound_m_s", "v_rebound", 0.03, 0.02, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound", false) \
+    X(CONTACT, "contact_time_ms", "contact_time", 0.03, 0.02, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound", false)
 /* clang-format on */
 #define SF_DROP_SD(key) key "_sd"
 
@@ -37,6 +37,9 @@ typedef struct sf_drop_kind_info {
     int digits;
     bool always; /* in reports, measured or not */
     const char *needs;
+    /* Where the foam collapses the number is above every value: so are peaks. False: no order, as a pulse
+     * that has no end has no window. */
+    bool above_all;
 } sf_drop_kind_info;
 
 /* Static storage. */

@@ -70,15 +70,17 @@ typedef struct weighted {
     int count;
 } weighted;
 
-static int add_states(const sf_drop_inference *in, const double *column, int width, double weight,
-                      weighted *w) {
-    int states = states_of(in), first = w->count;
-    for (int s = 0; s < states; s++)
-        if (isfinite(column[s * width])) {
-            w->value[w->count] = column[s * width];
-            w->weight[w->count++] = weight / states;
-        }
-    return w->count - first;
+/* A state without a value, as its foam collapses, counts as infinite if `above_all`, else not at all. */
+static void add_states(const sf_drop_inference *in, const double *column, int width, double weight,
+                       bool above_all, weighted *w) {
+    int states = states_of(in);
+    for (int s = 0; s < states; s++) {
+        double value = column[s * width];
+        if (!isfinite(value) && !above_all)
+            continue;
+        w->value[w->count] = isfinite(value) ? value : INFINITY;
+        w->weight[w->count++] = weight / states;
+    }
 }
 
 static sf_status take_quantiles(weighted *w, int count, const double *probability, double *value,
@@ -113,13 +115,14 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
                                     const double *probability, double *value, sf_error *err) {
     weighted w;
     int most = 0;
+    bool above_all = sf_drop_kind_get(a->model[0]->quantity[quantity].kind)->above_all;
     for (int m = 0; m < a->models; m++)
         most += states_of(a->model[m]);
     if (make_weighted(most, &w, err) == SF_OK) {
         for (int m = 0; m < a->models; m++)
             if (model < 0 ? a->weight[m] > 0 : m == model)
                 add_states(a->model[m], &a->model[m]->chains.quantity[quantity], a->model[m]->quantities,
-                           model < 0 ? a->weight[m] : 1, &w);
+                           model < 0 ? a->weight[m] : 1, above_all, &w);
         take_quantiles(&w, count, probability, value, err);
         for (int q = 0; q < count; q++)
             value[q] = exp(value[q]);
@@ -145,7 +148,7 @@ sf_status sf_drop_parameter_quantiles(const sf_drop_inference *in, int parameter
                                       const double *probability, double *value, sf_error *err) {
     weighted w;
     if (make_weighted(states_of(in), &w, err) == SF_OK) {
-        add_states(in, &in->chains.sample[parameter], in->parameters, 1, &w);
+        add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, &w);
         take_quantiles(&w, count, probability, value, err);
     }
     free(w.value);

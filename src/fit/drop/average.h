@@ -35,7 +35,9 @@ int sf_drop_average_best(const sf_drop_average *average);
 bool sf_drop_average_reached(const sf_drop_average *average);
 
 /* Quantiles of a predicted number (index of the inference's quantities), in its unit, over all models by
- * their weights; of one model with `model` >= 0. NaN if no draw has a value. */
+ * their weights; of one model with `model` >= 0. A draw whose foam collapses counts as above every value of a
+ * number that is `above_all` (drop_kinds.h), and a quantile among these is INFINITY; of the other numbers the
+ * quantiles are those of the draws that have a value. NaN if none counts. */
 sf_status sf_drop_average_quantiles(const sf_drop_average *average, int model, int quantity, int count,
                                     const double *probability, double *value, sf_error *err);
 /* Weight of the draws that have no value of it: the foam of the columns collapses. */

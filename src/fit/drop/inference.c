@@ -154,7 +154,8 @@ static double mean_offset(const sf_drop_fit *fit, int kind) {
 }
 
 /* Offset of the columns at the speeds as given: the fit's for what was measured; from the simulations with
- * the result for what is predicted or, where one failed, the mean of the measured drops. */
+ * the result for what is predicted or, where the simulation or its columns failed, the mean of the measured
+ * drops. */
 static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     int n = responses_of(fit), measured = fit->row[fit->measured_drops];
@@ -168,8 +169,9 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     for (int k = 0; k < n; k++)
         in->offset[k] = k < measured ? fit->result.offset[k] : fit->y[k] - in->offset[k];
     for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
-        for (int kind = 0; kind < SF_FIT_SAMPLES && *fit->simulated[d].failure; kind++)
-            in->offset[fit->row[d] + kind] = mean_offset(fit, kind);
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            if (*fit->simulated[d].failure || !isfinite(in->offset[fit->row[d] + kind]))
+                in->offset[fit->row[d] + kind] = mean_offset(fit, kind);
     sf_foam_card_free(&card);
     return err->status;
 }

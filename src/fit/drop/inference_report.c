@@ -35,6 +35,41 @@ static void find_worst(const sf_chains *c, double *rhat, double *effective) {
     }
 }
 
+/* ---- quantiles: low, median, high; INFINITY: among the draws that collapse ---- */
+
+enum { SHARE = 24, SHOWN = 64 };
+
+/* "0.4 %"; more than nothing does not read "0 %". */
+static const char *share_text(double share, char text[SHARE]) {
+    if (share > 0 && share < 1e-4)
+        snprintf(text, SHARE, "less than 0.01 %%");
+    else
+        snprintf(text, SHARE, "%.3g %%", 100 * share);
+    return text;
+}
+
+static const char *median_text(int digits, const double *value, char text[SHOWN]) {
+    if (isnan(value[1]))
+        snprintf(text, SHOWN, "–");
+    else if (isinf(value[1]))
+        snprintf(text, SHOWN, "above what the columns reach");
+    else
+        snprintf(text, SHOWN, "%.*f", digits, value[1]);
+    return text;
+}
+
+static const char *interval_text(int digits, const double *value, char text[SHOWN]) {
+    if (isnan(value[1]))
+        snprintf(text, SHOWN, "–");
+    else if (isinf(value[0]))
+        snprintf(text, SHOWN, "above what the columns reach");
+    else if (isinf(value[2]))
+        snprintf(text, SHOWN, "from %.*f, open above", digits, value[0]);
+    else
+        snprintf(text, SHOWN, "%.*f to %.*f", digits, value[0], digits, value[2]);
+    return text;
+}
+
 /* ---- report.html ---- */
 
 static void put_models(FILE *f, const sf_drop_average *a) {
@@ -72,23 +107,32 @@ static void put_models(FILE *f, const sf_drop_average *a) {
     sf_html_table_end(&table);
 }
 
-static void put_interval(sf_html_table *table, int digits, const double *value) {
-    if (isfinite(value[0]) && isfinite(value[2]))
-        sf_html_cell(table, "%.*f to %.*f", digits, value[0], digits, value[2]);
-    else
-        sf_html_cell(table, "–");
+static bool has_missing(const sf_drop_average *a) {
+    for (int q = 0; q < a->model[0]->quantities; q++)
+        if (sf_drop_average_missing(a, q) > 0)
+            return true;
+    return false;
 }
 
-static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *err) {
-    const sf_drop_inference *in = a->model[0];
-    char text[LABEL];
-    if (in->quantities == 0)
-        return SF_OK;
-    sf_html_heading(f, "Predictions, averaged over the models");
+static void put_prediction_notes(FILE *f, const sf_drop_average *a) {
     sf_html_note(
         f, "Medians and 95 %% intervals of the posterior predictive distribution. They hold the "
            "uncertainty of the parameters, of the form (by the weights), of a loading curve that "
            "differs from every form, and of the model's other errors. Not in them: the discretisation.");
+    if (has_missing(a))
+        sf_html_note(
+            f, "Of draws whose columns collapse (the foam is too soft for the drop), a_max and HIC count as "
+               "above every value: an end of an interval among them is open. The HIC window has no such "
+               "order: its median and interval are those of the draws that do not collapse.");
+}
+
+static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *err) {
+    const sf_drop_inference *in = a->model[0];
+    char text[LABEL], share[SHARE], shown[SHOWN];
+    if (in->quantities == 0)
+        return SF_OK;
+    sf_html_heading(f, "Predictions, averaged over the models");
+    put_prediction_notes(f, a);
     sf_html_table table = sf_html_table_begin(
         f, "dense", "drop|quantity|>median|>95 %|>95 % of the model with the largest weight alone");
     for (int q = 0; q < in->quantities; q++) {
@@ -101,14 +145,14 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
         snprintf(text, sizeof text, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
         sf_html_row(&table);
         if (missing > 0)
-            sf_html_cell(&table, "%s (%.0f %% of the draws without a value)",
-                         in->fit->input->drop[in->quantity[q].drop].name, 100 * missing);
+            sf_html_cell(&table, "%s (the columns of %s of the draws collapse)",
+                         in->fit->input->drop[in->quantity[q].drop].name, share_text(missing, share));
         else
             sf_html_cell(&table, "%s", in->fit->input->drop[in->quantity[q].drop].name);
         sf_html_cell(&table, "%s", text);
-        sf_html_number(&table, about->digits, all[1]);
-        put_interval(&table, about->digits, all);
-        put_interval(&table, about->digits, best);
+        sf_html_cell(&table, "%s", median_text(about->digits, all, shown));
+        sf_html_cell(&table, "%s", interval_text(about->digits, all, shown));
+        sf_html_cell(&table, "%s", interval_text(about->digits, best, shown));
     }
     sf_html_table_end(&table);
     return SF_OK;
@@ -323,6 +367,7 @@ static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf
     sf_json_text(j, "drop", in->fit->input->drop[in->quantity[q].drop].name);
     sf_json_text(j, "quantity", about->key);
     json_quantiles(j, value);
+    sf_json_text(j, "open", isnan(value[1]) ? NULL : isinf(value[2]) ? "above" : "no");
     sf_json_number(j, "share_of_draws_without_value", sf_drop_average_missing(a, q));
     sf_json_close(j, '}');
     return SF_OK;
@@ -450,8 +495,23 @@ void sf_inference_print_chains(FILE *f, const sf_drop_inference *in) {
     fflush(f);
 }
 
-sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
+static sf_status print_prediction(FILE *f, const sf_drop_average *a, int q, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
+    const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
+    double value[3], missing = sf_drop_average_missing(a, q);
+    char median[SHOWN], interval[SHOWN], share[SHARE];
+    if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
+        return err->status;
+    fprintf(f, "  %-20s %s %s %s (95 %%: %s)", in->fit->input->drop[in->quantity[q].drop].name, about->name,
+            median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
+            interval_text(about->digits, value, interval));
+    if (missing > 0)
+        fprintf(f, "; the columns of %s of the draws collapse", share_text(missing, share));
+    fputc('\n', f);
+    return SF_OK;
+}
+
+sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
     char text[LABEL];
     fputs("\nPosterior by Markov chains:\n", f);
     for (int m = 0; m < a->models; m++)
@@ -459,15 +519,9 @@ sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
                 a->predictive[m], a->model[m]->evidence.log_value, label_of(a, m, text));
     for (int m = 0; m < a->failed; m++)
         fprintf(f, "  weight 0      FAILED: %s: %s\n", a->failure[m].label, a->failure[m].sentence);
-    for (int q = 0; q < in->quantities; q++) {
-        const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
-        double value[3];
-        if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
+    for (int q = 0; q < a->model[0]->quantities; q++)
+        if (print_prediction(f, a, q, err) != SF_OK)
             return err->status;
-        fprintf(f, "  %-20s %s %.*f %s (95 %%: %.*f to %.*f)\n",
-                in->fit->input->drop[in->quantity[q].drop].name, about->name, about->digits, value[1],
-                about->unit, about->digits, value[0], about->digits, value[2]);
-    }
     if (!sf_drop_average_reached(a))
         fputs("  The chains did NOT reach their criteria: see report.html.\n", f);
     return SF_OK;

@@ -142,11 +142,21 @@ static void observe(work *w) {
     }
 }
 
-static bool has_value(const double *x, int count) {
-    int k = 0;
-    while (k < count && !isfinite(x[k]))
-        k++;
-    return k < count;
+/* States without a value take the largest one that others have; false: there is none. With NaN there is no
+ * R-hat, with infinity no variance; without these states nobody would see chains that differ in how often
+ * there is no value. So the diagnostics are those of the values cut at their largest, which see both. Of
+ * peaks, which are missing where they are above all others, this keeps the order; of a number without an
+ * order it stands for "none".
+ */
+static bool fill_missing(double *x, int count) {
+    double largest = -INFINITY;
+    for (int k = 0; k < count; k++)
+        if (isfinite(x[k]))
+            largest = fmax(largest, x[k]);
+    for (int k = 0; k < count; k++)
+        if (!isfinite(x[k]))
+            x[k] = largest;
+    return isfinite(largest);
 }
 
 /* Diagnostics of one column of `values` [chains][room][width]. */
@@ -155,7 +165,7 @@ static bool judge(work *w, const double *values, int width, int column, int whic
     for (int c = 0; c < r->chains; c++)
         for (int k = 0; k < r->kept; k++)
             w->column[c * r->kept + k] = values[(c * w->room + k) * width + column];
-    if (!has_value(w->column, r->chains * r->kept)) {
+    if (!fill_missing(w->column, r->chains * r->kept)) {
         r->rhat[which] = r->effective[which] = NAN;
         return true;
     }

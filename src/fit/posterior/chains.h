@@ -40,7 +40,8 @@ typedef struct sf_chains {
     double *sample;        /* [chains][kept][parameters]; owned */
     double *log_density;   /* [chains][kept] of the target; owned */
     double *quantity;      /* [chains][kept][quantities]; owned */
-    double *rhat;          /* [parameters + quantities]; NaN: a quantity that no state has; owned */
+    double *rhat;          /* [parameters + quantities]; NaN: a quantity that no state has. A state
+                              without it counts with the largest value of the others; owned */
     double *effective;     /* [parameters + quantities]; owned */
     double accepted;       /* share of the proposals after burn-in, an errand being one */
     long long evaluations; /* of the target */

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Predictions of a posterior some of whose draws have no value, as their foam collapses: peaks count as above
+ * every value, the HIC window is that of the others, and table, terminal and fit.json say so. */
+#include "fit/drop/inference_report.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+enum { CHAINS = 3, KEPT = 333, STATES = CHAINS * KEPT, KINDS = 3, PARAMETERS = 2 };
+
+/* States 1 to STATES, of which the last `collapsed` have no value; the others the logarithm of their number.
+ */
+typedef struct posterior {
+    sf_fit_input input;
+    sf_drop_fit fit;
+    sf_drop_inference inference;
+    sf_drop_average average;
+    double quantity[STATES * KINDS], sample[STATES * PARAMETERS], diagnostic[PARAMETERS + KINDS];
+} posterior;
+
+static posterior *posterior_new(int collapsed) {
+    posterior *p = calloc(1, sizeof *p);
+    assert_non_null(p);
+    p->input.form.curve = sf_curve_form_find("gas");
+    p->input.drop_count = 1;
+    p->input.drop[0].predicted = true;
+    snprintf(p->input.drop[0].name, sizeof p->input.drop[0].name, "held");
+    p->fit.input = &p->input;
+    p->inference = (sf_drop_inference){.fit = &p->fit,
+                                       .parameters = PARAMETERS,
+                                       .quantities = KINDS,
+                                       .chains = {.parameters = PARAMETERS,
+                                                  .quantities = KINDS,
+                                                  .chains = CHAINS,
+                                                  .kept = KEPT,
+                                                  .sample = p->sample,
+                                                  .quantity = p->quantity,
+                                                  .rhat = p->diagnostic,
+                                                  .effective = p->diagnostic,
+                                                  .converged = true},
+                                       .evidence = {.trusted = true}};
+    for (int kind = 0; kind < KINDS; kind++)
+        p->inference.quantity[kind] = (sf_drop_quantity){.drop = 0, .kind = kind};
+    for (int s = 0; s < STATES; s++)
+        for (int kind = 0; kind < KINDS; kind++)
+            p->quantity[s * KINDS + kind] = s < STATES - collapsed ? log(s + 1) : NAN;
+    p->average = (sf_drop_average){
+        .models = 1, .model = {&p->inference}, .weight = {1}, .evidence_weight = {1}, .by_evidence = true};
+    return p;
+}
+
+static void assert_quantiles(const posterior *p, int kind, double low, double median, double high) {
+    static const double probability[] = {0.025, 0.5, 0.975};
+    const double expected[] = {low, median, high};
+    double value[3];
+    sf_error err = SF_ERROR_INIT;
+    for (int model = -1; model < 1; model++) { /* the average, and the model alone */
+        assert_int_equal(sf_drop_average_quantiles(&p->average, model, kind, 3, probability, value, &err),
+                         SF_OK);
+        for (int q = 0; q < 3; q++)
+            if (!(value[q] == expected[q] || fabs(value[q] / expected[q] - 1) < 1e-9))
+                fail_msg("kind %d, quantile %d: %g in place of %g", kind, q, value[q], expected[q]);
+    }
+}
+
+static void collapsed_draws_are_above_every_peak(void **state) {
+    (void)state;
+    static const struct {
+        int collapsed;
+        double low, median, high; /* of a_max and HIC */
+    } cases[] = {{0, 25, 500, 975},
+                 {20, 25, 500, 975}, /* fewer than the tail */
+                 {40, 25, 500, INFINITY},
+                 {600, 25, INFINITY, INFINITY},
+                 {990, INFINITY, INFINITY, INFINITY}};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        posterior *p = posterior_new(cases[k].collapsed);
+        double rest = STATES - cases[k].collapsed;
+        assert_quantiles(p, SF_FIT_A_MAX, cases[k].low, cases[k].median, cases[k].high);
+        assert_quantiles(p, SF_FIT_HIC, cases[k].low, cases[k].median, cases[k].high);
+        assert_quantiles(p, SF_FIT_WINDOW, ceil(0.025 * rest), ceil(0.5 * rest), ceil(0.975 * rest));
+        assert_true(fabs(sf_drop_average_missing(&p->average, SF_FIT_A_MAX) - 1 + rest / STATES) < 1e-12);
+        free(p);
+    }
+    posterior *p = posterior_new(STATES); /* nothing but collapse: no window at all */
+    assert_quantiles(p, SF_FIT_A_MAX, INFINITY, INFINITY, INFINITY);
+    double value, half = 0.5;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_drop_average_quantiles(&p->average, -1, SF_FIT_WINDOW, 1, &half, &value, &err),
+                     SF_OK);
+    assert_true(isnan(value));
+    free(p);
+}
+
+/* What a writer writes. */
+typedef sf_status write_part(FILE *file, const sf_drop_average *average, sf_error *err);
+
+static sf_status write_json(FILE *file, const sf_drop_average *average, sf_error *err) {
+    sf_json json = {.file = file, .empty = true};
+    sf_json_open(&json, NULL, '{');
+    sf_inference_json(&json, average, err);
+    sf_json_close(&json, '}');
+    return err->status;
+}
+
+static char *text_of(write_part *write, int collapsed) {
+    posterior *p = posterior_new(collapsed);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    sf_error err = SF_ERROR_INIT;
+    assert_non_null(file);
+    assert_int_equal(write(file, &p->average, &err), SF_OK);
+    fclose(file);
+    free(p);
+    return text;
+}
+
+static void assert_says(write_part *write, int collapsed, const char *part) {
+    char *text = text_of(write, collapsed);
+    if (!strstr(text, part))
+        fail_msg("%d collapsed: no \"%s\" in:\n%s", collapsed, part, text);
+    free(text);
+}
+
+static void every_output_says_open(void **state) {
+    (void)state;
+    assert_says(sf_inference_print, 0, "a_max 500.0 g (95 %: 25.0 to 975.0)\n");
+    assert_says(sf_inference_print, 4, "a_max 500.0 g (95 %: 25.0 to 975.0); the columns of 0.4 % of the");
+    assert_says(sf_inference_print, 40, "HIC 500  (95 %: from 25, open above); the columns of 4 % of the");
+    assert_says(sf_inference_print, 600, "a_max above what the columns reach  (95 %: from 25.0, open above)");
+    assert_says(sf_inference_html, 4, "held (the columns of 0.4 % of the draws collapse)");
+    assert_says(sf_inference_html, 4, "The HIC window has no such order");
+    assert_says(sf_inference_html, 40, "from 25.0, open above");
+    assert_says(sf_inference_html, 990, "above what the columns reach");
+    assert_says(write_json, 0, "\"high95\": 975,\n        \"open\": \"no\"");
+    assert_says(write_json, 40, "\"high95\": null,\n        \"open\": \"above\"");
+    assert_says(write_json, 600, "\"median\": null,\n        \"low95\": 25,\n        \"high95\": null");
+    assert_says(write_json, STATES, "\"high95\": null,\n        \"open\": null"); /* of the window */
+    assert_says(write_json, 4, "\"share_of_draws_without_value\": 0.004004");
+    char *text = text_of(sf_inference_html, 0);
+    assert_null(strstr(text, "collapse"));
+    free(text);
+    text = text_of(write_json, 40);
+    assert_null(strstr(text, "inf,")); /* JSON has no infinity */
+    free(text);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(collapsed_draws_are_above_every_peak),
+        cmocka_unit_test(every_output_says_open),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
