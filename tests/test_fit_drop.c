@@ -553,8 +553,9 @@ static void put_measured(const program_place *place, const char *name, double si
     assert_int_equal(fclose(file), 0);
 }
 
-/* Measured curves of drops are read and filtered as by softfall-post --reference. */
-static void measured_curves_are_filtered_like_the_simulated(void **state) {
+/* Measured curves of drops are read and filtered as by softfall-post --reference. The model's side:
+ * test_joint. */
+static void measured_curves_are_read_and_filtered(void **state) {
     (void)state;
     static const struct {
         const char *text, *sentence;
@@ -906,7 +907,7 @@ int main(void) {
         cmocka_unit_test(bad_input_gets_one_sentence),
         cmocka_unit_test(every_unknown_is_identified),
         cmocka_unit_test(common_start_values_are_for_the_models_that_use_them),
-        cmocka_unit_test(measured_curves_are_filtered_like_the_simulated),
+        cmocka_unit_test(measured_curves_are_read_and_filtered),
         cmocka_unit_test(hidden_foam_is_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),
         cmocka_unit_test(killed_fit_ends_with_the_same_material),

@@ -525,6 +525,80 @@ static void no_points_are_taken_where_nothing_was_measured(void **state) {
     program_tear_down(&place);
 }
 
+/* The samples of the model have the lower class of the measured curve: a lower peak, the same impulse. */
+static void a_model_has_the_filter_of_the_measured_curve(void **state) {
+    (void)state;
+    enum { SAMPLES = 80 };
+    static const double classes[] = {0, 1000, 60};
+    double time[SAMPLES], y[3][SF_FIT_SAMPLES + SAMPLES], peak[3] = {0}, sum[3] = {0}, u[UNKNOWNS];
+    program_place place;
+    bench b;
+    program_set_up(&place);
+    put_start(&place);
+    begin(&place, false, &b);
+    for (int k = 0; k < UNKNOWNS; k++)
+        u[k] = log(truth[k]);
+    for (int k = 0; k < SAMPLES; k++)
+        time[k] = 0.5e-3 * (k - 10);
+    sf_fit_drop *drop = &b.in.drop[0];
+    drop->samples = SAMPLES;
+    drop->sample_time = time;
+    drop->sample_scale = 1;
+    for (int c = 0; c < 3; c++) {
+        sf_error err = SF_ERROR_INIT;
+        drop->sample_class = classes[c];
+        assert_int_equal(respond(&b, b.real, 1, u, y[c], &err), SF_OK);
+        for (int k = 0; k < SAMPLES; k++) {
+            peak[c] = fmax(peak[c], y[c][SF_FIT_SAMPLES + k]);
+            sum[c] += y[c][SF_FIT_SAMPLES + k];
+        }
+    }
+    assert_memory_equal(y[0], y[1], sizeof y[0]);
+    if (!(peak[2] < 0.995 * peak[1] && peak[2] > 0.7 * peak[1] && fabs(sum[2] / sum[1] - 1) < 0.01))
+        fail_msg("CFC 60: peak %g of %g g, sum %g of %g", peak[2], peak[1], sum[2], sum[1]);
+    drop->samples = 0;
+    drop->sample_time = NULL;
+    sf_fit_input_free(&b.in);
+    program_tear_down(&place);
+}
+
+/* Below the reference rate the law has no effect of the rate: without a factor in the material it is the
+ * slowest test's. */
+static void the_reference_rate_is_that_of_the_slowest_test(void **state) {
+    (void)state;
+    static const struct {
+        const char *material, *data;
+        double reference;
+    } cases[] = {{"", "cushions = ( { " CUSHION "points = ( [2.0, 60.0] ); } );\n", 1},
+                 {"", TEST, 0.1},
+                 {"", "compressions = ( { file = \"test.csv\"; rate = \"5 1/s\"; } );\n", 1},
+                 {"rate_factor = 0.2; rate_reference = \"0.5 1/s\";\n", TEST, 0.5}};
+    program_place place;
+    program_set_up(&place);
+    put_start(&place);
+    FILE *file = fopen(program_path(&place, "test.csv"), "w");
+    assert_non_null(file);
+    fputs("strain,stress_kPa\n", file);
+    for (int i = 0; i <= 40; i++)
+        fprintf(file, "%.3f,%.3f\n", 0.0125 * i, 100 * 0.0125 * i);
+    assert_int_equal(fclose(file), 0);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        sf_fit_input in;
+        sf_error err = SF_ERROR_INIT;
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"start.csv\"; HU = 0.1;\n%s",
+                 cases[k].material);
+        program_write_text(&place, "start.cfg", text);
+        snprintf(text, sizeof text, START "%s", cases[k].data);
+        if (sf_fit_input_read(program_write_text(&place, "fit.cfg", text), 0, &in, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_true(fabs(in.start[SF_PARAMETER_RATE_REFERENCE] / cases[k].reference - 1) < 1e-12);
+        sf_fit_input_free(&in);
+    }
+    program_tear_down(&place);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_tell_more_than_each),
@@ -532,6 +606,8 @@ int main(void) {
         cmocka_unit_test(a_prediction_without_offset_takes_the_mean),
         cmocka_unit_test(bad_data_get_one_sentence),
         cmocka_unit_test(no_points_are_taken_where_nothing_was_measured),
+        cmocka_unit_test(a_model_has_the_filter_of_the_measured_curve),
+        cmocka_unit_test(the_reference_rate_is_that_of_the_slowest_test),
     };
     gsl_set_error_handler_off();
     return cmocka_run_group_tests(tests, NULL, NULL);

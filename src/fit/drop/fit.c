@@ -43,21 +43,39 @@ static sf_status check_values(const sf_fit_drop *drop, const double *y, const ch
     return SF_OK;
 }
 
-/* Scaled responses of one drop from its figures and its filtered curve. */
+/* The curve, which has CFC 1000, with the lower class of the measured one. */
+static sf_status filter_like_measured(const sf_series *curve, double cfc, sf_series *filtered,
+                                      sf_error *err) {
+    sf_series uniform = {0};
+    if (sf_signal_resample(curve, sf_signal_rate(curve), &uniform, err) == SF_OK)
+        sf_signal_filter_cfc(&uniform, cfc, filtered, err);
+    sf_series_free(&uniform);
+    return err->status;
+}
+
+static sf_status take_samples(const sf_fit_drop *drop, const sf_series *curve, double *y, sf_error *err) {
+    double contact = 0, end = curve->time[curve->count - 1];
+    if (sf_contact_instant(curve, drop->name, &contact, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < drop->samples; k++) {
+        double time = contact + drop->sample_time[k];
+        y[k] = time <= end ? sf_series_at(curve, time) / drop->sample_scale : 0;
+    }
+    return SF_OK;
+}
+
+/* Scaled responses of one drop from its figures and its curve, which has CFC 1000. */
 static sf_status respond(const sf_fit_drop *drop, const sf_columns_figures *figures, const sf_series *curve,
                          double *y, sf_error *err) {
-    double contact = 0;
+    sf_series filtered = {0};
     sf_drop_values_scale(figures, y);
     if (drop->samples == 0)
         return SF_OK;
-    if (sf_contact_instant(curve, drop->name, &contact, err) != SF_OK)
-        return err->status;
-    double end = curve->time[curve->count - 1];
-    for (int k = 0; k < drop->samples; k++) {
-        double time = contact + drop->sample_time[k];
-        y[SF_FIT_SAMPLES + k] = time <= end ? sf_series_at(curve, time) / drop->sample_scale : 0;
-    }
-    return SF_OK;
+    bool lower = drop->sample_class > 0 && drop->sample_class < 1000;
+    if (!lower || filter_like_measured(curve, drop->sample_class, &filtered, err) == SF_OK)
+        take_samples(drop, lower ? &filtered : curve, &y[SF_FIT_SAMPLES], err);
+    sf_series_free(&filtered);
+    return err->status;
 }
 
 static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
@@ -157,6 +175,7 @@ static uint64_t hash_inputs(const sf_drop_fit *fit) {
         }
         hash = sf_hash(hash, &drop->samples, sizeof drop->samples);
         hash = sf_hash(hash, &drop->sample_scale, sizeof drop->sample_scale);
+        hash = sf_hash(hash, &drop->sample_class, sizeof drop->sample_class);
         hash = sf_hash(hash, drop->sample_time, (size_t)drop->samples * sizeof *drop->sample_time);
     }
     return hash;

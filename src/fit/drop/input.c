@@ -63,7 +63,7 @@ static sf_status read_curve(const sf_config *config, const config_setting_t *gro
     if (!drop->curve_path)
         return SF_OK;
     o.path = drop->curve_path;
-    o.cfc = classes[class];
+    drop->sample_class = o.cfc = classes[class];
     if (sample_curve(&o, drop, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
                        config_setting_source_line(group));
@@ -215,6 +215,14 @@ static sf_status read_drops(const sf_config *config, const config_setting_t *roo
 /* ---- material and parameters ---- */
 
 /* The density of the solid, and with it the start values. */
+/* Where the material has no rate factor: the slowest compression test, as below the reference the law has no
+ * effect of the rate. */
+static void start_reference(sf_fit_input *in) {
+    double *reference = &in->start[SF_PARAMETER_RATE_REFERENCE];
+    for (int t = 0; t < in->joint.test_count && !(in->form.base.rate_factor > 0); t++)
+        *reference = fmin(*reference, in->joint.test[t].rate);
+}
+
 static sf_status read_solid(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                             sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
@@ -224,6 +232,7 @@ static sf_status read_solid(const sf_config *config, const config_setting_t *roo
         return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err, "%s",
                                 inner.text);
     sf_foam_form_start(&in->form, in->start);
+    start_reference(in);
     return SF_OK;
 }
 

@@ -28,6 +28,7 @@ typedef struct sf_fit_drop {
     double *sample_value;                     /* [samples] g; owned */
     double sample_sd;                         /* of a sample, relative to the measured peak */
     double sample_scale;                      /* g, that peak */
+    double sample_class;                      /* of the filter that both curves have; 0: the file's own */
 } sf_fit_drop;
 
 typedef struct sf_fit_input {
