@@ -73,7 +73,9 @@ static void a_drop_that_fails_is_told_in_the_words_of_its_program(void **state) 
         {"printf 'first %0700d last\\n' 0; exit 2", "", SF_ERR_INPUT, "0 last (exit code 2; see ", "log.txt)",
          false},
         {"echo usage; exit 64", "", SF_ERR_LIBRARY, "usage (exit code 64; see ", "log.txt)", false},
-        {"kill -KILL $$", "", SF_ERR_LIBRARY, "it said nothing (exit code 137; see ", "log.txt)", false},
+        {"kill -KILL $$", "", SF_ERR_LIBRARY, "its process was ended by signal 9 (see ", "log.txt)", false},
+        {MAKE_MODEL, "echo begun; kill -KILL $$", SF_ERR_LIBRARY, "its process was ended by signal 9 (see ",
+         "log.txt)", true},
         {MAKE_MODEL, "echo 'softfall-solve: collapsed' >&2; exit 5", SF_ERR_NUMERIC,
          "softfall-solve: collapsed (exit code 5; see ", "log.txt)", false},
         {MAKE_MODEL, "exit 0", SF_ERR_IO, "results.h5", "", false}, /* it left no results */

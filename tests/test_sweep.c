@@ -396,6 +396,33 @@ static void the_error_at_rows_left_out_is_that_of_surfaces_without_them(void **s
     assert_true(whole.left_out_rms > whole.rms);
 }
 
+/* Rows of one x are left out together: each row twice, with other noise. */
+static void repeated_rows_are_left_out_together(void **state) {
+    (void)state;
+    double x[6 * SURFACE_ROWS], y[2 * SURFACE_ROWS], left_out[2 * SURFACE_ROWS];
+    uint64_t seed = 5;
+    sf_quadratic whole, part;
+    sf_error err = SF_ERROR_INIT;
+    fill_surface(x, y, 0.5);
+    memcpy(x + 3 * SURFACE_ROWS, x, 3 * SURFACE_ROWS * sizeof *x);
+    for (int k = 0; k < SURFACE_ROWS; k++)
+        y[SURFACE_ROWS + k] = y[k] + 0.5 * fixture_random(&seed);
+    sf_quadratic_fit(2, 1, 2 * SURFACE_ROWS, x, y, &whole, left_out, &err);
+    for (int out = 0; out < SURFACE_ROWS; out++) {
+        double fewer_x[6 * SURFACE_ROWS], fewer_y[2 * SURFACE_ROWS];
+        int n = 0;
+        for (int k = 0; k < 2 * SURFACE_ROWS; k++)
+            if (k % SURFACE_ROWS != out) {
+                memcpy(fewer_x + 3 * n, x + 3 * k, 3 * sizeof *x);
+                fewer_y[n++] = y[k];
+            }
+        sf_quadratic_fit(2, 1, n, fewer_x, fewer_y, &part, NULL, &err);
+        double value = sf_quadratic_at(&part, x + 3 * out);
+        assert_relative(left_out[out], value, 1e-8);
+        assert_relative(left_out[out + SURFACE_ROWS], value, 1e-8);
+    }
+}
+
 static void a_surface_that_the_rows_do_not_determine_says_so(void **state) {
     (void)state;
     double x[3 * SURFACE_ROWS], y[SURFACE_ROWS];
@@ -880,6 +907,7 @@ int main(void) {
         cmocka_unit_test(indices_of_ishigami_lie_in_their_intervals),
         cmocka_unit_test(a_response_surface_is_exact_for_a_quadratic),
         cmocka_unit_test(the_error_at_rows_left_out_is_that_of_surfaces_without_them),
+        cmocka_unit_test(repeated_rows_are_left_out_together),
         cmocka_unit_test(a_surface_that_the_rows_do_not_determine_says_so),
         cmocka_unit_test(probabilities_have_the_interval_of_their_counts),
         cmocka_unit_test(an_interrupted_campaign_goes_on_with_the_same_table),

@@ -144,6 +144,8 @@ static sf_status run_program(const char *const *arguments, const char *log, sf_e
         return SF_OK;
     if (sf_process_stopped() || code == SF_INTERRUPTED || code == 128 + SIGTERM)
         return sf_run_folder_interrupted(err);
+    if (code == 128 + SIGKILL) /* by the kernel without memory, or by somebody: no fault of the drop */
+        return SF_FAIL(err, SF_ERR_LIBRARY, SF_PROCESS_KILLED " %d (see %s)", SIGKILL, log);
     char said[800];
     last_line(log, said, sizeof said);
     return SF_FAIL(err, code <= SF_ERR_LIBRARY ? (sf_status)code : SF_ERR_LIBRARY,
@@ -177,7 +179,8 @@ static bool resume(const char *const *run, const char *const *restart, const sf_
     if (access(at->model, R_OK) != 0 || !is_geometry_same(at, at->model, "/provenance/geometry_files", true))
         return false;
     run_program(access(at->checkpoint, R_OK) == 0 ? restart : run, at->log, &trial);
-    if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC)
+    if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC &&
+        !strstr(trial.text, SF_PROCESS_KILLED))
         return false;
     if (trial.status != SF_OK)
         SF_FAIL(err, trial.status, "%s", trial.text);
@@ -222,7 +225,8 @@ static sf_status simulate(const sf_run_folder *at, const char *case_path, int co
             keep_failure(at, files, err);
         free(files);
     }
-    if (err->status != SF_INTERRUPTED)
+    bool resumes = err->status == SF_INTERRUPTED || strstr(err->text, SF_PROCESS_KILLED);
+    if (!resumes)
         sf_run_folder_clean(at);
     return err->status;
 }

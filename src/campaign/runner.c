@@ -331,7 +331,7 @@ static void name_killed(const batch *b, sf_error *failure) {
         sf_run_folder_name_key(b->runner->folder, b->drop[b->pending[k]].label, b->request[b->pending[k]].key,
                                &at);
         SF_FAIL(&failure[k], before.status,
-                "%.700s: %.100s; finished drops are kept: run the same command again to resume", at.path,
+                "%.500s: %.400s; finished drops are kept: run the same command again to resume", at.path,
                 before.text);
     }
 }

@@ -350,7 +350,7 @@ sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *
         compute_compression(results, f);
         goto done;
     }
-    if (sf_injury_evaluate(&f->raw, &f->injury_raw, err) != SF_OK ||
+    if (sf_injury_evaluate_peak(&f->raw, &f->injury_raw, err) != SF_OK ||
         sf_injury_evaluate(&f->filtered, &f->injury, err) != SF_OK)
         goto done;
     if (f->turns && compute_rotation(results, f, err) != SF_OK)

@@ -63,8 +63,7 @@ double sf_injury_clip(const sf_series *curve, double duration, int contiguous) {
     double slack = duration * 1e-12; /* rounding of summed intervals */
     if (time_above(curve, low, contiguous) < duration - slack)
         return NAN;
-    for (int k = 0; k < 80; k++) {
-        double middle = low + (high - low) / 2;
+    for (double middle; (middle = low + (high - low) / 2) > low && middle < high;) {
         if (time_above(curve, middle, contiguous) >= duration - slack)
             low = middle;
         else
@@ -73,21 +72,23 @@ double sf_injury_clip(const sf_series *curve, double duration, int contiguous) {
     return low;
 }
 
-sf_status sf_injury_evaluate(const sf_series *curve, sf_injury *injury, sf_error *err) {
-    const double clip_duration = 3e-3;
-    *injury = (sf_injury){0};
-    if (sf_hic_evaluate(curve, INFINITY, &injury->hic, err) != SF_OK ||
-        sf_hic_evaluate(curve, 15e-3, &injury->hic15, err) != SF_OK ||
-        sf_hic_evaluate(curve, 36e-3, &injury->hic36, err) != SF_OK)
-        return err->status;
-    injury->a_max_g = curve->value[0];
-    injury->a_max_time = curve->time[0];
+sf_status sf_injury_evaluate_peak(const sf_series *curve, sf_injury *injury, sf_error *err) {
+    *injury = (sf_injury){.a_max_g = curve->value[0], .a_max_time = curve->time[0]};
     for (int64_t i = 1; i < curve->count; i++) {
         if (curve->value[i] > injury->a_max_g) {
             injury->a_max_g = curve->value[i];
             injury->a_max_time = curve->time[i];
         }
     }
+    return sf_hic_evaluate(curve, INFINITY, &injury->hic, err);
+}
+
+sf_status sf_injury_evaluate(const sf_series *curve, sf_injury *injury, sf_error *err) {
+    const double clip_duration = 3e-3;
+    if (sf_injury_evaluate_peak(curve, injury, err) != SF_OK ||
+        sf_hic_evaluate(curve, 15e-3, &injury->hic15, err) != SF_OK ||
+        sf_hic_evaluate(curve, 36e-3, &injury->hic36, err) != SF_OK)
+        return err->status;
     injury->gadd = sf_injury_gadd(curve);
     injury->clip_contiguous_g = sf_injury_clip(curve, clip_duration, 1);
     injury->clip_cumulative_g = sf_injury_clip(curve, clip_duration, 0);

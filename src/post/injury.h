@@ -17,6 +17,8 @@ typedef struct sf_injury {
     double clip_cumulative_g; /* g, exceeded for 3 ms in all; NaN if the curve is shorter */
 } sf_injury;
 
+/* The peak, its time and HIC without a limit alone; the others are 0. */
+sf_status sf_injury_evaluate_peak(const sf_series *acceleration_g, sf_injury *injury, sf_error *err);
 sf_status sf_injury_evaluate(const sf_series *acceleration_g, sf_injury *injury, sf_error *err);
 
 /* Gadd severity index: integral of a^2.5 where a > 0. */

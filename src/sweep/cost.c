@@ -60,15 +60,22 @@ static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
     sf_model model;
     sf_build_report report;
     char libraries[SF_LIBRARIES_SIZE];
+    sf_error refused = SF_ERROR_INIT;
     if (sf_sweep_read_case(p, 0, &first, err) != SF_OK)
         return err->status;
-    if (sf_model_make(&first, &model, &report, libraries, NULL, err) == SF_OK) {
+    if (sf_model_make(&first, &model, &report, libraries, NULL, &refused) == SF_OK) {
         c->seconds = 2 * sf_report_seconds(&model, &report); /* of two cores */
         c->bytes = RUN_BYTES + NODE_BYTES * (double)model.node_count;
         c->work_bytes = c->bytes + NODE_WORK_BYTES * (double)model.node_count;
         snprintf(c->basis, sizeof c->basis,
                  "the estimate of softfall-pre for the first row, to a factor of 2; no run is finished yet");
         sf_model_free(&model);
+    } else if (refused.status == SF_ERR_INPUT ||
+               refused.status == SF_ERR_MODEL) { /* it will be a failed run */
+        c->seconds = NAN;
+        snprintf(c->basis, sizeof c->basis, "the first row has no model: %.480s", refused.text);
+    } else {
+        *err = refused;
     }
     sf_case_free(&first);
     return err->status;
@@ -115,7 +122,11 @@ sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, i
 
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {
     double hours = c->seconds * (double)c->open / jobs / 3600;
-    fprintf(out,
+    if (isnan(c->seconds))
+        fprintf(out, "%lld open runs; what they cost is not known\n  (%s)\n", (long long)c->open, c->basis);
+    else
+        fprintf(
+            out,
             "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
             (long long)c->open, c->seconds, hours, jobs, c->bytes * (double)c->open / 1e9, c->basis);
     if (c->there > 0)

@@ -7,12 +7,12 @@
 #include "sweep/runs.h"
 
 typedef struct sf_sweep_cost {
-    double seconds;    /* processor time of one run */
+    double seconds;    /* processor time of one run; NaN: not known, as the first row has no model */
     double bytes;      /* of its results */
     double work_bytes; /* that one run needs while it is at work */
     int64_t open;      /* runs */
     int64_t there;     /* of them at most so many have a drop's folder already, that runs.csv does not know */
-    char basis[160];   /* where that comes from */
+    char basis[512];   /* where that comes from */
 } sf_sweep_cost;
 
 /* `folder`: of the results' folders ("DIR/runs"). Without a finished run the model of the first row is built

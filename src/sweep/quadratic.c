@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double TOLERANCE = 1e-9; /* of singular values: what is below is not determined */
 
@@ -81,29 +82,61 @@ static double leverage(const fit *f, size_t row, gsl_vector *scratch) {
     return h;
 }
 
-/* Errors of the surface without each row, from its residual and leverage. */
-static void judge(sf_quadratic *s, const fit *f, int64_t n, double *left_out, gsl_vector *scratch) {
+static double residual(const fit *f, size_t row) {
+    double value = 0;
+    const gsl_vector_const_view x = gsl_matrix_const_row(f->terms, row);
+    gsl_blas_ddot(&x.vector, f->c, &value);
+    return gsl_vector_get(f->y, row) - value;
+}
+
+static int compare_rows(const void *p, const void *q, void *context) {
+    const fit *f = context;
+    size_t j = *(const size_t *)p, k = *(const size_t *)q;
+    const double *a = gsl_matrix_const_ptr(f->terms, j, 0), *b = gsl_matrix_const_ptr(f->terms, k, 0);
+    for (size_t t = 0; t < f->terms->size2; t++)
+        if (a[t] != b[t])
+            return a[t] > b[t] ? 1 : -1;
+    return (j > k) - (j < k);
+}
+
+static bool is_same_site(const fit *f, size_t j, size_t k) {
+    const size_t bytes = f->terms->size2 * sizeof(double);
+    return memcmp(gsl_matrix_const_ptr(f->terms, j, 0), gsl_matrix_const_ptr(f->terms, k, 0), bytes) == 0;
+}
+
+/* Errors of the surface without each site: the rows of one place in the factors that it has, as runs with
+ * other draws of the foam, would otherwise tell of each other. Of m rows with leverage h and the sum S of
+ * their residuals r the error is r + h S / (1 - m h). `order` [n]. */
+static void judge(sf_quadratic *s, const fit *f, size_t n, size_t *order, double *left_out,
+                  gsl_vector *scratch) {
     double squares = 0, press = 0, mean = 0, spread = 0;
-    for (size_t k = 0; k < (size_t)n; k++)
+    for (size_t k = 0; k < n; k++) {
+        order[k] = k;
         mean += gsl_vector_get(f->y, k) / (double)n;
-    for (size_t k = 0; k < (size_t)n; k++) {
-        const gsl_vector_const_view x = gsl_matrix_const_row(f->terms, k);
-        double value = 0, y = gsl_vector_get(f->y, k);
-        gsl_blas_ddot(&x.vector, f->c, &value);
-        double h = leverage(f, k, scratch), error = h < 1 - 1e-9 ? (y - value) / (1 - h) : NAN;
-        squares += (y - value) * (y - value);
-        press += error * error;
-        spread += (y - mean) * (y - mean);
-        if (left_out)
-            left_out[k] = y - error;
     }
-    s->rms = sqrt(squares / (double)(n - s->terms));
+    qsort_r(order, n, sizeof *order, compare_rows, (void *)f);
+    for (size_t first = 0, end; first < n; first = end) {
+        double sum = 0, h = leverage(f, order[first], scratch);
+        for (end = first; end < n && is_same_site(f, order[first], order[end]); end++)
+            sum += residual(f, order[end]);
+        double rest = 1 - (double)(end - first) * h;
+        for (size_t i = first; i < end; i++) {
+            double r = residual(f, order[i]), y = gsl_vector_get(f->y, order[i]),
+                   error = rest > 1e-9 ? r + h * sum / rest : NAN;
+            squares += r * r;
+            press += error * error;
+            spread += (y - mean) * (y - mean);
+            if (left_out)
+                left_out[order[i]] = y - error;
+        }
+    }
+    s->rms = sqrt(squares / (double)(n - (size_t)s->terms));
     s->left_out_rms = sqrt(press / (double)n);
     s->q2 = spread > 0 ? 1 - press / spread : NAN;
 }
 
-static void solve(sf_quadratic *s, fit *f, int64_t n, const double *x, const double *y, double *left_out,
-                  gsl_vector *scratch) {
+static void solve(sf_quadratic *s, fit *f, int64_t n, const double *x, const double *y, size_t *order,
+                  double *left_out, gsl_vector *scratch) {
     double chisq = 0;
     size_t rank = 0;
     for (size_t k = 0; k < (size_t)n; k++) {
@@ -121,7 +154,7 @@ static void solve(sf_quadratic *s, fit *f, int64_t n, const double *x, const dou
     }
     for (int t = 0; t < s->terms; t++)
         s->c[t] = gsl_vector_get(f->c, (size_t)t);
-    judge(s, f, n, left_out, scratch);
+    judge(s, f, (size_t)n, order, left_out, scratch);
 }
 
 sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const double *y, sf_quadratic *s,
@@ -138,12 +171,14 @@ sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const
     }
     fit f;
     gsl_vector *scratch = gsl_vector_alloc((size_t)terms);
+    size_t *order = sf_alloc(err, (unsigned long)n, sizeof *order, "the response surface");
     s->terms = terms;
-    if (fit_begin(&f, n, terms) && scratch)
-        solve(s, &f, n, x, y, left_out, scratch);
-    else
+    if (fit_begin(&f, n, terms) && scratch && order)
+        solve(s, &f, n, x, y, order, left_out, scratch);
+    else if (err->status == SF_OK)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the response surface");
     fit_end(&f);
+    free(order);
     gsl_vector_free(scratch);
     return err->status;
 }
