@@ -171,6 +171,30 @@ static void keys_and_units_that_a_case_does_not_take_are_refused(void **state) {
     }
 }
 
+/* Only combinations that a zip has are looked at: half of the gap's fall takes longer than the other end
+ * time. */
+static void values_that_are_zipped_are_checked_together(void **state) {
+    static const struct {
+        const char *ends;
+        sf_status status;
+    } cases[] = {{"\"20 ms\", \"200 ms\"", SF_OK}, {"\"200 ms\", \"20 ms\"", SF_ERR_INPUT}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[512];
+        sf_plan plan;
+        sf_error err = SF_ERROR_INIT;
+        uint64_t hash;
+        snprintf(text, sizeof text,
+                 "{ zip = ( { key = \"missile.gap\"; values = [\"1 mm\", \"500 mm\"]; }, "
+                 "{ key = \"solver.end_time\"; values = [%s]; } ); }",
+                 cases[k].ends);
+        read_plan(*state, text, &plan);
+        sf_sweep_check_inputs(&plan, &hash, &err);
+        if (err.status != cases[k].status)
+            fail_msg("%s: %s", cases[k].ends, err.text);
+        sf_plan_free(&plan);
+    }
+}
+
 static void the_inputs_are_known_by_their_contents(void **state) {
     const program_place *p = *state;
     sf_plan plan;
@@ -898,6 +922,7 @@ int main(void) {
         cmocka_unit_test(a_material_comes_before_its_keys_and_ranges_hold_both_ends),
         cmocka_unit_test(plans_that_cannot_be_meant_are_refused),
         cmocka_unit_test(keys_and_units_that_a_case_does_not_take_are_refused),
+        cmocka_unit_test(values_that_are_zipped_are_checked_together),
         cmocka_unit_test(the_inputs_are_known_by_their_contents),
         cmocka_unit_test(geometries_of_one_text_in_two_folders_are_refused),
         cmocka_unit_test(a_latin_hypercube_has_one_point_in_each_stratum),

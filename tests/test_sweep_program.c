@@ -49,6 +49,20 @@ static void a_dry_run_tells_the_table_and_the_cost_and_writes_nothing(void **sta
     assert_int_equal(program_shell(p, "test -e out").code, 1);
 }
 
+/* It is a failed run of the campaign like others. */
+static void a_first_row_without_a_model_is_told(void **state) {
+    const program_place *p = *state;
+    char text[1024];
+    snprintf(text, sizeof text,
+             "case = \"%s\";\n"
+             "factors = ( { key = \"geometry.parameters.fine_spacing\"; values = [20.0, 5.0]; } );\n",
+             fixture_source("examples/eva50-v4.5/case.cfg"));
+    program_write_text(p, "coarse.cfg", text);
+    program_result r = program_succeed(p, "sweep", "coarse.cfg -o out --dry-run");
+    if (!strstr(r.out, "2 open runs; what they cost is not known\n  (the first row has no model: "))
+        fail_msg("%s", r.out);
+}
+
 /* runs.csv without the figures that are of the machine. */
 static char *table(const program_place *p) {
     program_result r =
@@ -188,6 +202,7 @@ static void folders_that_are_not_of_the_plan_or_taken_are_refused(void **state) 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dry_run_tells_the_table_and_the_cost_and_writes_nothing),
+        cmocka_unit_test(a_first_row_without_a_model_is_told),
         cmocka_unit_test(a_sweep_writes_its_table_and_report_and_resumes),
         cmocka_unit_test(what_a_run_reads_is_simulated_again_when_it_changes),
         cmocka_unit_test(inputs_that_change_meanwhile_end_the_campaign),

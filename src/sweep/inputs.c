@@ -7,39 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A row of the plan in which one factor has another value. */
-typedef struct variant {
-    const sf_plan *plan;
-    int64_t row;
-    int factor; /* -1: none */
-    double value;
-} variant;
-
-static sf_status read_variant(const variant *v, sf_case *c, sf_error *err) {
+sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_error *err) {
     char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
     const char *list[SF_RUNNER_OVERRIDES];
-    int count = sf_plan_overrides(v->plan, v->row, text);
-    for (int k = 0; k < count; k++) {
-        const sf_factor *f = v->factor >= 0 ? &v->plan->factor[v->factor] : NULL;
-        size_t length = f ? strlen(f->key) : 0;
-        if (f && strncmp(text[k], f->key, length) == 0 && text[k][length] == '=')
-            sf_factor_override(f, v->value, text[k], sizeof text[k]);
+    int count = sf_plan_overrides(plan, row, text);
+    for (int k = 0; k < count; k++)
         list[k] = text[k];
-    }
-    return sf_case_read(v->plan->case_path, count, list, NULL, c, err);
+    return sf_case_read(plan->case_path, count, list, NULL, c, err);
 }
 
-sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_error *err) {
-    const variant v = {plan, row, -1, 0};
-    return read_variant(&v, c, err);
-}
-
-/* Enters the key of the variant, which is 0 if it is refused, into the hash. */
-static sf_status check(const variant *v, uint64_t *hash, uint64_t *own, sf_error *err) {
+/* Enters the key of a row, which is 0 if its case is refused, into the hash. The sentence names the factor.
+ */
+static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64_t *hash, uint64_t *own,
+                       sf_error *err) {
     sf_case c;
     sf_error inner = SF_ERROR_INIT;
     *own = 0;
-    if (read_variant(v, &c, &inner) == SF_OK) {
+    if (sf_sweep_read_case(p, row, &c, &inner) == SF_OK) {
         if (sf_geo_parameters_check_alone(&c.pad, &inner) == SF_OK &&
             sf_geo_parameters_check_alone(&c.missile, &inner) == SF_OK)
             sf_campaign_key(&c, own, &inner);
@@ -48,21 +32,22 @@ static sf_status check(const variant *v, uint64_t *hash, uint64_t *own, sf_error
     *hash = sf_hash_bytes(*hash, own, sizeof *own);
     if (inner.status == SF_OK)
         return SF_OK;
-    return SF_FAIL(err, inner.status, "%s: %.900s",
-                   v->factor >= 0 ? v->plan->factor[v->factor].where : v->plan->path, inner.text);
+    return SF_FAIL(err, inner.status, "%s: %.900s", f->where, inner.text);
 }
 
+/* Rows that the plan has: what stands beside a value in a zip or a sample belongs to it. All other blocks are
+ * at their first value. */
 static sf_status check_extremes(const sf_plan *p, int factor, uint64_t *hash, sf_error *err) {
     const sf_factor *f = &p->factor[factor];
     const sf_block *b = &p->block[p->block_of[factor]];
-    double low = f->value[0], high = f->value[0];
+    int64_t least = 0, greatest = 0;
     for (int64_t k = 1; k < b->rows; k++) {
-        low = f->value[k] < low ? f->value[k] : low;
-        high = f->value[k] > high ? f->value[k] : high;
+        least = f->value[k] < f->value[least] ? k : least;
+        greatest = f->value[k] > f->value[greatest] ? k : greatest;
     }
-    const variant least = {p, 0, factor, low}, greatest = {p, 0, factor, high};
     uint64_t key;
-    return check(&least, hash, &key, err) == SF_OK ? check(&greatest, hash, &key, err) : err->status;
+    SF_TRY(check(p, least * b->stride, f, hash, &key, err));
+    return check(p, greatest * b->stride, f, hash, &key, err);
 }
 
 static size_t folder_length(const char *path) {
@@ -85,10 +70,13 @@ static sf_status refuse_double(const sf_factor *f, const uint64_t *key, int64_t 
 
 static sf_status check_words(const sf_plan *p, int factor, uint64_t *hash, sf_error *err) {
     const sf_factor *f = &p->factor[factor];
+    const sf_block *b = &p->block[p->block_of[factor]];
     uint64_t *key = sf_alloc(err, (unsigned long)f->count, sizeof *key, "keys");
     for (int64_t k = 0; k < f->count && err->status == SF_OK; k++) {
-        const variant v = {p, 0, factor, (double)k};
-        if (check(&v, hash, &key[k], err) == SF_OK)
+        int64_t row = 0;
+        while (row < b->rows && f->value[row] != (double)k)
+            row++;
+        if (row < b->rows && check(p, row * b->stride, f, hash, &key[k], err) == SF_OK) /* or never drawn */
             refuse_double(f, key, k, err);
     }
     free(key);
