@@ -156,6 +156,35 @@ static void what_an_orphan_left_goes(void **state) {
     }
 }
 
+/* Size and time are those that its record knows. */
+static void a_damaged_drop_is_simulated_again(void **state) {
+    const program_place *p = *state;
+    char folder[600], source[1024];
+    snprintf(folder, sizeof folder, "%s/damaged", p->folder);
+    snprintf(source, sizeof source, "%s", program_path(p, "examples/eva50-v4.5/case.cfg"));
+    sf_runner runner = {.folder = folder, .threads = 1};
+    const sf_runner_drop drop = {.label = "drop",
+                                 .case_path = source,
+                                 .override_count = 3,
+                                 .overrides = {"geometry.parameters.fine_spacing=20",
+                                               "geometry.parameters.outer_spacing=25",
+                                               "pad.mesh_error_limit=1"}};
+    for (int again = 0; again < 3; again++) {
+        sf_error err = SF_ERROR_INIT;
+        sf_runner_result result;
+        if (sf_runner_run(&runner, &drop, &result, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_int_equal(result.reused, again == 1);
+        sf_runner_result_free(&result);
+        if (again == 1)
+            assert_int_equal(
+                program_shell(p, "cd damaged/drop-* && touch -r results.h5 then && dd if=/dev/zero "
+                                 "of=results.h5 bs=64 count=1 conv=notrunc && touch -r then results.h5")
+                    .code,
+                0);
+    }
+}
+
 /* The drop is simulated again where it was, and then used with the new content. */
 static void a_changed_geometry_is_simulated_again(void **state) {
     const program_place *p = *state;
@@ -182,6 +211,7 @@ int main(void) {
         cmocka_unit_test(the_key_is_of_values_and_contents),
         cmocka_unit_test(a_changed_geometry_is_simulated_again),
         cmocka_unit_test(what_an_orphan_left_goes),
+        cmocka_unit_test(a_damaged_drop_is_simulated_again),
         cmocka_unit_test(a_moved_project_keeps_its_drops),
         cmocka_unit_test(an_unconfined_drop_is_not_used_again),
     };

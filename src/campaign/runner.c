@@ -230,6 +230,19 @@ static double now(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Damaged results of unchanged size and time have a record all the same: it goes, and the drop is simulated
+ * again. */
+static bool is_readable(const sf_run_folder *at) {
+    sf_error none = SF_ERROR_INIT;
+    sf_results r;
+    if (sf_results_open(at->results, &r, &none) == SF_OK) {
+        sf_results_close(&r);
+        return true;
+    }
+    sf_folder_remove_file(at->figures);
+    return false;
+}
+
 /* Finds the drop's folder and whether it is finished, or has failed earlier. A drop that its case refuses has
  * failed: the others go on. */
 static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request *r, sf_error *failure) {
@@ -239,7 +252,7 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
     r->key = l.at.key;
     r->geometry = sf_hash_bytes(SF_HASH_START, l.at.pad_folder, strlen(l.at.pad_folder) + 1);
     r->geometry = sf_hash_bytes(r->geometry, l.at.missile_folder, strlen(l.at.missile_folder) + 1);
-    r->reused = sf_run_folder_is_finished(&l.at);
+    r->reused = sf_run_folder_is_finished(&l.at) && (runner->figures_only || is_readable(&l.at));
     if (r->reused)
         sf_run_folder_clean(&l.at);
     else if (runner->engine.retry)
