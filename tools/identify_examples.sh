@@ -3,7 +3,7 @@
 # Identifies the EVA foam of the paper from its three drops on the 70 mm pad by all models of examples/fit/eva35_forms.cfg, predicts the
 # drops on the 50 mm pad and the critical fall heights of both pads, writes the result as the examples' material, and the table and
 # picture of docs/cfh.md. docs/validation.md has the predictions as they were made before the comparison and is never written: its
-# sections by this run are in out/validation.md, and the script says where the two differ. About twenty minutes on two cores; after an interruption, run it again to
+# sections by this run are in out/validation.md, and the script says where the two differ. About 15 minutes on two cores; after an interruption, run it again to
 # resume. It says how long the identification took.
 #
 #     tools/identify_examples.sh
