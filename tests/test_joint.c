@@ -549,8 +549,9 @@ static void a_model_has_the_filter_of_the_measured_curve(void **state) {
         drop->sample_class = classes[c];
         assert_int_equal(respond(&b, b.real, 1, u, y[c], &err), SF_OK);
         for (int k = 0; k < SAMPLES; k++) {
-            peak[c] = fmax(peak[c], y[c][SF_FIT_SAMPLES + k]);
-            sum[c] += y[c][SF_FIT_SAMPLES + k];
+            double value = y[c][SF_FIT_SAMPLES + k];
+            peak[c] = value > peak[c] ? value : peak[c];
+            sum[c] += value;
         }
     }
     assert_memory_equal(y[0], y[1], sizeof y[0]);

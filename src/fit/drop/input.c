@@ -214,7 +214,6 @@ static sf_status read_drops(const sf_config *config, const config_setting_t *roo
 
 /* ---- material and parameters ---- */
 
-/* The density of the solid, and with it the start values. */
 /* Where the material has no rate factor: the slowest compression test, as below the reference the law has no
  * effect of the rate. */
 static void start_reference(sf_fit_input *in) {
@@ -223,6 +222,7 @@ static void start_reference(sf_fit_input *in) {
         *reference = fmin(*reference, in->joint.test[t].rate);
 }
 
+/* The density of the solid, and with it the start values. */
 static sf_status read_solid(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                             sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
