@@ -447,6 +447,23 @@ static void repeated_rows_are_left_out_together(void **state) {
     }
 }
 
+/* Two places, many rows: a straight line needs both. */
+static void a_surface_that_needs_every_place_has_no_known_error(void **state) {
+    (void)state;
+    double x[SURFACE_ROWS], y[SURFACE_ROWS];
+    uint64_t seed = 7;
+    sf_quadratic s;
+    sf_error err = SF_ERROR_INIT;
+    for (int k = 0; k < SURFACE_ROWS; k++) {
+        x[k] = 3 + k % 2;
+        y[k] = x[k] + 0.1 * fixture_random(&seed);
+    }
+    assert_int_equal(sf_quadratic_fit(1, 0, SURFACE_ROWS, x, y, &s, NULL, &err), SF_OK);
+    assert_int_equal(s.terms, 2);
+    assert_true(isnan(s.left_out_rms) && isnan(s.q2));
+    assert_non_null(strstr(s.problem, "its error at runs left out is not known"));
+}
+
 static void a_surface_that_the_rows_do_not_determine_says_so(void **state) {
     (void)state;
     double x[3 * SURFACE_ROWS], y[SURFACE_ROWS];
@@ -933,6 +950,7 @@ int main(void) {
         cmocka_unit_test(a_response_surface_is_exact_for_a_quadratic),
         cmocka_unit_test(the_error_at_rows_left_out_is_that_of_surfaces_without_them),
         cmocka_unit_test(repeated_rows_are_left_out_together),
+        cmocka_unit_test(a_surface_that_needs_every_place_has_no_known_error),
         cmocka_unit_test(a_surface_that_the_rows_do_not_determine_says_so),
         cmocka_unit_test(probabilities_have_the_interval_of_their_counts),
         cmocka_unit_test(an_interrupted_campaign_goes_on_with_the_same_table),

@@ -7,8 +7,8 @@
 #include "case/case.h"
 #include "sweep/plan.h"
 
-/* Reads the case with the values of the first row, and with each level of each factor in place of it (of many
- * numbers the least and the greatest). `hash`: of the contents of all files that these cases lead to and of
+/* Reads the case of a row with each level of each factor (of many numbers the least and the greatest), the
+ * other blocks at their first values. `hash`: of the contents of all files that these cases lead to and of
  * the programs. Errors: "file:line of the factor: the sentence of the case". */
 sf_status sf_sweep_check_inputs(const sf_plan *plan, uint64_t *hash, sf_error *err);
 

@@ -14,7 +14,7 @@ static const sf_sweep_picture pictures[] = {
     {"curves", "Deceleration over time of the runs"},
     {"effects", "Main effects: the range of the means between the values of a factor, the greatest on top"},
     {"indices", "Sobol' indices, first order and total, with 95 % intervals"},
-    {"surface", "Response surface: each run as the surface without it predicts it"},
+    {"surface", "Response surface: each run as the surface without the runs of its place predicts it"},
     {"probability", "Probability of staying below the limit"},
     {NULL, NULL}};
 
@@ -366,7 +366,7 @@ static void put_surface_panel(FILE *g, const sf_analysis *a, int figure) {
     fprintf(g, "$s%d << EOD\n", figure);
     for (int64_t k = 0; k < s->rows; k += every)
         fprintf(g, "%.6g,%.6g\n", s->simulated[k], s->left_out[k]);
-    fprintf(g, "EOD\nset xlabel '%s, simulated'\nset ylabel 'by the surface without the run'\n",
+    fprintf(g, "EOD\nset xlabel '%s, simulated'\nset ylabel 'by the surface without its place'\n",
             a->plan->figure[figure].figure);
     fprintf(g,
             "plot $s%d using 1:2 with points pt 7 ps 1.2*dot lc rgb '#08519c' notitle, \\\n"
@@ -377,7 +377,7 @@ static void put_surface_panel(FILE *g, const sf_analysis *a, int figure) {
 static sf_status plot_surface(const sf_staging *output, const sf_analysis *a, sf_error *err) {
     int panels = 0;
     for (int k = 0; k < a->plan->figure_count; k++)
-        panels += a->surface[k].fit.terms > 0;
+        panels += isfinite(a->surface[k].fit.left_out_rms);
     if (panels == 0)
         return SF_OK;
     FILE *g = sf_gnuplot_begin(output, "surface", 1600, panels > 1 ? 800 * ((panels + 1) / 2) : 1000, err);
@@ -385,7 +385,7 @@ static sf_status plot_surface(const sf_staging *output, const sf_analysis *a, sf
         return err->status;
     fprintf(g, "set multiplot layout %d,%d\n", panels > 1 ? (panels + 1) / 2 : 1, panels > 1 ? 2 : 1);
     for (int k = 0; k < a->plan->figure_count; k++)
-        if (a->surface[k].fit.terms > 0)
+        if (isfinite(a->surface[k].fit.left_out_rms))
             put_surface_panel(g, a, k);
     fputs("unset multiplot\n", g);
     return sf_staging_close(g, "surface.gp", err);

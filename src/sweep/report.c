@@ -397,14 +397,15 @@ static void put_surfaces(FILE *page, const sf_sweep_report *r) {
         sf_html_number(&t, 3, s->fit.rms);
         sf_html_number(&t, 3, s->fit.left_out_rms);
         sf_html_number(&t, 3, s->fit.q2);
-        sf_html_cell(&t, "%s%s", s->fit.problem, s->rows < s->of ? "a part of the runs, evenly chosen" : "");
+        sf_html_cell(&t, "%s%s%s", s->fit.problem, *s->fit.problem && s->rows < s->of ? "; " : "",
+                     s->rows < s->of ? "a part of the runs, evenly chosen" : "");
     }
     sf_html_table_end(&t);
     sf_html_note(
         page,
         "A quadratic of the factors that are numbers, with a constant for each level of chosen words; what is "
         "uncertain and no number is scatter about it. The error is that at each run by the surface without "
-        "it; Q² is 1 less its square over the variance. The coefficients are in sweep.json.");
+        "all runs of its place in these factors; Q² is 1 less its square over the variance. The coefficients are in sweep.json.");
 }
 
 static void put_failures(FILE *page, const sf_sweep_report *r) {
@@ -472,7 +473,10 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
         fprintf(out, "  %lld more in runs.csv; --retry does them again\n", (long long)a->failed - listed);
     for (int k = 0; k < r->plan->figure_count; k++) {
         const sf_quadratic *s = &a->surface[k].fit;
-        if (s->terms > 0)
+        if (s->terms > 0 && *s->problem)
+            fprintf(out, "  %s: response surface of %d terms; %s\n", r->plan->figure[k].figure, s->terms,
+                    s->problem);
+        else if (s->terms > 0)
             fprintf(out, "  %s: response surface of %d terms, rms error at runs left out %.4g, Q2 %.4f\n",
                     r->plan->figure[k].figure, s->terms, s->left_out_rms, s->q2);
     }
