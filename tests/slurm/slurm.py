@@ -226,12 +226,15 @@ def tell(campaign, words):
 
 
 def jobs_are_cancelled(slurm, campaign):
-    """Snakemake starts jobs again that somebody has cancelled."""
+    """Snakemake starts jobs again that somebody has cancelled. It takes its time to see it: a drained node does no others
+    meanwhile, so that drops are left for what comes next on a fast machine, too."""
     wait_for("the first drops", lambda: campaign.done() >= 2 and slurm.jobs())
+    slurm.node("drain")
     jobs = slurm.jobs()
     subprocess.run(["scancel"] + jobs, check=True)
     tell(campaign, "jobs %s cancelled" % " ".join(jobs))
     wait_for("new jobs in place of the cancelled ones", lambda: campaign.log().count("Trying to restart job") >= len(jobs))
+    slurm.node("resume")
 
 
 def node_is_drained(slurm, campaign, process):
@@ -252,9 +255,11 @@ def node_is_drained(slurm, campaign, process):
 
 
 def programs_are_killed(slurm, campaign):
-    """A Snakemake that outlives its campaign holds the folder; one that is killed leaves jobs that go on."""
+    """A Snakemake that outlives its campaign holds the folder; one that is killed leaves jobs that go on, here when the node
+    is resumed."""
     process, before = campaign.on_slurm(), campaign.done()
     wait_for("further drops", lambda: campaign.done() > before and slurm.jobs())
+    slurm.node("drain")
     process.kill()
     process.communicate()
     snakemake = find_snakemake(campaign.file("out"))
@@ -304,6 +309,7 @@ def inside(folder):
             raise
         programs_are_killed(slurm, campaign)
         statuses_are_told(campaign)
+        slurm.node("resume")
         finish(campaign.on_slurm(), 0, "%d runs: %d done, 0 failed, 0 open" % (DROPS, DROPS))
         tell(campaign, "finished after being resumed")
         assert_same(campaign)
