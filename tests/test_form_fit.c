@@ -88,7 +88,7 @@ static void a_known_foam_is_found(void **state) {
                                         .tension_cutoff = 1e30,
                                         .rate_factor = 0.12,
                                         .rate_reference = 0.01,
-                                        .rate_filter_time = 1e-4}};
+                                        .rate_filter_time = 5e-4}};
     double truth[SF_PARAMETER_COUNT];
     sf_foam_card card;
     sf_error err = SF_ERROR_INIT;
@@ -103,12 +103,14 @@ static void a_known_foam_is_found(void **state) {
     press(&place, "slow.csv", &card, 0.01);
     press(&place, "fast.csv", &card, 10);
     press(&place, "between.csv", &card, 1);
+    press(&place, "beyond.csv", &card, 1000); /* the factor's low pass is felt through the whole test */
     sf_foam_card_free(&card);
     fit_text(&place,
              "density = \"60 kg/m3\"; curve_form = \"gas_solid\"; solid_density = \"940 kg/m3\";\n"
              "rate_model = \"factor\"; tests = ( { file = \"slow.csv\"; rate = \"0.01 1/s\"; },\n"
              "{ file = \"fast.csv\"; rate = \"10 1/s\"; } );\n"
-             "predict = ( { file = \"between.csv\"; rate = \"1 1/s\"; } );\n",
+             "predict = ( { file = \"between.csv\"; rate = \"1 1/s\"; },\n"
+             "{ file = \"beyond.csv\"; rate = \"1000 1/s\"; } );\n",
              &config, &fit);
     assert_near(&fit, SF_PARAMETER_E, 0.5e6, 0.02);
     assert_near(&fit, SF_PARAMETER_S0, 17e3, 0.02);
@@ -120,7 +122,8 @@ static void a_known_foam_is_found(void **state) {
     assert_near(&fit, SF_PARAMETER_SHAPE, 0.8, 0.02);
     assert_near(&fit, SF_PARAMETER_ALPHA, 0.4, 0.02);
     assert_true(fit.loading_rms < 1e-5 && fit.unloading.rms < 1e-5 && fit.unloading_of_one.rms > 0.005);
-    assert_true(fit.predicted[0].loading_rms < 1e-5 && fit.predicted[0].unloading_rms < 1e-5);
+    for (int k = 0; k < 2; k++)
+        assert_true(fit.predicted[k].loading_rms < 1e-5 && fit.predicted[k].unloading_rms < 1e-5);
     assert_true(fabs(fit.test[0].returned_measured - fit.test[0].returned_fitted) < 2e-3);
     assert_true(fit.card.rate_factor == fit.value[SF_PARAMETER_RATE_FACTOR] &&
                 fit.card.rate_reference == 0.01 && fit.card.hysteresis_alpha == fit.unloading.value[2]);
@@ -221,7 +224,7 @@ static void put_data(const program_place *place, const char *name, double factor
 
 #define TWO                                                                                                  \
     "density = \"35 kg/m3\"; curve_form = \"gas\"; tests = ( { file = \"t.csv\"; rate = \"0.01 1/s\"; },\n"  \
-    "{ file = \"t.csv\"; rate = \"0.1 1/s\"; } );\n"
+    "{ file = \"t2.csv\"; rate = \"0.1 1/s\"; } );\n"
 #define GOOD "density = \"35 kg/m3\"; tests = ( { file = \"t.csv\"; rate = \"0.01 1/s\"; } );\n"
 
 static void bad_input_gets_one_sentence(void **state) {
@@ -265,6 +268,7 @@ static void bad_input_gets_one_sentence(void **state) {
     program_place place;
     program_set_up(&place);
     put_data(&place, "t.csv", 1);
+    put_data(&place, "t2.csv", 1.001);
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         program_write_text(&place, "fit.cfg", bad[k].text);
         program_result r = program_run(&place, "fit", "compression fit.cfg -o out");
@@ -280,6 +284,7 @@ static void the_files_are_written(void **state) {
     program_place place;
     program_set_up(&place);
     put_data(&place, "t.csv", 1);
+    put_data(&place, "t2.csv", 1.001);
     program_write_text(&place, "fit.cfg", GOOD "curve_form = \"gas\"; name = \"foam of a test\";\n");
     program_result r = program_succeed(&place, "fit", "compression fit.cfg -o out");
     assert_non_null(strstr(r.out, "with 5 parameters"));
@@ -314,6 +319,7 @@ static void the_factor_brings_its_filter_and_damping(void **state) {
     program_place place;
     program_set_up(&place);
     put_data(&place, "t.csv", 1);
+    put_data(&place, "t2.csv", 1.001);
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         sf_compression_config config;
         sf_foam_card card;
@@ -337,6 +343,7 @@ static void weak_results_are_marked(void **state) {
     program_place place;
     program_set_up(&place);
     put_data(&place, "t.csv", 1);
+    put_data(&place, "t2.csv", 1.001);
     put_data(&place, "fast.csv", 1.1);
     program_write_text(&place, "fit.cfg",
                        "density = \"35 kg/m3\"; curve_form = \"gas\"; rate_model = \"factor\";\n"

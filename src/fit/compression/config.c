@@ -63,6 +63,23 @@ static sf_status check_rate(const sf_config *file, const config_setting_t *entry
     return SF_OK;
 }
 
+/* The same points under another rate would say that the rate has no effect. */
+static sf_status check_points(const sf_config *file, const config_setting_t *entry,
+                              const sf_compression_test *test, const sf_compression_config *c,
+                              sf_error *err) {
+    for (int k = 0; k < c->test_count; k++) {
+        const sf_compression_test *earlier = &c->test[k];
+        size_t size = (size_t)test->count * sizeof *test->strain;
+        if (earlier->count == test->count && memcmp(earlier->strain, test->strain, size) == 0 &&
+            memcmp(earlier->stress, test->stress, size) == 0)
+            return sf_config_refuse(file, config_setting_get_member(entry, "file"), err,
+                                    "the points of %s are those of %s, which has another rate: give the same "
+                                    "data once",
+                                    test->path, earlier->path);
+    }
+    return SF_OK;
+}
+
 /* Puts the test in its place by rate. */
 static void insert_test(sf_compression_test *tests, int *count, const sf_compression_test *test) {
     int at = (*count)++;
@@ -135,8 +152,10 @@ static sf_status read_test(const sf_config *file, const config_setting_t *entry,
                     config_setting_source_line(entry));
         else if (predicted)
             insert_test(c->predicted, &c->predicted_count, &test);
-        else
+        else if (check_points(file, entry, &test, c, err) == SF_OK)
             insert_test(c->test, &c->test_count, &test);
+        else
+            sf_compression_test_free(&test);
     }
     free(path);
     return err->status;

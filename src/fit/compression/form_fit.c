@@ -61,22 +61,30 @@ static void take_values(const problem *p, const gsl_vector *x, double *value) {
         value[p->request->unknown[k]] = parameter_of(p->request->unknown[k], gsl_vector_get(x, (size_t)k));
 }
 
-/* Factor of the rate on the curve (theory, eq. O4). */
-static double rate_factor(const double *value, double rate) {
-    return 1 + value[SF_PARAMETER_RATE_FACTOR] * fmax(0, log10(rate / value[SF_PARAMETER_RATE_REFERENCE]));
+/* What the factor of the rate (theory, eq. O4) adds to the curve, over its stress, at point i of a test that
+ * began at rest: the rate is behind the low pass (eq. 22), rises in loading and fades in unloading. */
+static double rate_excess(const sf_form_request *r, const double *value, const sf_compression_test *t,
+                          int i) {
+    double time = r->form.base.rate_filter_time, strain = fmax(0, t->strain[i]), filtered = t->rate;
+    if (time > 0)
+        filtered *= -expm1(-(i < t->loading ? strain : t->largest_strain) / (t->rate * time));
+    if (i >= t->loading)
+        filtered *= time > 0 ? exp(-(t->largest_strain - strain) / (t->rate * time)) : 0;
+    return value[SF_PARAMETER_RATE_FACTOR] * fmax(0, log10(filtered / value[SF_PARAMETER_RATE_REFERENCE]));
 }
 
 /* Deviations of a test's loading; returns their number. */
 static int deviate_test(const problem *p, const double *value, const sf_compression_test *t,
                         const double *stress, double *out) {
     sf_compression_walk walk = {0};
-    double factor = rate_factor(value, t->rate), modulus = value[SF_PARAMETER_ED];
+    double modulus = value[SF_PARAMETER_ED];
     bool maxwell = p->request->rate & SF_FORM_RATE_MAXWELL;
     for (int i = 0; i < t->loading; i++) {
         double viscous = maxwell
                              ? modulus * sf_compression_maxwell(value[SF_PARAMETER_BETA1], t->rate,
                                                                 t->largest_strain, t->strain[i], false, &walk)
                              : 0;
+        double factor = 1 + rate_excess(p->request, value, t, i);
         double deviation = (factor * stress[i] + viscous - t->stress[i]) / t->largest_stress;
         out[i] = isfinite(deviation) ? fmin(FAR, fmax(-FAR, deviation)) : FAR;
     }
@@ -291,13 +299,15 @@ static double loading_at(const sf_curve *curve, double strain, double *energy) {
     return stress;
 }
 
-static double maxwell_at(const sf_form_fit *fit, const sf_compression_test *t, int i,
+/* Maxwell branch and factor of the rate, beside the curve's `stress`. */
+static double viscous_at(const sf_form_fit *fit, const sf_compression_test *t, int i, double stress,
                          sf_compression_walk *walk) {
-    if (!(fit->config->form.rate & SF_FORM_RATE_MAXWELL))
-        return 0;
-    return fit->value[SF_PARAMETER_ED] * sf_compression_maxwell(fit->value[SF_PARAMETER_BETA1], t->rate,
-                                                                t->largest_strain, t->strain[i],
-                                                                i >= t->loading, walk);
+    double viscous = rate_excess(&fit->config->form, fit->value, t, i) * stress;
+    if (fit->config->form.rate & SF_FORM_RATE_MAXWELL)
+        viscous += fit->value[SF_PARAMETER_ED] * sf_compression_maxwell(fit->value[SF_PARAMETER_BETA1],
+                                                                        t->rate, t->largest_strain,
+                                                                        t->strain[i], i >= t->loading, walk);
+    return viscous;
 }
 
 static void list_unloading(const sf_form_fit *fit, const sf_curve *curve, unloading *u) {
@@ -307,11 +317,12 @@ static void list_unloading(const sf_form_fit *fit, const sf_curve *curve, unload
         double peak, energy;
         loading_at(curve, t->largest_strain, &peak);
         for (int i = 0; i < t->count; i++) {
-            double viscous = maxwell_at(fit, t, i, &walk);
+            double stress = loading_at(curve, t->strain[i], &energy),
+                   viscous = viscous_at(fit, t, i, stress, &walk);
             if (i < t->loading)
                 continue;
             u->measured[u->count] = t->stress[i] / t->largest_stress;
-            u->loading[u->count] = loading_at(curve, t->strain[i], &energy) / t->largest_stress;
+            u->loading[u->count] = stress / t->largest_stress;
             u->viscous[u->count] = viscous / t->largest_stress;
             u->ratio[u->count++] = fmin(1, energy / peak);
         }
@@ -363,15 +374,16 @@ static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, cons
                              sf_form_test *out, sf_error *err) {
     const double *u = fit->unloading.value;
     sf_compression_walk walk = {0};
-    double peak, energy, factor = rate_factor(fit->value, t->rate);
+    double peak, energy;
     bool back = fit->has_unloading && t->count > t->loading;
     out->stress = sf_alloc(err, (unsigned long)t->count, sizeof(double), "test");
     if (err->status != SF_OK)
         return err->status;
     loading_at(curve, t->largest_strain, &peak);
     for (int i = 0; i < t->count; i++) {
-        double viscous = maxwell_at(fit, t, i, &walk), stress = loading_at(curve, t->strain[i], &energy);
-        double by = i < t->loading       ? factor
+        double stress = loading_at(curve, t->strain[i], &energy),
+               viscous = viscous_at(fit, t, i, stress, &walk);
+        double by = i < t->loading       ? 1
                     : fit->has_unloading ? sf_unloading_factor(u[0], u[1], u[2], fmin(1, energy / peak))
                                          : NAN;
         out->stress[i] = by * stress + viscous;

@@ -160,7 +160,8 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
             size_t at = (size_t)(each * k + j);
             bool fitted = k < p->terms && j < each;
             double part = fitted && j == 2 ? logistic(gsl_vector_get(x, at)) : 0;
-            double scale = j == 2 ? LARGEST_NU * part * (1 - part) : 1;
+            double bend = fit->card.term[k].alpha / LARGEST_ALPHA; /* tanh, as take_terms() has it */
+            double scale = j == 2 ? LARGEST_NU * part * (1 - part) : j == 1 ? 1 - bend * bend : 1;
             fit->error[k][j] = fitted && !fit->at_bound[k][j]
                                    ? scale * sqrt(factor * gsl_matrix_get(covariance, at, at))
                                    : NAN;
