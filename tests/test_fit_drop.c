@@ -359,6 +359,19 @@ static void put_case(const program_place *place) {
     program_write_text(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
 }
 
+/* A half-sine of 60 g over 20 ms from 5 ms on, in the terms of a laboratory, with 20 g at 5 kHz. */
+static void put_measured(const program_place *place, const char *name, double sign) {
+    FILE *file = fopen(program_path(place, name), "w");
+    assert_non_null(file);
+    fputs("Zeit;Beschleunigung\r\nms;m/s2\r\n", file);
+    for (int i = 0; i <= 600; i++) {
+        double t = 0.05 * i, x = (t - 5) / 20;
+        double a = (x > 0 && x < 1 ? 60 * sin(M_PI * x) : 0) + 20 * sin(M_PI / 2 * i);
+        fprintf(file, "%d,%02d;%.0f\r\n", i / 20, i % 20 * 5, sign * 9.80665 * a);
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
 #define TEN "0123456789"
 #define LONG_NAME TEN TEN TEN TEN TEN TEN TEN
 
@@ -418,6 +431,12 @@ static void bad_input_gets_one_sentence(void **state) {
                   "{ name = \"b\"; case = \"case.cfg\"; HIC = 3.5; },\n"
                   "{ name = \"c\"; case = \"./link.cfg\"; HIC = 3.0; HIC_sd = 0.1; } );\n",
          "fit.cfg:4: the drop \"c\" has the case and every measured value of \"a\": give the same data once"},
+        {MATERIAL "drops = ( { name = \"a\"; case = \"case.cfg\"; HIC = 3.0; },\n"
+                  "{ name = \"b\"; case = \"copy.cfg\"; HIC = 3.0; } );\n",
+         "fit.cfg:3: the drop \"b\" has the case and every measured value of \"a\""},
+        {MATERIAL "drops = ( { name = \"a\"; case = \"case.cfg\"; curve = \"lab.csv\"; },\n"
+                  "{ name = \"b\"; case = \"fast.cfg\"; curve = \"lab.csv\"; a_max_g = 60.0; } );\n",
+         "fit.cfg:3: the curve of the drop \"b\" is that of \"a\", sample by sample"},
         {MATERIAL DROPS("HIC = 3.0; curve = \"start.csv\"; curve_filter = \"60|180\";"), "must be one of"},
         {MATERIAL DROPS("HIC = 3.0; x = 1; y = 2; z = 3;"), "unknown key \"x\"; unknown too: y, z; the keys"},
         {MATERIAL "drops = ( { name = \"" LONG_NAME "\"; case = \"case.cfg\"; HIC = 3.0; } );\n",
@@ -481,7 +500,10 @@ static void bad_input_gets_one_sentence(void **state) {
     program_place place;
     program_set_up(&place);
     put_case(&place);
-    program_shell(&place, "ln -s case.cfg link.cfg");
+    program_shell(
+        &place,
+        "ln -s case.cfg link.cfg && cp case.cfg copy.cfg && sed 's/4.5 m/5.2 m/' case.cfg > fast.cfg");
+    put_measured(&place, "lab.csv", 1);
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         program_write_text(&place, "fit.cfg", bad[k].text);
         program_result r = program_run(&place, "fit", "drop fit.cfg -o out");
@@ -540,19 +562,6 @@ static void common_start_values_are_for_the_models_that_use_them(void **state) {
     program_tear_down(&place);
 }
 
-/* A half-sine of 60 g over 20 ms from 5 ms on, in the terms of a laboratory, with 20 g at 5 kHz. */
-static void put_measured(const program_place *place, const char *name, double sign) {
-    FILE *file = fopen(program_path(place, name), "w");
-    assert_non_null(file);
-    fputs("Zeit;Beschleunigung\r\nms;m/s2\r\n", file);
-    for (int i = 0; i <= 600; i++) {
-        double t = 0.05 * i, x = (t - 5) / 20;
-        double a = (x > 0 && x < 1 ? 60 * sin(M_PI * x) : 0) + 20 * sin(M_PI / 2 * i);
-        fprintf(file, "%d,%02d;%.0f\r\n", i / 20, i % 20 * 5, sign * 9.80665 * a);
-    }
-    assert_int_equal(fclose(file), 0);
-}
-
 /* Measured curves of drops are read and filtered as by softfall-post --reference. The model's side:
  * test_joint. */
 static void measured_curves_are_read_and_filtered(void **state) {
@@ -590,6 +599,51 @@ static void measured_curves_are_read_and_filtered(void **state) {
             assert_non_null(strstr(input.drop[0].understood, "separator \";\", decimal comma, time in ms"));
         sf_fit_input_free(&input);
     }
+    program_tear_down(&place);
+}
+
+/* The medians of the curve follow the modulus and the solid fraction that `start` gives. */
+static void medians_follow_the_modulus_of_the_start(void **state) {
+    (void)state;
+    program_place place;
+    sf_fit_input input;
+    sf_error err = SF_ERROR_INIT;
+    program_set_up(&place);
+    put_case(&place);
+    assert_int_equal(
+        sf_fit_input_read(program_write_text(&place, "fit.cfg", GOOD "start: { m = 2.0; E = \"4 MPa\"; };\n"),
+                          0, &input, &err),
+        SF_OK);
+    assert_true(fabs(input.start[SF_PARAMETER_S0] / 80e3 - 1) < 1e-12 && input.start[SF_PARAMETER_M] == 2);
+    sf_fit_input_free(&input);
+    assert_int_equal(
+        sf_fit_input_read(program_write_text(&place, "fit.cfg",
+                                             GOOD "curve_form = \"spline\"; start: { solid_fraction "
+                                                  "= 0.05; };\n"),
+                          0, &input, &err),
+        SF_OK);
+    assert_true(input.start[SF_PARAMETER_M] == 2.5);
+    sf_fit_input_free(&input);
+    program_tear_down(&place);
+}
+
+/* A fit that begins at the least SHAPE that a case allows beside its ALPHA goes no further, nor do its draws.
+ */
+static void no_foam_is_one_that_a_case_refuses(void **state) {
+    (void)state;
+    program_place place;
+    program_set_up(&place);
+    put_case(&place);
+    program_shell(&place, "sed -i 's/$/ SHAPE = 0.051; ALPHA = 0.4;/' start.cfg");
+    program_write_text(&place, "fit.cfg",
+                       "material = \"start.cfg\"; unknown = ( { name = \"SHAPE\"; }, { name = \"p0\"; } );\n"
+                       "drops = ( { name = \"a\"; case = \"case.cfg\"; a_max_g = 60.0; HIC = 150.0; } );\n");
+    program_succeed(&place, "fit", "drop fit.cfg -o out -t 1");
+    program_result draws =
+        program_shell(&place, "grep -l 'SHAPE = 0\\.0[0-4]' out/material.cfg out/posterior/*.cfg");
+    assert_string_equal(draws.out, "");
+    assert_int_equal(program_shell(&place, "ls out/posterior/*.cfg | wc -l").code, 0);
+    program_succeed(&place, "pre", "case.cfg --set material=@out/posterior/draw-001.cfg -o m.h5");
     program_tear_down(&place);
 }
 
@@ -855,10 +909,21 @@ static int run_fit_for(const program_place *place, const char *jobs, double life
     return status;
 }
 
+/* A fit that was killed, and at last ended, has the bits of `whole`, a fit that was left alone, in each of
+ * the products, a list of the shell. */
+static void assert_same_products(const program_place *place, const char *products) {
+    program_result same = program_shell(
+        place, "for product in %s; do diff -r whole/$product killed/$product || exit 1; done", products);
+    if (same.code != 0)
+        fail_msg("%s", same.out);
+    assert_int_equal(program_shell(place, "test ! -e killed/runs/columns.bin").code, 0);
+}
+
+#define PRODUCTS "material.cfg material.csv fit.json fit-drops.csv fit-curve.csv"
+
 /* A fit, with its drops side by side, that is killed over and over (with its programs, alone, or one of its
  * programs alone, which it survives with a sentence) after a share of its processor time in which it could
- * not even repeat what it computes between the drops: it ends, and with the bits of a fit that was left
- * alone, drop by drop. */
+ * not even repeat what it computes between the drops: it ends, and with the same bits. */
 static void killed_fit_ends_with_the_same_material(void **state) {
     (void)state;
     enum { SHARES = 5, MOST = 6 * SHARES };
@@ -884,13 +949,36 @@ static void killed_fit_ends_with_the_same_material(void **state) {
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         fail_msg("wait status %d in life %d: %s", status, lives, program_shell(&place, "cat log").out);
     assert_true(lives > 2); /* the machine may be quicker now */
-    static const char *const same[] = {"material.cfg", "material.csv", "fit.json", "fit-drops.csv",
-                                       "fit-curve.csv"};
-    for (size_t k = 0; k < sizeof same / sizeof same[0]; k++)
-        if (program_shell(&place, "cmp whole/%s killed/%s", same[k], same[k]).code != 0)
-            fail_msg("%s differs: %s", same[k],
-                     program_shell(&place, "diff whole/%s killed/%s", same[k], same[k]).out);
-    assert_int_equal(program_shell(&place, "test ! -e killed/runs/columns.bin").code, 0);
+    assert_same_products(&place, PRODUCTS);
+    program_tear_down(&place);
+}
+
+/* The same with two models, their chains and weights and the draws from both. Chains begin anew after a kill,
+ * so each life is longer than the one before. */
+static void killed_fit_of_two_models_ends_with_the_same_draws(void **state) {
+    (void)state;
+    static const double share[] = {0.1, 0.2, 0.4, 0.6, 0.8};
+    enum { LIVES = sizeof share / sizeof share[0] };
+    program_place place;
+    double whole = 0, used = 0;
+    int killed = 0;
+    program_set_up(&place);
+    put_case(&place);
+    program_write_text(
+        &place, "fit.cfg",
+        "material = \"start.cfg\";\nforms = ( { curve = \"gas\"; }, { curve = \"rusch\"; } );\n"
+        "drops = ( { name = \"slow\"; case = \"case.cfg\"; a_max_g = 69.0; HIC = 250.0; } );\n"
+        "predict = ( { name = \"fast\"; case = \"fast.cfg\"; } );\n");
+    program_shell(&place, "sed 's/4.5 m/5.2 m/' case.cfg > fast.cfg");
+    if (run_fit_for(&place, "1", INFINITY, EVERYONE, &whole) != 0)
+        fail_msg("%s", program_shell(&place, "cat log").out);
+    assert_int_equal(program_shell(&place, "mv killed whole").code, 0);
+    for (int life = 0; life < LIVES; life++)
+        killed += WIFSIGNALED(run_fit_for(&place, "2", share[life] * whole, (victim)(life % 2), &used));
+    print_message("%d of %d lives ended by a kill, %.2g s without kills\n", killed, LIVES, whole);
+    assert_true(killed > 2);
+    assert_int_equal(run_fit_for(&place, "2", INFINITY, EVERYONE, &used), 0);
+    assert_same_products(&place, PRODUCTS " posterior.csv posterior");
     program_tear_down(&place);
 }
 
@@ -908,9 +996,12 @@ int main(void) {
         cmocka_unit_test(every_unknown_is_identified),
         cmocka_unit_test(common_start_values_are_for_the_models_that_use_them),
         cmocka_unit_test(measured_curves_are_read_and_filtered),
+        cmocka_unit_test(medians_follow_the_modulus_of_the_start),
+        cmocka_unit_test(no_foam_is_one_that_a_case_refuses),
         cmocka_unit_test(hidden_foam_is_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),
         cmocka_unit_test(killed_fit_ends_with_the_same_material),
+        cmocka_unit_test(killed_fit_of_two_models_ends_with_the_same_draws),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -401,16 +401,48 @@ static void all_three_find_more_than_drops(void **state) {
     program_tear_down(&place);
 }
 
+/* With few states, and nothing but what is predicted; `b` is measured and mapped. */
+static void infer_briefly(const bench *b, sf_drop_inference *inference) {
+    sf_inference_options o = sf_inference_defaults(1);
+    sf_error err = SF_ERROR_INIT;
+    o.chains.burn_in_rounds = 1;
+    o.chains.round = o.chains.most_steps = 40;
+    o.evidence_draws = 0;
+    o.leave_one_out = false;
+    if (sf_drop_infer(&b->fit, &o, inference, &err) != SF_OK)
+        fail_msg("%s", err.text);
+}
+
+static int count_finite(const sf_drop_inference *in) {
+    int finite = 0;
+    for (int k = 0; k < in->chains.chains * in->chains.kept * in->quantities; k++)
+        finite += isfinite(in->chains.quantity[k]);
+    return finite;
+}
+
+/* The columns of the predicted drop become as thin as can just bear the maximum's foam. */
+static void thin_to_the_limit(bench *b) {
+    sf_columns *columns = &b->fit.columns[MEASURED];
+    double low = 0, high = columns->thickness, y[ROWS];
+    for (int k = 0; k < 40; k++) {
+        sf_error err = SF_ERROR_INIT;
+        columns->thickness = 0.5 * (low + high);
+        assert_int_equal(respond(b, b->fit.columns, DROPS, b->fit.result.u, y, &err), SF_OK);
+        *(isfinite(y[b->fit.row[MEASURED]]) ? &high : &low) = columns->thickness;
+    }
+    columns->thickness = high;
+}
+
 /* Where the maximum has no correction of its own for a predicted drop (its columns collapse), the prediction
- * has the mean one of the measured drops: the states whose columns bear the drop keep their values. */
-static void a_prediction_without_offset_takes_the_mean(void **state) {
+ * has the mean one of the measured drops: the states whose columns bear the drop keep their values. Where the
+ * columns fail beside the maximum, so that the effect of another curve has no derivative, every state runs
+ * them with its own curve; a drop without columns has no figure, and stops nothing. */
+static void a_prediction_whose_columns_fail(void **state) {
     (void)state;
     program_place place;
     bench *b = malloc(sizeof *b);
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     sf_drop_inference inference;
-    sf_inference_options o = sf_inference_defaults(1);
-    sf_error err = SF_ERROR_INIT;
     assert_true(b && random);
     program_set_up(&place);
     put_start(&place);
@@ -419,13 +451,20 @@ static void a_prediction_without_offset_takes_the_mean(void **state) {
     map(b);
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
         b->y[b->fit.row[MEASURED] + kind] = NAN; /* less the columns, it is the offset */
-    o.chains.burn_in_rounds = 1;
-    o.chains.round = o.chains.most_steps = 40;
-    o.evidence_draws = 0;
-    o.leave_one_out = false;
-    assert_int_equal(sf_drop_infer(&b->fit, &o, &inference, &err), SF_OK);
-    for (int k = 0; k < inference.chains.chains * inference.chains.kept * inference.quantities; k++)
-        assert_true(isfinite(inference.chains.quantity[k]));
+    infer_briefly(b, &inference);
+    assert_false(inference.steep);
+    int all = inference.chains.chains * inference.chains.kept * inference.quantities;
+    assert_int_equal(count_finite(&inference), all);
+    sf_drop_inference_free(&inference);
+    thin_to_the_limit(b);
+    infer_briefly(b, &inference);
+    assert_true(inference.steep);
+    int some = count_finite(&inference);
+    assert_true(some > 0 && some < all);
+    sf_drop_inference_free(&inference);
+    b->fit.columns[MEASURED] = (sf_columns){.count = 0};
+    infer_briefly(b, &inference);
+    assert_int_equal(count_finite(&inference), 0);
     sf_drop_inference_free(&inference);
     sf_mapping_free(&b->fit.result);
     sf_fit_input_free(&b->in);
@@ -604,7 +643,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_tell_more_than_each),
         cmocka_unit_test(all_three_find_more_than_drops),
-        cmocka_unit_test(a_prediction_without_offset_takes_the_mean),
+        cmocka_unit_test(a_prediction_whose_columns_fail),
         cmocka_unit_test(bad_data_get_one_sentence),
         cmocka_unit_test(no_points_are_taken_where_nothing_was_measured),
         cmocka_unit_test(a_model_has_the_filter_of_the_measured_curve),

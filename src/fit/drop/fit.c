@@ -6,6 +6,7 @@
 #include "io/process.h"
 #include "post/compare.h"
 #include "solver/material/foam.h"
+#include "solver/material/foam_parameters.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -140,6 +141,10 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
         sf_series curve = {0};
         sf_columns_figures figures;
         sf_columns columns = fit->columns[d];
+        if (drop->predicted && columns.count == 0) { /* its simulation failed before the pad was touched */
+            forget(fit, d, y);
+            continue;
+        }
         if (u && fit->speed[d] >= 0)
             columns.speed *= exp(u[fit->speed[d]]);
         if (sf_columns_respond(&columns, &law, &figures, &curve, err) == SF_OK &&
@@ -339,6 +344,26 @@ static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char
     return err->status;
 }
 
+/* What a case refuses is no foam to simulate: a step that leads there is too long. */
+static sf_status check_card(const sf_fit_input *in, const double *u, const sf_foam_card *card,
+                            sf_error *err) {
+    static const double ROUNDING = 1e-12;
+    sf_error inner = SF_ERROR_INIT;
+    double value[SF_PARAMETER_COUNT];
+    values_of(in, u, value);
+    value[SF_PARAMETER_HU] = card->hysteresis_hu; /* no more than 1 in the card */
+    for (int k = 0; k < in->unknown_count; k++) {
+        const sf_parameter_info *about = sf_parameter_get(in->unknown[k]);
+        double v = value[in->unknown[k]];
+        if (!(v >= about->low * (1 - ROUNDING) && v <= about->high * (1 + ROUNDING)))
+            return SF_FAIL(err, SF_ERR_NUMERIC, "%s is %g, outside %g to %g", about->name, v, about->low,
+                           about->high);
+    }
+    if (sf_foam_check_shared(card, &inner) != SF_OK)
+        return SF_FAIL(err, SF_ERR_NUMERIC, "%s", inner.text);
+    return SF_OK;
+}
+
 /* Drops `first` to `last` - 1 with the material of u, which is written beside the drops' folders. */
 static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const char *name, const double *u,
                                 double *y, sf_error *err) {
@@ -350,7 +375,8 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
         return err->status;
     card.informed_strain = 0; /* that of the start says nothing about an iterate */
     const sf_material material = sf_foam_material(&card);
-    sf_material_write(fit->folder, name, &material, &text, err);
+    if (check_card(fit->input, u, &card, err) == SF_OK)
+        sf_material_write(fit->folder, name, &material, &text, err);
     sf_foam_card_free(&card);
     if (err->status == SF_OK && last > first && fit->input->drop[first].predicted)
         predict_with(fit, first, last, path, y, err);
@@ -425,13 +451,13 @@ static sf_status leave_one_out(sf_drop_fit *fit, const sf_mapping_problem *probl
     return err->status;
 }
 
-/* sqrt(g^T C g). */
+/* sqrt(g^T C g); NaN of a response whose columns fail. */
 static double deviation(const sf_drop_fit *fit, const double *gradient) {
     double sum = 0;
     for (int j = 0; j < fit->parameters; j++)
         for (int k = 0; k < fit->parameters; k++)
             sum += gradient[j] * fit->result.covariance[j][k] * gradient[k];
-    return sqrt(fmax(0, sum));
+    return isnan(sum) ? NAN : sqrt(fmax(0, sum));
 }
 
 static double stress_at(const sf_foam_card *card, double strain) {

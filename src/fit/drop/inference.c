@@ -3,6 +3,7 @@
 
 #include "campaign/run_folder.h"
 #include "io/process.h"
+#include "solver/material/foam_parameters.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -99,16 +100,18 @@ static void fit_parameters(const sf_drop_inference *in, const double *u, double 
     memcpy(full, u, (size_t)in->fit->input->unknown_count * sizeof *u);
 }
 
-/* Corrected responses of drops `first` to `last` - 1 into y [responses]. */
-static sf_status respond(const sf_drop_inference *in, const double *u, int first, int last, double *y,
-                         sf_error *err) {
+/* Corrected responses of drops `first` to `last` - 1 into y [responses]; `delta`: of the curve that it
+ * raises, or NULL. A foam that no card may hold fails, as no simulation could follow it. */
+static sf_status respond(const sf_drop_inference *in, const double *u, const double *delta, int first,
+                         int last, double *y, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     double full[SF_MAPPING_MAX_PARAMETERS];
     sf_foam_card card;
     fit_parameters(in, u, full);
-    if (sf_drop_fit_card(fit->input, full, &card, err) != SF_OK)
-        return err->status;
-    sf_drop_fit_respond(fit, first, last, &card, NULL, y, err);
+    SF_TRY(delta ? raised_card(fit, full, delta, &card, err)
+                 : sf_drop_fit_card(fit->input, full, &card, err));
+    if (sf_foam_check_shared(&card, err) == SF_OK)
+        sf_drop_fit_respond(fit, first, last, &card, NULL, y, err);
     sf_foam_card_free(&card);
     for (int k = fit->row[first]; k < fit->row[last] && err->status == SF_OK; k++)
         y[k] += in->offset[k];
@@ -119,7 +122,7 @@ static sf_status respond(const sf_drop_inference *in, const double *u, int first
 static bool find_residual(const sf_drop_inference *in, const double *u, double *residual) {
     sf_error err = SF_ERROR_INIT;
     double *y = sf_alloc(&err, (unsigned long)responses_of(in->fit), sizeof *y, "responses");
-    if (y && respond(in, u, 0, in->fit->measured_drops, y, &err) == SF_OK)
+    if (y && respond(in, u, NULL, 0, in->fit->measured_drops, y, &err) == SF_OK)
         for (int i = 0; i < in->data; i++)
             residual[i] = in->fit->measured[in->data_row[i]] - y[in->data_row[i]];
     free(y);
@@ -189,6 +192,11 @@ static sf_status respond_raised(const sf_drop_inference *in, int place, double s
     return err->status;
 }
 
+/* The response that a quantity is. */
+static int row_of(const sf_drop_inference *in, int q) {
+    return in->fit->row[in->quantity[q].drop] + in->quantity[q].kind;
+}
+
 static sf_status find_jacobian(sf_drop_inference *in, sf_error *err) {
     unsigned long n = (unsigned long)responses_of(in->fit);
     in->jacobian = sf_alloc(err, n * PLACES, sizeof(double), "responses");
@@ -207,6 +215,10 @@ static sf_status find_jacobian(sf_drop_inference *in, sf_error *err) {
             for (unsigned long k = 0; k < n; k++) {
                 double slope = (high[b * n + k] - low[b * n + k]) / (2 * RAISE);
                 in->jacobian[k * PLACES + b] = isfinite(slope) ? slope : 0;
+            }
+            for (int q = 0; q < in->quantities; q++) {
+                unsigned long k = (unsigned long)row_of(in, q);
+                in->steep = in->steep || !isfinite(high[b * n + k] - low[b * n + k]);
             }
         }
     }
@@ -429,12 +441,13 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
     sf_error err = SF_ERROR_INIT;
     double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
     bool known = y && !sf_process_stopped() && draw(in, u, seed, delta, &error, own) &&
-                 respond(in, u, fit->measured_drops, fit->input->drop_count, y, &err) == SF_OK;
+                 respond(in, u, in->steep ? delta : NULL, fit->measured_drops, fit->input->drop_count, y,
+                         &err) == SF_OK;
     for (int q = 0; q < in->quantities; q++) {
-        int row = fit->row[in->quantity[q].drop] + in->quantity[q].kind;
+        int row = row_of(in, q);
         quantity[q] =
             known ? y[row] + own[in->quantity[q].drop * SF_FIT_SAMPLES + in->quantity[q].kind] : NAN;
-        for (int b = 0; known && b < PLACES; b++)
+        for (int b = 0; known && !in->steep && b < PLACES; b++)
             quantity[q] += in->jacobian[row * PLACES + b] * delta[b];
     }
     free(y);

@@ -30,10 +30,11 @@ typedef struct sf_drop_inference {
     const sf_drop_fit *fit; /* borrowed */
     int parameters;         /* unknowns of the foam, then z of tau and z of kappa (sf_half_normal) */
     int data;
-    double prior_norm;                             /* ln; of the priors, cut at the parameters' bounds */
-    int *data_row;                                 /* [data] response that was measured; owned */
-    double *offset;                                /* [responses] of all drops, at u = 0 speeds; owned */
-    double *jacobian;                              /* [responses][SF_DISCREPANCY_PLACES] J; owned */
+    double prior_norm; /* ln; of the priors, cut at the parameters' bounds */
+    int *data_row;     /* [data] response that was measured; owned */
+    double *offset;    /* [responses] of all drops, at u = 0 speeds; owned */
+    double *jacobian;  /* [responses][SF_DISCREPANCY_PLACES] J; owned */
+    bool steep; /* J of a predicted figure is not known, as its columns fail nearby: they take delta itself */
     double *base;                                  /* [data][data] covariance of e; owned */
     sf_discrepancy all, without[SF_FIT_MAX_DROPS]; /* of all data; without those of one measured drop */
     int quantities;

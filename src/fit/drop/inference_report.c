@@ -514,9 +514,12 @@ static sf_status print_prediction(FILE *f, const sf_drop_average *a, int q, sf_e
 sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
     char text[LABEL];
     fputs("\nPosterior by Markov chains:\n", f);
-    for (int m = 0; m < a->models; m++)
-        fprintf(f, "  weight %.3f  log predictive density %7.2f  log evidence %8.2f  %s\n", a->weight[m],
-                a->predictive[m], a->model[m]->evidence.log_value, label_of(a, m, text));
+    for (int m = 0; m < a->models; m++) {
+        fprintf(f, "  weight %.3f  ", a->weight[m]);
+        if (isfinite(a->predictive[m]))
+            fprintf(f, "log predictive density %7.2f  ", a->predictive[m]);
+        fprintf(f, "log evidence %8.2f  %s\n", a->model[m]->evidence.log_value, label_of(a, m, text));
+    }
     for (int m = 0; m < a->failed; m++)
         fprintf(f, "  weight 0      FAILED: %s: %s\n", a->failure[m].label, a->failure[m].sentence);
     for (int q = 0; q < a->model[0]->quantities; q++)

@@ -11,7 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const double SAMPLE_INTERVAL = 0.5e-3; /* s, of a measured curve */
 static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are left out */
@@ -148,31 +147,44 @@ static sf_status read_measurement(const sf_config *config, const config_setting_
     return err->status;
 }
 
+/* The file, or a copy of it. */
 static bool is_same_file(const char *a, const char *b) {
-    struct stat first, second;
-    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
-           first.st_ino == second.st_ino;
+    sf_error none = SF_ERROR_INIT;
+    uint64_t first, second;
+    return sf_plain_hash(a, NULL, SF_PLAIN_TEXT, &first, &none) == SF_OK &&
+           sf_plain_hash(b, NULL, SF_PLAIN_TEXT, &second, &none) == SF_OK && first == second;
+}
+
+static bool is_same_curve(const sf_fit_drop *a, const sf_fit_drop *b) {
+    bool same = a->samples == b->samples;
+    for (int k = 0; k < a->samples && same; k++)
+        same = a->sample_time[k] == b->sample_time[k] && a->sample_value[k] == b->sample_value[k];
+    return same;
 }
 
 /* Everything that was measured, number by number and sample by sample. */
 static bool is_same_measurement(const sf_fit_drop *a, const sf_fit_drop *b) {
-    bool same = a->samples == b->samples;
+    bool same = is_same_curve(a, b);
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
         same = same && (a->value[kind] == b->value[kind] || (isnan(a->value[kind]) && isnan(b->value[kind])));
-    for (int k = 0; k < a->samples && same; k++)
-        same = a->sample_time[k] == b->sample_time[k] && a->sample_value[k] == b->sample_value[k];
     return same;
 }
 
 /* Twice, a drop would weigh more than it tells, and would foretell itself where it is left out. */
 static sf_status check_drop(const sf_config *config, const config_setting_t *group, const sf_fit_input *in,
                             const sf_fit_drop *drop, sf_error *err) {
-    for (const sf_fit_drop *earlier = in->drop; earlier < drop; earlier++)
+    for (const sf_fit_drop *earlier = in->drop; earlier < drop; earlier++) {
         if (is_same_measurement(earlier, drop) && is_same_file(earlier->case_path, drop->case_path))
             return sf_config_refuse(config, group, err,
                                     "the drop \"%s\" has the case and every measured value of \"%s\": give "
                                     "the same data once (of drops that were repeated, the mean)",
                                     drop->name, earlier->name);
+        if (drop->samples > 0 && is_same_curve(earlier, drop))
+            return sf_config_refuse(config, group, err,
+                                    "the curve of the drop \"%s\" is that of \"%s\", sample by sample: a "
+                                    "curve was measured in one drop",
+                                    drop->name, earlier->name);
+    }
     return SF_OK;
 }
 
@@ -596,14 +608,20 @@ static sf_status read_options(const sf_config *config, const config_setting_t *r
     return err->status;
 }
 
-/* Start values of all models, then the model's own. */
+/* Start values of all models, then the model's own. The curve's medians follow the modulus and the solid
+ * fraction, so where these are given the others are read again. */
 static sf_status read_starts(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                              sf_error *err) {
     const config_setting_t *model = model_of(root, in);
-    if (read_start(config, root, in, err) != SF_OK ||
-        (model != root && read_start(config, model, in, err) != SF_OK) ||
-        (model != root && read_rate(config, model, in, err) != SF_OK))
-        return err->status;
+    for (int pass = 0; pass < 2; pass++) {
+        if (pass == 1)
+            in->form.curve->start(in->start);
+        SF_TRY(read_start(config, root, in, err));
+        if (model != root)
+            SF_TRY(read_start(config, model, in, err));
+    }
+    if (model != root)
+        SF_TRY(read_rate(config, model, in, err));
     return check_start(config, model, in, err);
 }
 
