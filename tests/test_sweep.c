@@ -877,6 +877,43 @@ static void draws_are_taken_from_the_whole_posterior(void **state) {
     sf_plan_free(&plan);
 }
 
+static const char *const SAMPLED_DRAWS = "{ sample = \"latin_hypercube\"; count = 40; of = ("
+                                         "{ key = \"a.x\"; low = 1.0; high = 4.0; },"
+                                         "{ key = \"a.y\"; values = [1, 2]; },"
+                                         "{ key = \"material\"; posterior = \"ten\"; } ); }";
+
+static void evaluate_plan(const program_place *p, const char *factors, sf_plan *plan, sf_runs *runs,
+                          sf_analysis *a) {
+    formula f = {.fails = -1};
+    sf_error err;
+    read_plan(p, factors, plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    if (campaign(p, plan, &f, false, 1, runs, &err) != SF_OK || sf_analysis_make(runs, a, &err) != SF_OK)
+        fail_msg("%s", err.text);
+}
+
+static void free_evaluated(sf_plan *plan, sf_runs *runs, sf_analysis *a) {
+    sf_analysis_free(a);
+    sf_runs_free(runs);
+    sf_plan_free(plan);
+}
+
+/* Ten draws in 40 rows, over the folder of the test before: the means of four runs each are mostly scatter of
+ * the other factors. */
+static void draws_that_are_sampled_with_others_have_no_main_effect(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(*state, SAMPLED_DRAWS, &plan, &runs, &a);
+    assert_true(isnan(a.effect[0][2].low) && isnan(a.effect[0][2].high));
+    assert_true(a.effect[0][0].high > a.effect[0][0].low);
+    free_evaluated(&plan, &runs, &a);
+    evaluate_plan(*state, "{ key = \"a.x\"; values = [1, 2]; }, { key = \"material\"; posterior = \"ten\"; }",
+                  &plan, &runs, &a); /* crossed: a_max moves by 9/3 with the index of the draw */
+    assert_relative(a.effect[0][1].high - a.effect[0][1].low, 0.9 * 3, 1e-6);
+    free_evaluated(&plan, &runs, &a);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -968,6 +1005,7 @@ int main(void) {
         cmocka_unit_test(each_geometry_is_looked_at),
         cmocka_unit_test(a_surface_of_very_many_rows_has_every_level),
         cmocka_unit_test(draws_are_taken_from_the_whole_posterior),
+        cmocka_unit_test(draws_that_are_sampled_with_others_have_no_main_effect),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

@@ -288,7 +288,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
         return sf_config_refuse(r->config, s, err, "draws is %d, but %s holds %d", count, folder, there);
     if (make_levels(r->factor, count, true, err) != SF_OK)
         return err->status;
-    r->factor->uncertain = true;
+    r->factor->uncertain = r->factor->posterior = true;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         draw_name(name, chosen_draw(k, count, there), path, sizeof path);
         take_file(r, s, path, k, err);

@@ -24,6 +24,7 @@ typedef struct sf_factor {
     char where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of the plan, for sentences */
     bool words;                       /* the values are words */
     bool uncertain;                   /* an unknown of which the values are draws, not a choice */
+    bool posterior;                   /* the words are draws of a posterior */
     sf_distribution distribution;     /* of a factor that is sampled */
     double a, b;                      /* its numbers, in `unit` */
     int64_t count;                    /* levels of a list */
