@@ -914,6 +914,21 @@ static void draws_that_are_sampled_with_others_have_no_main_effect(void **state)
     free_evaluated(&plan, &runs, &a);
 }
 
+/* Ten draws in 40 rows are ten foams. */
+static void draws_that_are_sampled_count_once_in_the_interval(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(*state, SAMPLED_DRAWS, &plan, &runs, &a);
+    assert_int_equal(a.probability.cells, 1);
+    sf_probability ten = a.probability.cell[1];
+    assert_int_equal(ten.below + ten.above, 40);
+    sf_probability_judge(&ten, 10);
+    assert_close(a.probability.cell[1].low, ten.low, 1e-12);
+    assert_close(a.probability.cell[1].high, ten.high, 1e-12);
+    free_evaluated(&plan, &runs, &a);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -1006,6 +1021,7 @@ int main(void) {
         cmocka_unit_test(a_surface_of_very_many_rows_has_every_level),
         cmocka_unit_test(draws_are_taken_from_the_whole_posterior),
         cmocka_unit_test(draws_that_are_sampled_with_others_have_no_main_effect),
+        cmocka_unit_test(draws_that_are_sampled_count_once_in_the_interval),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };
