@@ -929,6 +929,33 @@ static void draws_that_are_sampled_count_once_in_the_interval(void **state) {
     free_evaluated(&plan, &runs, &a);
 }
 
+/* What an estimate counts: rows of other inputs and, on request, those that failed. */
+static void an_estimate_counts_the_rows_that_are_done_again(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        uint64_t inputs;
+        bool retry;
+        int64_t open;
+    } cases[] = {{1, false, 0}, {1, true, 1}, {2, false, 60}};
+    sf_plan plan;
+    formula f = {.fails = 3};
+    finish_grid(p, &plan, &f);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const sf_sweep_campaign c = {
+            .plan = &plan, .folder = p->folder, .inputs = cases[k].inputs, .retry = cases[k].retry};
+        sf_runs runs;
+        sf_error err = SF_ERROR_INIT;
+        int64_t open = -1;
+        if (sf_runs_create(&plan, &runs, &err) != SF_OK ||
+            sf_sweep_campaign_look(&c, &runs, &open, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_int_equal(open, cases[k].open);
+        assert_int_equal(sf_runs_count(&runs, SF_SWEEP_DONE), 59); /* they tell the time of a run */
+        sf_runs_free(&runs);
+    }
+    sf_plan_free(&plan);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -1022,6 +1049,7 @@ int main(void) {
         cmocka_unit_test(draws_are_taken_from_the_whole_posterior),
         cmocka_unit_test(draws_that_are_sampled_with_others_have_no_main_effect),
         cmocka_unit_test(draws_that_are_sampled_count_once_in_the_interval),
+        cmocka_unit_test(an_estimate_counts_the_rows_that_are_done_again),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

@@ -111,8 +111,13 @@ static void a_sweep_writes_its_table_and_report_and_resumes(void **state) {
 /* Goes on from the folder of the test before. */
 static void what_a_run_reads_is_simulated_again_when_it_changes(void **state) {
     const program_place *p = *state;
+    program_result r = program_succeed(p, "sweep", "plan.cfg -o out --dry-run");
+    assert_non_null(strstr(r.out, "\n0 open runs of about "));
     program_shell(p, "sed -i 's/^HU = .*/HU = 0.2;/' foam.cfg");
-    program_result r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2");
+    r = program_succeed(p, "sweep", "plan.cfg -o out --dry-run");
+    assert_non_null(strstr(r.out, "\n4 open runs of about "));
+    assert_non_null(strstr(r.out, "from 4 finished runs"));
+    r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2");
     assert_non_null(strstr(r.out, "every run is looked at again"));
     assert_non_null(strstr(r.out, "2 drops simulated, 2 were there"));
 }
