@@ -132,6 +132,27 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
         {"{ key = \"a.b\"; value = [1]; }", "unknown key \"value\""},
         {"{ key = \"a.b\"; values = [1]; from = 1; }", "exclude each other"},
         {"{ key = \"a.b\"; low = 1.0; high = 2.0; }", "unknown key \"low\""},
+        {"{ key = \"a.b\"; values = [1]; to = 2; }",
+         "unknown key \"to\"; the keys here are key, name, values"},
+        {"{ key = \"material\"; files = [\"a.cfg\"]; draws = 2; }", "unknown key \"draws\""},
+        {"{ key = \"material\"; posterior = \"none\"; count = 2; }", "unknown key \"count\""},
+        {"{ key = \"a.b\"; from = 1.0; to = 2.0; count = 2; draws = 2; }", "unknown key \"draws\""},
+        {"{ key = \"a.b\"; from = 1.0; to = 2.0; count = 2.5; }", "count is 2.5; it must be a whole number"},
+        {"{ sample = \"sobol\"; count = 8; of = ( { key = \"a.b\"; distribution = \"normal\"; mean = 1.0; "
+         "deviation = 1.0; low = 0.0; } ); }",
+         "unknown key \"low\"; the keys here are key, name, distribution, mean, deviation"},
+        {"{ sample = \"sobol\"; count = 8; of = ( { key = \"a.b\"; distribution = \"uniform\"; low = 1.0; "
+         "high = 2.0; median = 1.0; } ); }",
+         "unknown key \"median\""},
+        {"{ sample = \"sobol\"; count = 8; of = ( { key = \"material\"; posterior = \"none\"; "
+         "distribution = \"normal\"; } ); }",
+         "unknown key \"distribution\""},
+        {"{ sample = \"sobol\"; count = 8.5; of = ( { key = \"a.b\"; low = 1.0; high = 2.0; } ); }",
+         "count is 8.5; it must be a whole number"},
+        {"{ sample = \"random\"; count = 8; seed = 0.5; of = ( { key = \"a.b\"; low = 1.0; high = 2.0; } ); }",
+         "seed is 0.5; it must be a whole number"},
+        {"{ key = \"material\"; posterior = \"none\"; draws = 1.5; }",
+         "draws is 1.5; it must be a whole number"},
         {"", "factors must be a list"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {

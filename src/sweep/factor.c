@@ -230,7 +230,7 @@ static sf_status read_range(reading *r, sf_error *err) {
     if (!last)
         return sf_config_refuse(r->config, r->group, err, "%s: from needs to and count", f->key);
     if (take_number(r, first, &from, err) != SF_OK || take_number(r, last, &to, err) != SF_OK ||
-        sf_config_number(r->config, r->group, "count", true, 2, MOST_LEVELS, &count, err) != SF_OK ||
+        sf_config_whole(r->config, r->group, "count", true, 2, MOST_LEVELS, &count, err) != SF_OK ||
         sf_config_choice(r->config, r->group, "spacing", "linear|log", &logarithmic, err) != SF_OK ||
         make_levels(f, (int64_t)count, false, err) != SF_OK)
         return err->status;
@@ -276,7 +276,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
         return sf_config_refuse(r->config, s, err,
                                 "a posterior is of key = \"material\" or of a layer, not of %s",
                                 r->factor->key);
-    if (sf_config_number(r->config, r->group, "draws", false, 1, MOST_DRAWS, &draws, err) != SF_OK)
+    if (sf_config_whole(r->config, r->group, "draws", false, 1, MOST_DRAWS, &draws, err) != SF_OK)
         return err->status;
     bool given = config_setting_get_member(r->group, "draws") != NULL;
     snprintf(folder, sizeof folder, "%s%s%s", *name == '/' ? "" : r->config->folder, *name == '/' ? "" : "/",
@@ -320,6 +320,10 @@ static sf_status read_distribution(reading *r, sf_error *err) {
         return err->status;
     r->factor->distribution = (sf_distribution)(which + 1);
     const char *const *names = parameters[which + 1];
+    char own[64];
+    snprintf(own, sizeof own, "key|name|distribution|%s|%s", names[0], names[1]);
+    if (sf_config_names(r->config, r->group, own, err) != SF_OK)
+        return err->status;
     const config_setting_t *first = config_setting_get_member(r->group, names[0]),
                            *second = config_setting_get_member(r->group, names[1]);
     if (!first || !second)
@@ -353,7 +357,10 @@ static sf_status read_head(reading *r, sf_error *err) {
 }
 
 static sf_status read_levels(reading *r, bool sampled, sf_error *err) {
-    static const char *const kinds[] = {"values", "files", "posterior", "from", NULL};
+    static const char *const kinds[] = {"values", "files", "posterior", "from", NULL},
+                             *const names[] = {"key|name|values|uncertain", "key|name|files|uncertain",
+                                               "key|name|posterior|draws|uncertain",
+                                               "key|name|from|to|count|spacing|uncertain"};
     const config_setting_t *found = NULL;
     int which = -1;
     for (int k = 0; kinds[k]; k++) {
@@ -371,6 +378,8 @@ static sf_status read_levels(reading *r, bool sampled, sf_error *err) {
                                 "%s: give values, files, posterior, or from, to and count; a distribution "
                                 "belongs into a group with sample",
                                 r->factor->key);
+    if (sf_config_names(r->config, r->group, names[which], err) != SF_OK)
+        return err->status;
     return which == 2   ? read_posterior(r, found, err)
            : which == 3 ? read_range(r, err)
                         : read_list(r, found, which == 1, err);

@@ -120,8 +120,8 @@ static sf_status read_sample(const sf_config *config, const config_setting_t *gr
     b->kind = SF_BLOCK_SAMPLE;
     if (sf_config_names(config, group, "sample|count|seed|of", err) != SF_OK ||
         sf_config_choice(config, group, "sample", SF_SAMPLING_WORDS, &method, err) != SF_OK ||
-        sf_config_number(config, group, "count", true, 1, MOST_SAMPLES, &count, err) != SF_OK ||
-        sf_config_number(config, group, "seed", false, 0, 4294967295.0, &seed, err) != SF_OK ||
+        sf_config_whole(config, group, "count", true, 1, MOST_SAMPLES, &count, err) != SF_OK ||
+        sf_config_whole(config, group, "seed", false, 0, 4294967295.0, &seed, err) != SF_OK ||
         sf_config_list(config, group, "of", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
         add_members(config, list, true, p, err) != SF_OK)
         return err->status;
