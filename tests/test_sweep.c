@@ -977,6 +977,30 @@ static void an_estimate_counts_the_rows_that_are_done_again(void **state) {
     sf_plan_free(&plan);
 }
 
+/* Six rows of three words. */
+static void a_word_that_a_zip_repeats_is_one_level(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+    evaluate_plan(*state,
+                  "{ zip = ( { key = \"a.x\"; values = [1, 1, 1, 4, 4, 4]; },"
+                  "{ key = \"pad.base\"; values = [\"glued\", \"glued\", \"smooth\", \"smooth\", \"glued\","
+                  " \"resting\"]; } ); }",
+                  &plan, &runs, &a);
+    static const int level[] = {0, 0, 1, 1, 0, 2};
+    assert_int_equal(plan.rows, 6);
+    assert_int_equal(plan.factor[1].count, 3);
+    for (int64_t row = 0; row < 6; row++)
+        assert_int_equal((int)sf_plan_value(&plan, 1, row), level[row]);
+    sf_plan_overrides(&plan, 5, text);
+    assert_string_equal(text[1], "pad.base=\"resting\"");
+    /* of a_max: glued 100, 100, 200; smooth 100 + 1/3, 200 + 1/3; resting 200 + 2/3 */
+    assert_relative(a.effect[0][1].low, 400.0 / 3, 1e-8);
+    assert_relative(a.effect[0][1].high, 200 + 2.0 / 3, 1e-8);
+    free_evaluated(&plan, &runs, &a);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -1071,6 +1095,7 @@ int main(void) {
         cmocka_unit_test(draws_that_are_sampled_with_others_have_no_main_effect),
         cmocka_unit_test(draws_that_are_sampled_count_once_in_the_interval),
         cmocka_unit_test(an_estimate_counts_the_rows_that_are_done_again),
+        cmocka_unit_test(a_word_that_a_zip_repeats_is_one_level),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

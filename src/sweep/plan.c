@@ -50,11 +50,36 @@ static sf_status add_members(const sf_config *config, const config_setting_t *li
     return err->status;
 }
 
+/* A word that the list repeats, as that of a zip may, is one level. */
+static void number_words(sf_factor *f) {
+    int64_t kept = 0;
+    for (int64_t k = 0; k < f->count; k++) {
+        char *text = f->text[k], *label = f->label[k];
+        int64_t level = 0;
+        f->text[k] = f->label[k] = NULL;
+        while (level < kept && strcmp(f->text[level], text) != 0)
+            level++;
+        f->value[k] = (double)level;
+        if (level < kept) {
+            free(text);
+            free(label);
+        } else {
+            f->text[kept] = text;
+            f->label[kept++] = label;
+        }
+    }
+    f->count = kept;
+}
+
 static sf_status copy_levels(sf_factor *f, sf_error *err) {
     f->value = sf_alloc(err, (unsigned long)f->count, sizeof *f->value, "the values of a factor");
-    for (int64_t k = 0; k < f->count && f->value; k++)
-        f->value[k] = f->words ? (double)k : f->number[k];
-    return err->status;
+    if (!f->value)
+        return err->status;
+    for (int64_t k = 0; k < f->count && !f->words; k++)
+        f->value[k] = f->number[k];
+    if (f->words)
+        number_words(f);
+    return SF_OK;
 }
 
 static sf_status read_list_block(const sf_config *config, const config_setting_t *group, sf_plan *p,
