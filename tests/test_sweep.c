@@ -1001,6 +1001,24 @@ static void a_word_that_a_zip_repeats_is_one_level(void **state) {
     free_evaluated(&plan, &runs, &a);
 }
 
+/* An array of libconfig has whole or fractional numbers, not both. */
+static void a_vector_with_whole_and_fractional_numbers_is_a_value(void **state) {
+    sf_plan plan;
+    sf_error err = SF_ERROR_INIT;
+    uint64_t hash;
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+    read_plan(*state,
+              "{ key = \"missile.direction\"; values = ([0.0, 0.0, -1.0], [0.1, 0.0, -1.0], (0, 0.2, -1)); }",
+              &plan);
+    sf_plan_overrides(&plan, 1, text);
+    assert_string_equal(text[0], "missile.direction=[0.1, 0.0, -1.0]");
+    sf_factor_text(&plan.factor[0], 1, text[0], sizeof text[0]);
+    assert_string_equal(text[0], "[0.1, 0, -1]"); /* in tables as before */
+    if (sf_sweep_check_inputs(&plan, &hash, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    sf_plan_free(&plan);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -1096,6 +1114,7 @@ int main(void) {
         cmocka_unit_test(draws_that_are_sampled_count_once_in_the_interval),
         cmocka_unit_test(an_estimate_counts_the_rows_that_are_done_again),
         cmocka_unit_test(a_word_that_a_zip_repeats_is_one_level),
+        cmocka_unit_test(a_vector_with_whole_and_fractional_numbers_is_a_value),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

@@ -141,17 +141,38 @@ static sf_status set_word(sf_factor *f, int64_t k, char *text, const char *label
                                : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", f->key);
 }
 
-static sf_status take_word(reading *r, const config_setting_t *s, int64_t k, sf_error *err) {
+/* All with a point, as an array of libconfig has whole or fractional numbers, not both. */
+static void print_fractions(FILE *out, const config_setting_t *array) {
+    for (int k = 0; k < config_setting_length(array); k++) {
+        char number[40];
+        snprintf(number, sizeof number, "%.12g", config_setting_get_float_elem(array, k));
+        fprintf(out, "%s%s%s", k ? ", " : "[", number, strpbrk(number, ".e") ? "" : ".0");
+    }
+    fputc(']', out);
+}
+
+/* The setting in libconfig syntax, as --set takes it or, `plain`, as a table has it; from malloc, NULL
+ * without memory. */
+static char *print_word(const config_setting_t *s, bool plain) {
     char *text = NULL;
     size_t size = 0;
-    const char *own = config_setting_get_string(s);
+    const config_setting_t *first = config_setting_is_array(s) ? config_setting_get_elem(s, 0) : NULL;
     FILE *out = open_memstream(&text, &size);
-    if (!out)
+    if (out && first && config_setting_type(first) == CONFIG_TYPE_FLOAT && !plain)
+        print_fractions(out, s);
+    else if (out)
+        sf_case_print_setting(out, s);
+    return out && fclose(out) == 0 ? text : NULL;
+}
+
+static sf_status take_word(reading *r, const config_setting_t *s, int64_t k, sf_error *err) {
+    char *label = print_word(s, true);
+    const char *own = config_setting_get_string(s);
+    if (!label)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", r->factor->key);
-    sf_case_print_setting(out, s);
-    if (fclose(out) != 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", r->factor->key);
-    return set_word(r->factor, k, text, own ? own : text, err);
+    set_word(r->factor, k, print_word(s, false), own ? own : label, err);
+    free(label);
+    return err->status;
 }
 
 /* A group of the case is replaced by a file, "@file"; a key takes the path as a text. */
