@@ -193,6 +193,9 @@ static void folders_that_are_not_of_the_plan_or_taken_are_refused(void **state) 
     close(lock);
     program_shell(p, "mkdir used; touch used/report.html");
     assert_refused(p, "plan.cfg -o used", "used already holds report.html");
+    program_shell(p, "mkdir table; echo mine > table/runs.csv");
+    assert_refused(p, "plan.cfg -o table --dry-run", "table already holds runs.csv");
+    program_succeed(p, "sweep", "plan.cfg -o table --dry-run --force");
     char *path = strdup(getenv("PATH"));
     program_shell(p, "mkdir -p only && ln -s /bin/true only/snakemake");
     setenv("PATH", program_path(p, "only"), 1);

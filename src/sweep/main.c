@@ -168,7 +168,9 @@ static sf_status check(const options *o, job *j, bool *known, sf_error *err) {
     name_output(j);
     if ((size_t)snprintf(j->folder, sizeof j->folder, "%s/runs", o->directory) >= sizeof j->folder - 64)
         return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
-    if (sf_sweep_campaign_check(&j->campaign, known, err) != SF_OK)
+    static const char *const table[] = {"runs.csv", NULL}; /* of something else if no campaign knows it */
+    if (sf_sweep_campaign_check(&j->campaign, known, err) != SF_OK ||
+        sf_staging_check(o->directory, table, o->force || *known, err) != SF_OK)
         return err->status;
     return sf_staging_check(o->directory, j->list, o->force || *known, err);
 }
