@@ -9,6 +9,7 @@
 #include "sweep/cost.h"
 #include "sweep/drops.h"
 #include "sweep/inputs.h"
+#include "sweep/plot.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -1019,6 +1020,51 @@ static void a_vector_with_whole_and_fractional_numbers_is_a_value(void **state) 
     sf_plan_free(&plan);
 }
 
+/* Scripts and pictures of a campaign, beside runs.csv. */
+static void draw(const program_place *p, const sf_analysis *a) {
+    static const char *const names[] = {"factors.gp",     "factors.png",     "curves.gp",  "curves.png",
+                                        "effects.gp",     "effects.png",     "surface.gp", "surface.png",
+                                        "probability.gp", "probability.png", NULL};
+    char warning[320];
+    sf_staging output = {0};
+    sf_error err = SF_ERROR_INIT;
+    if (sf_staging_begin(program_path(p, "drawn"), names, true, &output, &err) != SF_OK ||
+        sf_sweep_plot(&output, a, p->folder, warning, sizeof warning, &err) != SF_OK ||
+        sf_staging_commit(&output, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    sf_staging_end(&output);
+    assert_string_equal(warning, "");
+}
+
+/* Of one run there is no effect, and a figure may be of no run: gnuplot ends where all of a panel is NaN. */
+static void panels_without_data_are_left_out(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(p, "{ key = \"a.x\"; values = [1]; }, { key = \"a.y\"; values = [1]; }", &plan, &runs, &a);
+    draw(p, &a);
+    assert_int_equal(program_shell(p, "test -s drawn/factors.png && test ! -e drawn/effects.gp").code, 0);
+    free_evaluated(&plan, &runs, &a);
+    static const char *const chosen[] = {"", "{ key = \"a.z\"; values = [1, 2]; },"}; /* intervals, a map */
+    for (int k = 0; k < 2; k++) {
+        char factors[512];
+        snprintf(
+            factors, sizeof factors,
+            "{ key = \"a.x\"; values = [1, 2, 3]; }, %s { key = \"a.y\"; uncertain = true; values = [1, 2]; } );"
+            "figures = ( { key = \"peak_stress_kPa\"; limit = 9.0; }, { key = \"hic\"; limit = 1000.0; }",
+            chosen[k]);
+        evaluate_plan(p, factors, &plan, &runs, &a);
+        draw(p, &a);
+        assert_int_equal(program_shell(p,
+                                       "test -s drawn/factors.png && test -s drawn/effects.png && "
+                                       "test -s drawn/probability.png && ! grep peak_stress drawn/effects.gp")
+                             .code,
+                         0);
+        free_evaluated(&plan, &runs, &a);
+    }
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -1115,6 +1161,7 @@ int main(void) {
         cmocka_unit_test(an_estimate_counts_the_rows_that_are_done_again),
         cmocka_unit_test(a_word_that_a_zip_repeats_is_one_level),
         cmocka_unit_test(a_vector_with_whole_and_fractional_numbers_is_a_value),
+        cmocka_unit_test(panels_without_data_are_left_out),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };
