@@ -1065,6 +1065,23 @@ static void panels_without_data_are_left_out(void **state) {
     }
 }
 
+/* Every 14th of 40,000 rows would be of the first level of the factor that changes fastest. */
+static void the_points_of_a_picture_are_of_every_level(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(
+        p, "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 20000; }, { key = \"a.y\"; values = [1, 2]; }",
+        &plan, &runs, &a);
+    draw(p, &a);
+    int of_one = atoi(program_shell(p, "grep -c '^1,' drawn/factors.gp").out),
+        of_two = atoi(program_shell(p, "grep -c '^2,' drawn/factors.gp").out);
+    if (of_one + of_two < 2900 || of_one + of_two > 3100 || abs(of_one - of_two) > 300)
+        fail_msg("%d and %d points", of_one, of_two);
+    free_evaluated(&plan, &runs, &a);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -1162,6 +1179,7 @@ int main(void) {
         cmocka_unit_test(a_word_that_a_zip_repeats_is_one_level),
         cmocka_unit_test(a_vector_with_whole_and_fractional_numbers_is_a_value),
         cmocka_unit_test(panels_without_data_are_left_out),
+        cmocka_unit_test(the_points_of_a_picture_are_of_every_level),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

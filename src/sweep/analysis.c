@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { SURFACE_SEED = 1 };
+enum { SURFACE_SEED = 1 }; /* and that of pictures */
 
 double sf_analysis_value(const sf_analysis *a, int figure, int64_t row) {
     const sf_runs *r = a->runs;
@@ -65,6 +65,26 @@ static int64_t count_values(const sf_analysis *a, int figure) {
  * equal distances would meet the same levels of the factors that change fastest. */
 static bool is_drawn(gsl_rng *random, int64_t wanted, int64_t left) {
     return left <= wanted || gsl_rng_uniform(random) * (double)left < (double)wanted;
+}
+
+bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err) {
+    int64_t picked = 0;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    bool *pick = sf_alloc(err, (unsigned long)count, sizeof *pick, "a picture");
+    if (!random && err->status == SF_OK)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a picture");
+    if (random)
+        gsl_rng_set(random, SURFACE_SEED);
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
+        pick[k] = picked < most && is_drawn(random, most - picked, count - k);
+        picked += pick[k];
+    }
+    if (random)
+        gsl_rng_free(random);
+    if (err->status == SF_OK)
+        return pick;
+    free(pick);
+    return NULL;
 }
 
 static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {

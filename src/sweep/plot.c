@@ -148,32 +148,32 @@ static int list_panels(const sf_analysis *a, bool (*has)(const sf_analysis *, in
 static sf_status put_factor_data(FILE *g, const sf_analysis *a, int column, int factor, const series *s,
                                  sf_error *err) {
     const sf_plan *p = a->plan;
-    int64_t every = p->rows / POINTS + 1;
     sf_groups g2 = {0};
     if (sf_groups_make(p, factor, &g2, err) != SF_OK)
         return err->status;
     int64_t groups = g2.count, cells = groups * p->figure_count;
     double *sum = sf_alloc(err, (unsigned long)cells, sizeof *sum, "a picture");
     double *number = sf_alloc(err, (unsigned long)cells, sizeof *number, "a picture");
+    bool *shown = sf_analysis_pick(a->done - a->unusable, POINTS, err);
     const sf_block *b = &p->block[p->block_of[factor]];
     for (int k = 0; k < series_count(s) && err->status == SF_OK; k++) {
         memset(sum, 0, (size_t)cells * sizeof *sum);
         memset(number, 0, (size_t)cells * sizeof *number);
         fprintf(g, "$p%d_%d << EOD\nNaN,NaN\n", column, k);
-        for (int64_t row = 0; row < p->rows; row++) {
-            if (!sf_runs_usable(a->runs, row) || series_of(p, s, row) != k)
+        for (int64_t row = 0, at = -1; row < p->rows; row++) {
+            if (!sf_runs_usable(a->runs, row) || (++at, series_of(p, s, row) != k))
                 continue;
             int64_t group = g2.of_row[row / b->stride % b->rows];
-            if (row % every == 0)
+            if (shown[at])
                 fprintf(g, "%.9g", sf_plan_value(p, factor, row));
             for (int f = 0; f < p->figure_count; f++) {
                 double value = sf_analysis_value(a, f, row);
-                if (row % every == 0)
+                if (shown[at])
                     fprintf(g, ",%.6g", value);
                 sum[f * groups + group] += isnan(value) ? 0 : value;
                 number[f * groups + group] += !isnan(value);
             }
-            if (row % every == 0)
+            if (shown[at])
                 fputc('\n', g);
         }
         fprintf(g, "EOD\n$m%d_%d << EOD\nNaN,NaN\n", column, k);
@@ -187,6 +187,7 @@ static sf_status put_factor_data(FILE *g, const sf_analysis *a, int column, int 
     }
     free(sum);
     free(number);
+    free(shown);
     sf_groups_free(&g2);
     return err->status;
 }
@@ -275,15 +276,17 @@ static void put_curve_plot(FILE *g, const sf_plan *p, const series *s, int count
 static sf_status plot_curves(const sf_staging *output, const sf_analysis *a, const char *folder,
                              sf_error *err) {
     int of[CURVES + 1], count = 0;
-    int64_t usable = a->done - a->unusable, every = usable / CURVES + 1, at = 0;
+    int64_t at = -1;
     series s;
     if (choose_series(a->plan, -1, &s, err) != SF_OK)
         return err->status;
-    FILE *g = sf_gnuplot_begin(output, "curves", 1600, 900, err);
-    for (int64_t row = 0; row < a->runs->count && g && count < CURVES; row++)
-        if (sf_runs_usable(a->runs, row) && a->runs->folder[row] && at++ % every == 0 &&
+    bool *shown = sf_analysis_pick(a->done - a->unusable, CURVES, err);
+    FILE *g = shown ? sf_gnuplot_begin(output, "curves", 1600, 900, err) : NULL;
+    for (int64_t row = 0; row < a->runs->count && g; row++)
+        if (sf_runs_usable(a->runs, row) && shown[++at] && a->runs->folder[row] &&
             put_curve(g, folder, a->runs->folder[row], count))
             of[count++] = series_of(a->plan, &s, row);
+    free(shown);
     if (g && count > 0)
         put_curve_plot(g, a->plan, &s, count, of);
     sf_groups_free(&s.groups);
@@ -396,12 +399,14 @@ static sf_status plot_indices(const sf_staging *output, const sf_analysis *a, sf
 
 /* ---- response surface ---- */
 
-static void put_surface_panel(FILE *g, const sf_analysis *a, int figure) {
+static void put_surface_panel(FILE *g, const sf_analysis *a, int figure, sf_error *err) {
     const sf_sweep_surface *s = &a->surface[figure];
-    int64_t every = s->rows / POINTS + 1;
+    bool *shown = sf_analysis_pick(s->rows, POINTS, err);
     fprintf(g, "$s%d << EOD\n", figure);
-    for (int64_t k = 0; k < s->rows; k += every)
-        fprintf(g, "%.6g,%.6g\n", s->simulated[k], s->left_out[k]);
+    for (int64_t k = 0; k < s->rows && shown; k++)
+        if (shown[k])
+            fprintf(g, "%.6g,%.6g\n", s->simulated[k], s->left_out[k]);
+    free(shown);
     fprintf(g, "EOD\nset xlabel '%s, simulated'\nset ylabel 'by the surface without its place'\n",
             a->plan->figure[figure].figure);
     fprintf(g,
@@ -419,9 +424,10 @@ static sf_status plot_surface(const sf_staging *output, const sf_analysis *a, sf
         return err->status;
     fprintf(g, "set multiplot layout %d,%d\n", panels > 1 ? (panels + 1) / 2 : 1, panels > 1 ? 2 : 1);
     for (int k = 0; k < panels; k++)
-        put_surface_panel(g, a, panel[k]);
+        put_surface_panel(g, a, panel[k], err);
     fputs("unset multiplot\n", g);
-    return sf_staging_close(g, "surface.gp", err);
+    sf_staging_close(g, "surface.gp", err);
+    return err->status;
 }
 
 /* ---- probability ---- */
