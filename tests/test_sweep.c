@@ -1082,6 +1082,28 @@ static void the_points_of_a_picture_are_of_every_level(void **state) {
     free_evaluated(&plan, &runs, &a);
 }
 
+/* As all names of the plan, from whatever folder softfall-sweep is started. */
+static void a_file_of_set_is_relative_to_the_plan(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_error err = SF_ERROR_INIT;
+    uint64_t hash;
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE], expected[700];
+    program_shell(p, "cp '%s' foam.cfg; cp '%s' eva35.csv", fixture_source("examples/materials/eva35.cfg"),
+                  fixture_source("examples/materials/eva35.csv"));
+    read_plan(p,
+              "{ key = \"missile.velocity\"; values = [\"4 m/s\"]; } );"
+              "set = ( \"pad.base=glued\", \"material=@foam.cfg\"",
+              &plan);
+    assert_int_equal(sf_plan_overrides(&plan, 0, text), 3);
+    snprintf(expected, sizeof expected, "material=@%s/foam.cfg", p->folder);
+    assert_string_equal(text[0], "pad.base=glued");
+    assert_string_equal(text[1], expected);
+    if (sf_sweep_check_inputs(&plan, &hash, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    sf_plan_free(&plan);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -1180,6 +1202,7 @@ int main(void) {
         cmocka_unit_test(a_vector_with_whole_and_fractional_numbers_is_a_value),
         cmocka_unit_test(panels_without_data_are_left_out),
         cmocka_unit_test(the_points_of_a_picture_are_of_every_level),
+        cmocka_unit_test(a_file_of_set_is_relative_to_the_plan),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

@@ -286,6 +286,9 @@ static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_er
         read_factors(config, huge, p, err) != SF_OK || read_set(config, p, err) != SF_OK)
         return err->status;
     p->title = title ? strdup(title) : NULL;
+    p->folder = strdup(config->folder);
+    if (!p->folder)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the plan %s", p->path);
     return read_figures(config, p, err);
 }
 
@@ -303,6 +306,7 @@ void sf_plan_free(sf_plan *p) {
         sf_factor_free(&p->factor[k]);
     for (int k = 0; k < p->set_count; k++)
         free(p->set[k]);
+    free(p->folder);
     free(p->case_path);
     free(p->title);
     *p = (sf_plan){0};
@@ -319,6 +323,15 @@ bool sf_factor_is_group(const sf_factor *f) {
     return f->words && f->text[0][0] == '@';
 }
 
+/* A file in place of a group is relative to the plan. */
+static void set_override(const sf_plan *p, const char *set, char *text) {
+    const char *file = sf_case_override_file(set);
+    if (file && *file != '/')
+        snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%.*s%s/%s", (int)(file - set), set, p->folder, file);
+    else
+        snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%s", set);
+}
+
 int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE]) {
     int count = 0;
     for (int groups = 1; groups >= 0; groups--) {
@@ -327,7 +340,7 @@ int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERR
                 sf_factor_override(&p->factor[f], sf_plan_value(p, f, row), text[count++],
                                    SF_SWEEP_OVERRIDE_SIZE);
         for (int k = 0; groups && k < p->set_count; k++)
-            snprintf(text[count++], SF_SWEEP_OVERRIDE_SIZE, "%s", p->set[k]);
+            set_override(p, p->set[k], text[count++]);
     }
     return count;
 }
