@@ -154,6 +154,10 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
          "seed is 0.5; it must be a whole number"},
         {"{ key = \"material\"; posterior = \"none\"; draws = 1.5; }",
          "draws is 1.5; it must be a whole number"},
+        {"{ key = \"geometry.file\"; values = [\"a.geo\"]; }",
+         "geometry.file is the name of a file: give files, relative to the plan"},
+        {"{ key = \"material.curve\"; values = [\"/a.csv\", \"b.csv\"]; }",
+         "material.curve is the name of a file"},
         {"", "factors must be a list"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
