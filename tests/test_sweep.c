@@ -1108,6 +1108,25 @@ static void a_file_of_set_is_relative_to_the_plan(void **state) {
     sf_plan_free(&plan);
 }
 
+/* A factor of one number is as good as one of the case. */
+static void a_factor_of_one_value_is_not_in_the_surface(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    char term[100];
+    evaluate_plan(*state,
+                  "{ key = \"a.z\"; from = 1.0; to = 4.0; count = 10; }, { key = \"a.y\"; values = [5]; },"
+                  "{ key = \"a.x\"; values = [1, 2, 3]; }",
+                  &plan, &runs, &a);
+    const sf_quadratic *fit = &a.surface[1].fit;
+    assert_string_equal(fit->problem, "");
+    assert_int_equal(fit->d, 2);
+    assert_true(fit->q2 > 0.999999); /* hic is linear */
+    sf_analysis_term(&a, fit, 2, term, sizeof term);
+    assert_string_equal(term, "a.x");
+    free_evaluated(&plan, &runs, &a);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -1207,6 +1226,7 @@ int main(void) {
         cmocka_unit_test(panels_without_data_are_left_out),
         cmocka_unit_test(the_points_of_a_picture_are_of_every_level),
         cmocka_unit_test(a_file_of_set_is_relative_to_the_plan),
+        cmocka_unit_test(a_factor_of_one_value_is_not_in_the_surface),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

@@ -25,10 +25,18 @@ static void count(sf_analysis *a) {
 
 /* ---- response surface ---- */
 
+static bool varies(const sf_plan *p, int factor) {
+    const double *value = p->factor[factor].value;
+    for (int64_t k = 1; k < p->block[p->block_of[factor]].rows; k++)
+        if (value[k] != value[0])
+            return true;
+    return false;
+}
+
 int sf_analysis_numbers(const sf_plan *p, int list[SF_SWEEP_FACTORS]) {
     int count = 0;
     for (int f = 0; f < p->factor_count; f++)
-        if (!p->factor[f].words)
+        if (!p->factor[f].words && varies(p, f))
             list[count++] = f;
     return count;
 }
@@ -45,10 +53,9 @@ static int count_offsets(const sf_plan *p) {
     return count;
 }
 
-static void put_columns(const sf_plan *p, int64_t row, double *x) {
-    for (int f = 0; f < p->factor_count; f++)
-        if (!p->factor[f].words)
-            *x++ = sf_plan_value(p, f, row);
+static void put_columns(const sf_plan *p, int d, const int *number, int64_t row, double *x) {
+    for (int i = 0; i < d; i++)
+        *x++ = sf_plan_value(p, number[i], row);
     for (int f = 0; f < p->factor_count; f++)
         for (int64_t k = 1; k < p->factor[f].count && has_offsets(&p->factor[f]); k++)
             *x++ = sf_plan_value(p, f, row) == (double)k;
@@ -104,7 +111,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
         double value = sf_analysis_value(a, figure, row);
         if (isnan(value) || !is_drawn(random, most - s->rows, left--))
             continue;
-        put_columns(a->plan, row, x + s->rows * (d + offsets));
+        put_columns(a->plan, d, numbers, row, x + s->rows * (d + offsets));
         s->simulated[s->rows++] = value;
     }
     if (err->status == SF_OK)

@@ -211,10 +211,12 @@ static void put_factor_panel(FILE *g, const sf_analysis *a, int figure, bool key
 }
 
 static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, sf_error *err) {
-    int list[SF_SWEEP_FACTORS], columns = sf_analysis_numbers(a->plan, list);
+    int list[SF_SWEEP_FACTORS], columns = 0;
     int panel[SF_SWEEP_FIGURES], figures = list_panels(a, has_values, panel);
     series s[COLUMNS] = {{0}};
-    columns = columns < COLUMNS ? columns : COLUMNS;
+    for (int f = 0; f < a->plan->factor_count && columns < COLUMNS; f++)
+        if (!a->plan->factor[f].words)
+            list[columns++] = f;
     if (columns == 0 || figures == 0)
         return SF_OK;
     FILE *g = sf_gnuplot_begin(output, "factors", columns > 1 ? 1800 : 1300, 620 * figures, err);
