@@ -28,7 +28,7 @@ static const char *const DENSITY[DROPS] = {"material.density=40 kg/m3", "materia
 static char bin[512], case_path[1024]; /* the programs themselves; the case */
 
 /* A cube whose .geo merges a file, and programs that count their calls; the file fail makes softfall-solve
- * fail, the file wait makes it wait. */
+ * fail, the file crash end as by a signal of that number, the file wait makes it wait. */
 static int set_up(void **state) {
     const program_place *p = program_group_set_up(state);
     snprintf(bin, sizeof bin, "%s", getenv("SF_BIN_DIR"));
@@ -41,10 +41,11 @@ static int set_up(void **state) {
                    "printf '#!/bin/sh\\necho pre >> \"%s/calls\"\\nexec \"%s/softfall-pre\" \"$@\"\\n' > "
                    "softfall-pre && printf '#!/bin/sh\\necho solve >> \"%s/calls\"\\n"
                    "test ! -e \"%s/fail\" || { echo \"softfall-solve: collapsed\"; exit 5; }\\n"
+                   "test ! -e \"%s/crash\" || exit $((128 + $(cat \"%s/crash\")))\n"
                    "while test -e \"%s/wait\"; do sleep 0.05; done\\n"
                    "exec \"%s/softfall-solve\" \"$@\"\\n' > softfall-solve && chmod +x softfall-*",
                    getenv("SF_SOURCE_DIR"), getenv("SF_SOURCE_DIR"), getenv("SF_SOURCE_DIR"), bin, bin,
-                   p->folder, bin, p->folder, p->folder, p->folder, bin)
+                   p->folder, bin, p->folder, p->folder, p->folder, p->folder, p->folder, bin)
                    .code;
     setenv("SF_BIN_DIR", program_path(p, "tree/bin"), 1);
     return code;
@@ -186,6 +187,32 @@ static void a_group_is_run_by_its_name_and_only_once(void **state) {
     program_shell(p, "mv kept geo/cube.geo");
     assert_int_equal(none.code, SF_ERR_INPUT);
     assert_non_null(strstr(none.err, "the drop first is not the one of the manifest"));
+    sf_manifest_free(&m);
+}
+
+/* A crash of softfall-solve comes again: its group is done. A process that somebody killed is no outcome. */
+static void a_drop_that_crashes_is_done_and_one_that_is_killed_is_not(void **state) {
+    const program_place *p = *state;
+    static const int signals[] = {SIGKILL, SIGSEGV};
+    sf_manifest m;
+    char folder[600], path[700];
+    snprintf(folder, sizeof folder, "%s/crashed", p->folder);
+    snprintf(path, sizeof path, "%s/manifest.tsv", folder);
+    program_shell(p, "mkdir crashed && touch crashed/.softfall-own");
+    write_manifest(path, folder, &m);
+    for (int k = 0; k < 2; k++) {
+        program_shell(p, "echo %d > crash", signals[k]);
+        program_result r = program_run(p, "batch", "crashed/manifest.tsv --group %s", m.run[2].group);
+        if (r.code != (k == 0 ? SF_ERR_LIBRARY : SF_OK))
+            fail_msg("signal %d: exit code %d: %s%s", signals[k], r.code, r.out, r.err);
+        assert_int_equal(program_shell(p, "test -e crashed/%s.done", m.run[2].group).code, k == 0);
+    }
+    program_shell(p, "rm crash");
+    sf_error failure[1] = {SF_ERROR_INIT};
+    sf_manifest_outcome_path(path, m.run[2].group, folder, sizeof folder);
+    assert_true(sf_manifest_read_outcome(folder, 1, &m.run[2], failure));
+    assert_int_equal(failure[0].status, SF_ERR_LIBRARY);
+    assert_non_null(strstr(failure[0].text, "(exit code 139"));
     sf_manifest_free(&m);
 }
 
@@ -461,6 +488,7 @@ int main(void) {
         cmocka_unit_test(a_failed_drop_is_skipped_until_it_is_asked_for),
         cmocka_unit_test(a_drop_that_is_twice_in_a_batch_fails_twice),
         cmocka_unit_test(a_group_is_run_by_its_name_and_only_once),
+        cmocka_unit_test(a_drop_that_crashes_is_done_and_one_that_is_killed_is_not),
         cmocka_unit_test(groups_are_of_several_drops),
         cmocka_unit_test(what_is_no_manifest_is_refused),
         cmocka_unit_test(an_engine_that_is_missing_is_named_with_its_package),

@@ -9,6 +9,7 @@
 #include "sweep/cost.h"
 #include "sweep/drops.h"
 #include "sweep/inputs.h"
+#include "sweep/plot.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -132,6 +133,31 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
         {"{ key = \"a.b\"; value = [1]; }", "unknown key \"value\""},
         {"{ key = \"a.b\"; values = [1]; from = 1; }", "exclude each other"},
         {"{ key = \"a.b\"; low = 1.0; high = 2.0; }", "unknown key \"low\""},
+        {"{ key = \"a.b\"; values = [1]; to = 2; }",
+         "unknown key \"to\"; the keys here are key, name, values"},
+        {"{ key = \"material\"; files = [\"a.cfg\"]; draws = 2; }", "unknown key \"draws\""},
+        {"{ key = \"material\"; posterior = \"none\"; count = 2; }", "unknown key \"count\""},
+        {"{ key = \"a.b\"; from = 1.0; to = 2.0; count = 2; draws = 2; }", "unknown key \"draws\""},
+        {"{ key = \"a.b\"; from = 1.0; to = 2.0; count = 2.5; }", "count is 2.5; it must be a whole number"},
+        {"{ sample = \"sobol\"; count = 8; of = ( { key = \"a.b\"; distribution = \"normal\"; mean = 1.0; "
+         "deviation = 1.0; low = 0.0; } ); }",
+         "unknown key \"low\"; the keys here are key, name, distribution, mean, deviation"},
+        {"{ sample = \"sobol\"; count = 8; of = ( { key = \"a.b\"; distribution = \"uniform\"; low = 1.0; "
+         "high = 2.0; median = 1.0; } ); }",
+         "unknown key \"median\""},
+        {"{ sample = \"sobol\"; count = 8; of = ( { key = \"material\"; posterior = \"none\"; "
+         "distribution = \"normal\"; } ); }",
+         "unknown key \"distribution\""},
+        {"{ sample = \"sobol\"; count = 8.5; of = ( { key = \"a.b\"; low = 1.0; high = 2.0; } ); }",
+         "count is 8.5; it must be a whole number"},
+        {"{ sample = \"random\"; count = 8; seed = 0.5; of = ( { key = \"a.b\"; low = 1.0; high = 2.0; } ); }",
+         "seed is 0.5; it must be a whole number"},
+        {"{ key = \"material\"; posterior = \"none\"; draws = 1.5; }",
+         "draws is 1.5; it must be a whole number"},
+        {"{ key = \"geometry.file\"; values = [\"a.geo\"]; }",
+         "geometry.file is the name of a file: give files, relative to the plan"},
+        {"{ key = \"material.curve\"; values = [\"/a.csv\", \"b.csv\"]; }",
+         "material.curve is the name of a file"},
         {"", "factors must be a list"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
@@ -877,6 +903,230 @@ static void draws_are_taken_from_the_whole_posterior(void **state) {
     sf_plan_free(&plan);
 }
 
+static const char *const SAMPLED_DRAWS = "{ sample = \"latin_hypercube\"; count = 40; of = ("
+                                         "{ key = \"a.x\"; low = 1.0; high = 4.0; },"
+                                         "{ key = \"a.y\"; values = [1, 2]; },"
+                                         "{ key = \"material\"; posterior = \"ten\"; } ); }";
+
+static void evaluate_plan(const program_place *p, const char *factors, sf_plan *plan, sf_runs *runs,
+                          sf_analysis *a) {
+    formula f = {.fails = -1};
+    sf_error err;
+    read_plan(p, factors, plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    if (campaign(p, plan, &f, false, 1, runs, &err) != SF_OK || sf_analysis_make(runs, a, &err) != SF_OK)
+        fail_msg("%s", err.text);
+}
+
+static void free_evaluated(sf_plan *plan, sf_runs *runs, sf_analysis *a) {
+    sf_analysis_free(a);
+    sf_runs_free(runs);
+    sf_plan_free(plan);
+}
+
+/* Ten draws in 40 rows, over the folder of the test before: the means of four runs each are mostly scatter of
+ * the other factors. */
+static void draws_that_are_sampled_with_others_have_no_main_effect(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(*state, SAMPLED_DRAWS, &plan, &runs, &a);
+    assert_true(isnan(a.effect[0][2].low) && isnan(a.effect[0][2].high));
+    assert_true(a.effect[0][0].high > a.effect[0][0].low);
+    free_evaluated(&plan, &runs, &a);
+    evaluate_plan(*state, "{ key = \"a.x\"; values = [1, 2]; }, { key = \"material\"; posterior = \"ten\"; }",
+                  &plan, &runs, &a); /* crossed: a_max moves by 9/3 with the index of the draw */
+    assert_relative(a.effect[0][1].high - a.effect[0][1].low, 0.9 * 3, 1e-6);
+    free_evaluated(&plan, &runs, &a);
+}
+
+/* Ten draws in 40 rows are ten foams. */
+static void draws_that_are_sampled_count_once_in_the_interval(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(*state, SAMPLED_DRAWS, &plan, &runs, &a);
+    assert_int_equal(a.probability.cells, 1);
+    sf_probability ten = a.probability.cell[1];
+    assert_int_equal(ten.below + ten.above, 40);
+    sf_probability_judge(&ten, 10);
+    assert_close(a.probability.cell[1].low, ten.low, 1e-12);
+    assert_close(a.probability.cell[1].high, ten.high, 1e-12);
+    free_evaluated(&plan, &runs, &a);
+}
+
+/* What an estimate counts: rows of other inputs and, on request, those that failed. */
+static void an_estimate_counts_the_rows_that_are_done_again(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        uint64_t inputs;
+        bool retry;
+        int64_t open;
+    } cases[] = {{1, false, 0}, {1, true, 1}, {2, false, 60}};
+    sf_plan plan;
+    formula f = {.fails = 3};
+    finish_grid(p, &plan, &f);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const sf_sweep_campaign c = {
+            .plan = &plan, .folder = p->folder, .inputs = cases[k].inputs, .retry = cases[k].retry};
+        sf_runs runs;
+        sf_error err = SF_ERROR_INIT;
+        int64_t open = -1;
+        if (sf_runs_create(&plan, &runs, &err) != SF_OK ||
+            sf_sweep_campaign_look(&c, &runs, &open, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        assert_int_equal(open, cases[k].open);
+        assert_int_equal(sf_runs_count(&runs, SF_SWEEP_DONE), 59); /* they tell the time of a run */
+        sf_runs_free(&runs);
+    }
+    sf_plan_free(&plan);
+}
+
+/* Six rows of three words. */
+static void a_word_that_a_zip_repeats_is_one_level(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+    evaluate_plan(*state,
+                  "{ zip = ( { key = \"a.x\"; values = [1, 1, 1, 4, 4, 4]; },"
+                  "{ key = \"pad.base\"; values = [\"glued\", \"glued\", \"smooth\", \"smooth\", \"glued\","
+                  " \"resting\"]; } ); }",
+                  &plan, &runs, &a);
+    static const int level[] = {0, 0, 1, 1, 0, 2};
+    assert_int_equal(plan.rows, 6);
+    assert_int_equal(plan.factor[1].count, 3);
+    for (int64_t row = 0; row < 6; row++)
+        assert_int_equal((int)sf_plan_value(&plan, 1, row), level[row]);
+    sf_plan_overrides(&plan, 5, text);
+    assert_string_equal(text[1], "pad.base=\"resting\"");
+    /* of a_max: glued 100, 100, 200; smooth 100 + 1/3, 200 + 1/3; resting 200 + 2/3 */
+    assert_relative(a.effect[0][1].low, 400.0 / 3, 1e-8);
+    assert_relative(a.effect[0][1].high, 200 + 2.0 / 3, 1e-8);
+    free_evaluated(&plan, &runs, &a);
+}
+
+/* An array of libconfig has whole or fractional numbers, not both. */
+static void a_vector_with_whole_and_fractional_numbers_is_a_value(void **state) {
+    sf_plan plan;
+    sf_error err = SF_ERROR_INIT;
+    uint64_t hash;
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+    read_plan(*state,
+              "{ key = \"missile.direction\"; values = ([0.0, 0.0, -1.0], [0.1, 0.0, -1.0], (0, 0.2, -1)); }",
+              &plan);
+    sf_plan_overrides(&plan, 1, text);
+    assert_string_equal(text[0], "missile.direction=[0.1, 0.0, -1.0]");
+    sf_factor_text(&plan.factor[0], 1, text[0], sizeof text[0]);
+    assert_string_equal(text[0], "[0.1, 0, -1]"); /* in tables as before */
+    if (sf_sweep_check_inputs(&plan, &hash, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    sf_plan_free(&plan);
+}
+
+/* Scripts and pictures of a campaign, beside runs.csv. */
+static void draw(const program_place *p, const sf_analysis *a) {
+    static const char *const names[] = {"factors.gp",     "factors.png",     "curves.gp",  "curves.png",
+                                        "effects.gp",     "effects.png",     "surface.gp", "surface.png",
+                                        "probability.gp", "probability.png", NULL};
+    char warning[320];
+    sf_staging output = {0};
+    sf_error err = SF_ERROR_INIT;
+    if (sf_staging_begin(program_path(p, "drawn"), names, true, &output, &err) != SF_OK ||
+        sf_sweep_plot(&output, a, p->folder, warning, sizeof warning, &err) != SF_OK ||
+        sf_staging_commit(&output, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    sf_staging_end(&output);
+    assert_string_equal(warning, "");
+}
+
+/* Of one run there is no effect, and a figure may be of no run: gnuplot ends where all of a panel is NaN. */
+static void panels_without_data_are_left_out(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(p, "{ key = \"a.x\"; values = [1]; }, { key = \"a.y\"; values = [1]; }", &plan, &runs, &a);
+    draw(p, &a);
+    assert_int_equal(program_shell(p, "test -s drawn/factors.png && test ! -e drawn/effects.gp").code, 0);
+    free_evaluated(&plan, &runs, &a);
+    static const char *const chosen[] = {"", "{ key = \"a.z\"; values = [1, 2]; },"}; /* intervals, a map */
+    for (int k = 0; k < 2; k++) {
+        char factors[512];
+        snprintf(
+            factors, sizeof factors,
+            "{ key = \"a.x\"; values = [1, 2, 3]; }, %s { key = \"a.y\"; uncertain = true; values = [1, 2]; } );"
+            "figures = ( { key = \"peak_stress_kPa\"; limit = 9.0; }, { key = \"hic\"; limit = 1000.0; }",
+            chosen[k]);
+        evaluate_plan(p, factors, &plan, &runs, &a);
+        draw(p, &a);
+        assert_int_equal(program_shell(p,
+                                       "test -s drawn/factors.png && test -s drawn/effects.png && "
+                                       "test -s drawn/probability.png && ! grep peak_stress drawn/effects.gp")
+                             .code,
+                         0);
+        free_evaluated(&plan, &runs, &a);
+    }
+}
+
+/* Every 14th of 40,000 rows would be of the first level of the factor that changes fastest. */
+static void the_points_of_a_picture_are_of_every_level(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(
+        p, "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 20000; }, { key = \"a.y\"; values = [1, 2]; }",
+        &plan, &runs, &a);
+    draw(p, &a);
+    int of_one = atoi(program_shell(p, "grep -c '^1,' drawn/factors.gp").out),
+        of_two = atoi(program_shell(p, "grep -c '^2,' drawn/factors.gp").out);
+    if (of_one + of_two < 2900 || of_one + of_two > 3100 || abs(of_one - of_two) > 300)
+        fail_msg("%d and %d points", of_one, of_two);
+    free_evaluated(&plan, &runs, &a);
+}
+
+/* As all names of the plan, from whatever folder softfall-sweep is started. */
+static void a_file_of_set_is_relative_to_the_plan(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_error err = SF_ERROR_INIT;
+    uint64_t hash;
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE], expected[700];
+    program_shell(p, "cp '%s' foam.cfg; cp '%s' eva35.csv", fixture_source("examples/materials/eva35.cfg"),
+                  fixture_source("examples/materials/eva35.csv"));
+    read_plan(p,
+              "{ key = \"missile.velocity\"; values = [\"4 m/s\"]; } );"
+              "set = ( \"pad.base=glued\", \"material=@foam.cfg\"",
+              &plan);
+    assert_int_equal(sf_plan_overrides(&plan, 0, text), 3);
+    snprintf(expected, sizeof expected, "material=@%s/foam.cfg", p->folder);
+    assert_string_equal(text[0], "pad.base=glued");
+    assert_string_equal(text[1], expected);
+    if (sf_sweep_check_inputs(&plan, &hash, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    sf_plan_free(&plan);
+}
+
+/* A factor of one number is as good as one of the case. */
+static void a_factor_of_one_value_is_not_in_the_surface(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    char term[100];
+    evaluate_plan(*state,
+                  "{ key = \"a.z\"; from = 1.0; to = 4.0; count = 10; }, { key = \"a.y\"; values = [5]; },"
+                  "{ key = \"a.x\"; values = [1, 2, 3]; }",
+                  &plan, &runs, &a);
+    const sf_quadratic *fit = &a.surface[1].fit;
+    assert_string_equal(fit->problem, "");
+    assert_int_equal(fit->d, 2);
+    assert_true(fit->q2 > 0.999999); /* hic is linear */
+    sf_analysis_term(&a, fit, 2, term, sizeof term);
+    assert_string_equal(term, "a.x");
+    free_evaluated(&plan, &runs, &a);
+}
+
 static void a_disk_that_is_too_small_is_refused(void **state) {
     const program_place *p = *state;
     sf_sweep_cost cost = {.seconds = 1, .bytes = 1e6, .work_bytes = 1e7, .open = 10};
@@ -968,6 +1218,15 @@ int main(void) {
         cmocka_unit_test(each_geometry_is_looked_at),
         cmocka_unit_test(a_surface_of_very_many_rows_has_every_level),
         cmocka_unit_test(draws_are_taken_from_the_whole_posterior),
+        cmocka_unit_test(draws_that_are_sampled_with_others_have_no_main_effect),
+        cmocka_unit_test(draws_that_are_sampled_count_once_in_the_interval),
+        cmocka_unit_test(an_estimate_counts_the_rows_that_are_done_again),
+        cmocka_unit_test(a_word_that_a_zip_repeats_is_one_level),
+        cmocka_unit_test(a_vector_with_whole_and_fractional_numbers_is_a_value),
+        cmocka_unit_test(panels_without_data_are_left_out),
+        cmocka_unit_test(the_points_of_a_picture_are_of_every_level),
+        cmocka_unit_test(a_file_of_set_is_relative_to_the_plan),
+        cmocka_unit_test(a_factor_of_one_value_is_not_in_the_surface),
         cmocka_unit_test(a_disk_that_is_too_small_is_refused),
         cmocka_unit_test(a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte),
     };

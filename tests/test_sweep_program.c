@@ -111,8 +111,13 @@ static void a_sweep_writes_its_table_and_report_and_resumes(void **state) {
 /* Goes on from the folder of the test before. */
 static void what_a_run_reads_is_simulated_again_when_it_changes(void **state) {
     const program_place *p = *state;
+    program_result r = program_succeed(p, "sweep", "plan.cfg -o out --dry-run");
+    assert_non_null(strstr(r.out, "\n0 open runs of about "));
     program_shell(p, "sed -i 's/^HU = .*/HU = 0.2;/' foam.cfg");
-    program_result r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2");
+    r = program_succeed(p, "sweep", "plan.cfg -o out --dry-run");
+    assert_non_null(strstr(r.out, "\n4 open runs of about "));
+    assert_non_null(strstr(r.out, "from 4 finished runs"));
+    r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2");
     assert_non_null(strstr(r.out, "every run is looked at again"));
     assert_non_null(strstr(r.out, "2 drops simulated, 2 were there"));
 }
@@ -188,6 +193,9 @@ static void folders_that_are_not_of_the_plan_or_taken_are_refused(void **state) 
     close(lock);
     program_shell(p, "mkdir used; touch used/report.html");
     assert_refused(p, "plan.cfg -o used", "used already holds report.html");
+    program_shell(p, "mkdir table; echo mine > table/runs.csv");
+    assert_refused(p, "plan.cfg -o table --dry-run", "table already holds runs.csv");
+    program_succeed(p, "sweep", "plan.cfg -o table --dry-run --force");
     char *path = strdup(getenv("PATH"));
     program_shell(p, "mkdir -p only && ln -s /bin/true only/snakemake");
     setenv("PATH", program_path(p, "only"), 1);

@@ -123,6 +123,15 @@ sf_status sf_config_number(const sf_config *config, const config_setting_t *grou
     return SF_OK;
 }
 
+sf_status sf_config_whole(const sf_config *config, const config_setting_t *group, const char *name,
+                          bool required, double low, double high, double *out, sf_error *err) {
+    SF_TRY(sf_config_number(config, group, name, required, low, high, out, err));
+    if (*out != floor(*out))
+        return sf_config_refuse(config, config_setting_get_member(group, name), err,
+                                "%s is %g; it must be a whole number", name, *out);
+    return SF_OK;
+}
+
 sf_status sf_config_flag(const sf_config *config, const config_setting_t *group, const char *name, bool *out,
                          sf_error *err) {
     const config_setting_t *s = find(config, group, name, false, err);

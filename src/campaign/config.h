@@ -30,6 +30,9 @@ sf_status sf_config_names(const sf_config *config, const config_setting_t *group
  * it is `required`. Bounds are inclusive. */
 sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
                            bool required, double low, double high, double *out, sf_error *err);
+/* The same for a whole number. */
+sf_status sf_config_whole(const sf_config *config, const config_setting_t *group, const char *name,
+                          bool required, double low, double high, double *out, sf_error *err);
 /* SI value, from `low` on; `low` 0: above zero. */
 sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
                              sf_quantity kind, bool required, double low, double *out, sf_error *err);

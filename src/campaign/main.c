@@ -68,10 +68,12 @@ static sf_status check_keys(int count, const sf_manifest_run *run, const uint64_
     return SF_OK;
 }
 
-/* A failure that comes again whenever the drop is simulated; with others the group is not done. */
+/* A failure that comes again whenever the drop is simulated, a crash of a program, too; with others, as a
+ * program that was killed, the group is not done. */
 static bool is_lasting(const sf_error *failure) {
     return failure->status == SF_ERR_NUMERIC || failure->status == SF_ERR_MODEL ||
-           failure->status == SF_ERR_INPUT;
+           failure->status == SF_ERR_INPUT ||
+           (failure->status == SF_ERR_LIBRARY && !strstr(failure->text, SF_PROCESS_KILLED));
 }
 
 static sf_status finish_group(const char *outcome, int count, const sf_manifest_run *run,

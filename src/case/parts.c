@@ -257,6 +257,12 @@ static int kind_of_file(const sf_setting *s) {
     return -1;
 }
 
+bool sf_case_key_is_file(const char *key) {
+    sf_setting s = {.kind = '"'};
+    snprintf(s.path, sizeof s.path, "%s", key);
+    return kind_of_file(&s) >= 0;
+}
+
 /* Of the settings in text[begin, end) of the part: names of files, which begin at the case's folder, from /
  * on, as the part may be a file of another folder. */
 static sf_status root_files(sf_case_parts *parts, int part, size_t begin, size_t end, sf_error *err) {

@@ -9,11 +9,15 @@
 
 #include "case/part.h"
 #include "core/error.h"
+#include <stdbool.h>
 
 /* Release with sf_case_parts_free, also on failure. */
 sf_status sf_case_parts_read(const char *path, sf_case_parts *parts, sf_error *err);
 /* Puts a --set text, "group.key=value" or "group=@file", where it belongs. */
 sf_status sf_case_parts_set(sf_case_parts *parts, const char *text, sf_error *err);
+
+/* Is the value of "group.key" the name of a file? */
+bool sf_case_key_is_file(const char *key);
 
 /* A file that the case names: what it is, and how. */
 typedef struct sf_case_file {

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { SURFACE_SEED = 1 };
+enum { SURFACE_SEED = 1 }; /* and that of pictures */
 
 double sf_analysis_value(const sf_analysis *a, int figure, int64_t row) {
     const sf_runs *r = a->runs;
@@ -25,10 +25,18 @@ static void count(sf_analysis *a) {
 
 /* ---- response surface ---- */
 
+static bool varies(const sf_plan *p, int factor) {
+    const double *value = p->factor[factor].value;
+    for (int64_t k = 1; k < p->block[p->block_of[factor]].rows; k++)
+        if (value[k] != value[0])
+            return true;
+    return false;
+}
+
 int sf_analysis_numbers(const sf_plan *p, int list[SF_SWEEP_FACTORS]) {
     int count = 0;
     for (int f = 0; f < p->factor_count; f++)
-        if (!p->factor[f].words)
+        if (!p->factor[f].words && varies(p, f))
             list[count++] = f;
     return count;
 }
@@ -45,10 +53,9 @@ static int count_offsets(const sf_plan *p) {
     return count;
 }
 
-static void put_columns(const sf_plan *p, int64_t row, double *x) {
-    for (int f = 0; f < p->factor_count; f++)
-        if (!p->factor[f].words)
-            *x++ = sf_plan_value(p, f, row);
+static void put_columns(const sf_plan *p, int d, const int *number, int64_t row, double *x) {
+    for (int i = 0; i < d; i++)
+        *x++ = sf_plan_value(p, number[i], row);
     for (int f = 0; f < p->factor_count; f++)
         for (int64_t k = 1; k < p->factor[f].count && has_offsets(&p->factor[f]); k++)
             *x++ = sf_plan_value(p, f, row) == (double)k;
@@ -65,6 +72,26 @@ static int64_t count_values(const sf_analysis *a, int figure) {
  * equal distances would meet the same levels of the factors that change fastest. */
 static bool is_drawn(gsl_rng *random, int64_t wanted, int64_t left) {
     return left <= wanted || gsl_rng_uniform(random) * (double)left < (double)wanted;
+}
+
+bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err) {
+    int64_t picked = 0;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    bool *pick = sf_alloc(err, (unsigned long)count, sizeof *pick, "a picture");
+    if (!random && err->status == SF_OK)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a picture");
+    if (random)
+        gsl_rng_set(random, SURFACE_SEED);
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
+        pick[k] = picked < most && is_drawn(random, most - picked, count - k);
+        picked += pick[k];
+    }
+    if (random)
+        gsl_rng_free(random);
+    if (err->status == SF_OK)
+        return pick;
+    free(pick);
+    return NULL;
 }
 
 static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
@@ -84,7 +111,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
         double value = sf_analysis_value(a, figure, row);
         if (isnan(value) || !is_drawn(random, most - s->rows, left--))
             continue;
-        put_columns(a->plan, row, x + s->rows * (d + offsets));
+        put_columns(a->plan, d, numbers, row, x + s->rows * (d + offsets));
         s->simulated[s->rows++] = value;
     }
     if (err->status == SF_OK)

@@ -41,10 +41,15 @@ void sf_analysis_free(sf_analysis *analysis);
 /* The figure of a row if it can be used, else NaN. */
 double sf_analysis_value(const sf_analysis *a, int figure, int64_t row);
 
+/* [count], from malloc: true for `most` of them at most, drawn with a fixed seed, as those at equal distances
+ * may all have the same level of a factor. NULL on failure. */
+bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err);
+
 /* The names of the terms of a surface, in their order. */
 void sf_analysis_term(const sf_analysis *a, const sf_quadratic *s, int term, char *text, size_t size);
 
-/* The factors that are numbers, in the order of the surface; returns how many. */
+/* The factors that are numbers and have more than one value, in the order of the surface; returns how many.
+ */
 int sf_analysis_numbers(const sf_plan *plan, int list[SF_SWEEP_FACTORS]);
 
 #endif

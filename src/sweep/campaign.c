@@ -95,13 +95,24 @@ sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_er
 
 /* ---- what is there ---- */
 
-sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+/* `*changed`: the rows are of other inputs. */
+static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *changed, sf_error *err) {
     keys k;
     bool known = false;
     path table = file_of(c, "runs.csv");
-    if (check_keys(c, &k, &known, err) != SF_OK || !known || access(table.text, F_OK) != 0)
+    if (check_keys(c, &k, &known, err) != SF_OK)
         return err->status;
-    return sf_runs_read(runs, table.text, k.text, err);
+    *changed = known && k.inputs != c->inputs;
+    return known && access(table.text, F_OK) == 0 ? sf_runs_read(runs, table.text, k.text, err) : SF_OK;
+}
+
+sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err) {
+    bool changed = false;
+    if (read_table(c, runs, &changed, err) != SF_OK)
+        return err->status;
+    *open = sf_runs_count(runs, SF_SWEEP_OPEN) + (c->retry ? sf_runs_count(runs, SF_SWEEP_FAILED) : 0);
+    *open = changed ? runs->count : *open;
+    return SF_OK;
 }
 
 static void open_all(sf_runs *runs, sf_sweep_state state) {
@@ -136,11 +147,10 @@ static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) 
 }
 
 static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
-    keys k;
-    bool known = false;
-    if (check_keys(c, &k, &known, err) != SF_OK || sf_sweep_campaign_look(c, runs, err) != SF_OK)
+    bool changed = false;
+    if (read_table(c, runs, &changed, err) != SF_OK)
         return err->status;
-    if (known && k.inputs != c->inputs) {
+    if (changed) {
         open_all(runs, SF_SWEEP_DONE);
         open_all(runs, SF_SWEEP_FAILED);
         if (c->log)

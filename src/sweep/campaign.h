@@ -35,7 +35,8 @@ sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_er
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err);
 
-/* Reads the rows that are done, for a look without a run. */
-sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err);
+/* Reads the rows that are done, for a look without a run. `*open`: rows that a campaign looks at, which are
+ * all of them if the inputs have changed since, and those that failed if they are done again. */
+sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err);
 
 #endif

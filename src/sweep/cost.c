@@ -81,12 +81,14 @@ static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
     return err->status;
 }
 
-sf_status sf_sweep_cost_estimate(const sf_runs *r, const char *folder, sf_sweep_cost *c, sf_error *err) {
-    int64_t done = 0;
-    *c = (sf_sweep_cost){.open = sf_runs_count(r, SF_SWEEP_OPEN)};
+sf_status sf_sweep_cost_estimate(const sf_runs *r, int64_t open, const char *folder, sf_sweep_cost *c,
+                                 sf_error *err) {
+    int64_t done = 0, kept = sf_runs_count(r, SF_SWEEP_DONE);
+    *c = (sf_sweep_cost){.open = open};
     if (measure(r, &c->seconds, &done, err) != SF_OK)
         return err->status;
-    int64_t more = sf_folder_count(folder, SF_SWEEP_LABEL "-") - sf_runs_count(r, SF_SWEEP_DONE);
+    kept = kept < r->count - open ? kept : r->count - open;
+    int64_t more = sf_folder_count(folder, SF_SWEEP_LABEL "-") - kept;
     c->there = more < 0 ? 0 : more < c->open ? more : c->open;
     if (done == 0)
         return from_model(r->plan, c, err);
@@ -130,6 +132,6 @@ void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {
             "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
             (long long)c->open, c->seconds, hours, jobs, c->bytes * (double)c->open / 1e9, c->basis);
     if (c->there > 0)
-        fprintf(out, "  (up to %lld of them may be there already: drops that runs.csv does not list)\n",
+        fprintf(out, "  (up to %lld of them may be there already: the folder has so many drops more)\n",
                 (long long)c->there);
 }

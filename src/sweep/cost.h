@@ -11,13 +11,14 @@ typedef struct sf_sweep_cost {
     double bytes;      /* of its results */
     double work_bytes; /* that one run needs while it is at work */
     int64_t open;      /* runs */
-    int64_t there;     /* of them at most so many have a drop's folder already, that runs.csv does not know */
+    int64_t there;     /* of them at most so many have a drop's folder already */
     char basis[512];   /* where that comes from */
 } sf_sweep_cost;
 
-/* `folder`: of the results' folders ("DIR/runs"). Without a finished run the model of the first row is built
- * in memory. */
-sf_status sf_sweep_cost_estimate(const sf_runs *runs, const char *folder, sf_sweep_cost *cost, sf_error *err);
+/* Of `open` rows, of which some may have a figure of earlier inputs. `folder`: of the results' folders
+ * ("DIR/runs"). Without a finished run the model of the first row is built in memory. */
+sf_status sf_sweep_cost_estimate(const sf_runs *runs, int64_t open, const char *folder, sf_sweep_cost *cost,
+                                 sf_error *err);
 
 /* SF_ERR_INPUT if the file system of `folder` has too little room. */
 sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *cost, const char *folder, int jobs, sf_error *err);

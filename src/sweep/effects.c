@@ -86,10 +86,19 @@ static void find_range(double *mean, int64_t count, bool draws, sf_effect *e) {
     e->high = draws ? gsl_stats_quantile_from_sorted_data(mean, 1, n, 0.95) : mean[n - 1];
 }
 
+bool sf_effect_is_scatter(const sf_plan *p, int factor) {
+    const sf_factor *f = &p->factor[factor];
+    const sf_block *b = &p->block[p->block_of[factor]];
+    return b->kind == SF_BLOCK_SAMPLE && b->count > 1 && f->words &&
+           (f->posterior || f->count > SF_EFFECT_LEVELS);
+}
+
 sf_status sf_effect_measure(const sf_runs *r, int factor, size_t figure, sf_effect *e, sf_error *err) {
     sf_groups g = {0};
     const sf_factor *f = &r->plan->factor[factor];
     *e = (sf_effect){NAN, NAN, NAN, NAN};
+    if (sf_effect_is_scatter(r->plan, factor))
+        return SF_OK;
     if (sf_groups_make(r->plan, factor, &g, err) == SF_OK) {
         double *mean = sf_alloc(err, (unsigned long)g.count, sizeof *mean, "means");
         int64_t *number = sf_alloc(err, (unsigned long)g.count, sizeof *number, "means");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sweep/factor.h"
 
+#include "case/parts.h"
 #include "case/print.h"
 #include "core/decimal.h"
 #include "io/plain_file.h"
@@ -141,17 +142,38 @@ static sf_status set_word(sf_factor *f, int64_t k, char *text, const char *label
                                : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", f->key);
 }
 
-static sf_status take_word(reading *r, const config_setting_t *s, int64_t k, sf_error *err) {
+/* All with a point, as an array of libconfig has whole or fractional numbers, not both. */
+static void print_fractions(FILE *out, const config_setting_t *array) {
+    for (int k = 0; k < config_setting_length(array); k++) {
+        char number[40];
+        snprintf(number, sizeof number, "%.12g", config_setting_get_float_elem(array, k));
+        fprintf(out, "%s%s%s", k ? ", " : "[", number, strpbrk(number, ".e") ? "" : ".0");
+    }
+    fputc(']', out);
+}
+
+/* The setting in libconfig syntax, as --set takes it or, `plain`, as a table has it; from malloc, NULL
+ * without memory. */
+static char *print_word(const config_setting_t *s, bool plain) {
     char *text = NULL;
     size_t size = 0;
-    const char *own = config_setting_get_string(s);
+    const config_setting_t *first = config_setting_is_array(s) ? config_setting_get_elem(s, 0) : NULL;
     FILE *out = open_memstream(&text, &size);
-    if (!out)
+    if (out && first && config_setting_type(first) == CONFIG_TYPE_FLOAT && !plain)
+        print_fractions(out, s);
+    else if (out)
+        sf_case_print_setting(out, s);
+    return out && fclose(out) == 0 ? text : NULL;
+}
+
+static sf_status take_word(reading *r, const config_setting_t *s, int64_t k, sf_error *err) {
+    char *label = print_word(s, true);
+    const char *own = config_setting_get_string(s);
+    if (!label)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", r->factor->key);
-    sf_case_print_setting(out, s);
-    if (fclose(out) != 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", r->factor->key);
-    return set_word(r->factor, k, text, own ? own : text, err);
+    set_word(r->factor, k, print_word(s, false), own ? own : label, err);
+    free(label);
+    return err->status;
 }
 
 /* A group of the case is replaced by a file, "@file"; a key takes the path as a text. */
@@ -195,6 +217,12 @@ static sf_status read_files(reading *r, const config_setting_t *list, sf_error *
     return err->status;
 }
 
+/* The case would look for it beside itself, not beside the plan. */
+static bool is_relative_file(const sf_factor *f, const config_setting_t *s) {
+    const char *text = config_setting_get_string(s);
+    return text && *text && *text != '/' && sf_case_key_is_file(f->key);
+}
+
 static sf_status read_values(reading *r, const config_setting_t *list, sf_error *err) {
     int count = config_setting_length(list);
     bool words = !looks_numeric(r->config, config_setting_get_elem(list, 0));
@@ -202,6 +230,11 @@ static sf_status read_values(reading *r, const config_setting_t *list, sf_error 
         return err->status;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
+        if (is_relative_file(r->factor, s))
+            return sf_config_refuse(
+                r->config, s, err,
+                "%s is the name of a file: give files, relative to the plan, in place of values",
+                r->factor->key);
         if (words)
             take_word(r, s, k, err);
         else
@@ -230,7 +263,7 @@ static sf_status read_range(reading *r, sf_error *err) {
     if (!last)
         return sf_config_refuse(r->config, r->group, err, "%s: from needs to and count", f->key);
     if (take_number(r, first, &from, err) != SF_OK || take_number(r, last, &to, err) != SF_OK ||
-        sf_config_number(r->config, r->group, "count", true, 2, MOST_LEVELS, &count, err) != SF_OK ||
+        sf_config_whole(r->config, r->group, "count", true, 2, MOST_LEVELS, &count, err) != SF_OK ||
         sf_config_choice(r->config, r->group, "spacing", "linear|log", &logarithmic, err) != SF_OK ||
         make_levels(f, (int64_t)count, false, err) != SF_OK)
         return err->status;
@@ -276,7 +309,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
         return sf_config_refuse(r->config, s, err,
                                 "a posterior is of key = \"material\" or of a layer, not of %s",
                                 r->factor->key);
-    if (sf_config_number(r->config, r->group, "draws", false, 1, MOST_DRAWS, &draws, err) != SF_OK)
+    if (sf_config_whole(r->config, r->group, "draws", false, 1, MOST_DRAWS, &draws, err) != SF_OK)
         return err->status;
     bool given = config_setting_get_member(r->group, "draws") != NULL;
     snprintf(folder, sizeof folder, "%s%s%s", *name == '/' ? "" : r->config->folder, *name == '/' ? "" : "/",
@@ -288,7 +321,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
         return sf_config_refuse(r->config, s, err, "draws is %d, but %s holds %d", count, folder, there);
     if (make_levels(r->factor, count, true, err) != SF_OK)
         return err->status;
-    r->factor->uncertain = true;
+    r->factor->uncertain = r->factor->posterior = true;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         draw_name(name, chosen_draw(k, count, there), path, sizeof path);
         take_file(r, s, path, k, err);
@@ -320,6 +353,10 @@ static sf_status read_distribution(reading *r, sf_error *err) {
         return err->status;
     r->factor->distribution = (sf_distribution)(which + 1);
     const char *const *names = parameters[which + 1];
+    char own[64];
+    snprintf(own, sizeof own, "key|name|distribution|%s|%s", names[0], names[1]);
+    if (sf_config_names(r->config, r->group, own, err) != SF_OK)
+        return err->status;
     const config_setting_t *first = config_setting_get_member(r->group, names[0]),
                            *second = config_setting_get_member(r->group, names[1]);
     if (!first || !second)
@@ -353,7 +390,10 @@ static sf_status read_head(reading *r, sf_error *err) {
 }
 
 static sf_status read_levels(reading *r, bool sampled, sf_error *err) {
-    static const char *const kinds[] = {"values", "files", "posterior", "from", NULL};
+    static const char *const kinds[] = {"values", "files", "posterior", "from", NULL},
+                             *const names[] = {"key|name|values|uncertain", "key|name|files|uncertain",
+                                               "key|name|posterior|draws|uncertain",
+                                               "key|name|from|to|count|spacing|uncertain"};
     const config_setting_t *found = NULL;
     int which = -1;
     for (int k = 0; kinds[k]; k++) {
@@ -371,6 +411,8 @@ static sf_status read_levels(reading *r, bool sampled, sf_error *err) {
                                 "%s: give values, files, posterior, or from, to and count; a distribution "
                                 "belongs into a group with sample",
                                 r->factor->key);
+    if (sf_config_names(r->config, r->group, names[which], err) != SF_OK)
+        return err->status;
     return which == 2   ? read_posterior(r, found, err)
            : which == 3 ? read_range(r, err)
                         : read_list(r, found, which == 1, err);

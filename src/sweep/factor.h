@@ -24,9 +24,10 @@ typedef struct sf_factor {
     char where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of the plan, for sentences */
     bool words;                       /* the values are words */
     bool uncertain;                   /* an unknown of which the values are draws, not a choice */
+    bool posterior;                   /* the words are draws of a posterior */
     sf_distribution distribution;     /* of a factor that is sampled */
     double a, b;                      /* its numbers, in `unit` */
-    int64_t count;                    /* levels of a list */
+    int64_t count;                    /* levels of a list; words that it repeats are one, but in a sample */
     double *number;                   /* [count] in `unit`; of words NULL; owned */
     char **text;                      /* [count] of words: as --set takes it after '='; owned */
     char **label;                     /* [count] of words: as the plan has it; owned */

@@ -168,16 +168,19 @@ static sf_status check(const options *o, job *j, bool *known, sf_error *err) {
     name_output(j);
     if ((size_t)snprintf(j->folder, sizeof j->folder, "%s/runs", o->directory) >= sizeof j->folder - 64)
         return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
-    if (sf_sweep_campaign_check(&j->campaign, known, err) != SF_OK)
+    static const char *const table[] = {"runs.csv", NULL}; /* of something else if no campaign knows it */
+    if (sf_sweep_campaign_check(&j->campaign, known, err) != SF_OK ||
+        sf_staging_check(o->directory, table, o->force || *known, err) != SF_OK)
         return err->status;
     return sf_staging_check(o->directory, j->list, o->force || *known, err);
 }
 
 static sf_status estimate(const options *o, job *j, sf_error *err) {
     sf_sweep_cost cost;
+    int64_t open = 0;
     if (sf_runs_create(&j->plan, &j->runs, err) != SF_OK ||
-        sf_sweep_campaign_look(&j->campaign, &j->runs, err) != SF_OK ||
-        sf_sweep_cost_estimate(&j->runs, j->folder, &cost, err) != SF_OK)
+        sf_sweep_campaign_look(&j->campaign, &j->runs, &open, err) != SF_OK ||
+        sf_sweep_cost_estimate(&j->runs, open, j->folder, &cost, err) != SF_OK)
         return err->status;
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);
     sf_sweep_cost_print(stdout, &cost, o->jobs);

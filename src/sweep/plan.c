@@ -50,11 +50,36 @@ static sf_status add_members(const sf_config *config, const config_setting_t *li
     return err->status;
 }
 
+/* A word that the list repeats, as that of a zip may, is one level. */
+static void number_words(sf_factor *f) {
+    int64_t kept = 0;
+    for (int64_t k = 0; k < f->count; k++) {
+        char *text = f->text[k], *label = f->label[k];
+        int64_t level = 0;
+        f->text[k] = f->label[k] = NULL;
+        while (level < kept && strcmp(f->text[level], text) != 0)
+            level++;
+        f->value[k] = (double)level;
+        if (level < kept) {
+            free(text);
+            free(label);
+        } else {
+            f->text[kept] = text;
+            f->label[kept++] = label;
+        }
+    }
+    f->count = kept;
+}
+
 static sf_status copy_levels(sf_factor *f, sf_error *err) {
     f->value = sf_alloc(err, (unsigned long)f->count, sizeof *f->value, "the values of a factor");
-    for (int64_t k = 0; k < f->count && f->value; k++)
-        f->value[k] = f->words ? (double)k : f->number[k];
-    return err->status;
+    if (!f->value)
+        return err->status;
+    for (int64_t k = 0; k < f->count && !f->words; k++)
+        f->value[k] = f->number[k];
+    if (f->words)
+        number_words(f);
+    return SF_OK;
 }
 
 static sf_status read_list_block(const sf_config *config, const config_setting_t *group, sf_plan *p,
@@ -120,8 +145,8 @@ static sf_status read_sample(const sf_config *config, const config_setting_t *gr
     b->kind = SF_BLOCK_SAMPLE;
     if (sf_config_names(config, group, "sample|count|seed|of", err) != SF_OK ||
         sf_config_choice(config, group, "sample", SF_SAMPLING_WORDS, &method, err) != SF_OK ||
-        sf_config_number(config, group, "count", true, 1, MOST_SAMPLES, &count, err) != SF_OK ||
-        sf_config_number(config, group, "seed", false, 0, 4294967295.0, &seed, err) != SF_OK ||
+        sf_config_whole(config, group, "count", true, 1, MOST_SAMPLES, &count, err) != SF_OK ||
+        sf_config_whole(config, group, "seed", false, 0, 4294967295.0, &seed, err) != SF_OK ||
         sf_config_list(config, group, "of", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
         add_members(config, list, true, p, err) != SF_OK)
         return err->status;
@@ -261,6 +286,9 @@ static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_er
         read_factors(config, huge, p, err) != SF_OK || read_set(config, p, err) != SF_OK)
         return err->status;
     p->title = title ? strdup(title) : NULL;
+    p->folder = strdup(config->folder);
+    if (!p->folder)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the plan %s", p->path);
     return read_figures(config, p, err);
 }
 
@@ -278,6 +306,7 @@ void sf_plan_free(sf_plan *p) {
         sf_factor_free(&p->factor[k]);
     for (int k = 0; k < p->set_count; k++)
         free(p->set[k]);
+    free(p->folder);
     free(p->case_path);
     free(p->title);
     *p = (sf_plan){0};
@@ -294,6 +323,15 @@ bool sf_factor_is_group(const sf_factor *f) {
     return f->words && f->text[0][0] == '@';
 }
 
+/* A file in place of a group is relative to the plan. */
+static void set_override(const sf_plan *p, const char *set, char *text) {
+    const char *file = sf_case_override_file(set);
+    if (file && *file != '/')
+        snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%.*s%s/%s", (int)(file - set), set, p->folder, file);
+    else
+        snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%s", set);
+}
+
 int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE]) {
     int count = 0;
     for (int groups = 1; groups >= 0; groups--) {
@@ -302,7 +340,7 @@ int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERR
                 sf_factor_override(&p->factor[f], sf_plan_value(p, f, row), text[count++],
                                    SF_SWEEP_OVERRIDE_SIZE);
         for (int k = 0; groups && k < p->set_count; k++)
-            snprintf(text[count++], SF_SWEEP_OVERRIDE_SIZE, "%s", p->set[k]);
+            set_override(p, p->set[k], text[count++]);
     }
     return count;
 }

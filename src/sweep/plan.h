@@ -36,6 +36,7 @@ typedef struct sf_sweep_limit {
 
 typedef struct sf_plan {
     const char *path; /* borrowed */
+    char *folder;     /* that holds the plan; owned */
     char *case_path;  /* owned */
     char *title;      /* owned; NULL: none */
     int set_count;

@@ -109,38 +109,71 @@ static void put_series_title(FILE *g, const sf_plan *p, const series *s, int k) 
     put_text(g, text);
 }
 
+/* ---- panels: gnuplot ends with an error where all numbers of one are NaN ---- */
+
+static bool has_values(const sf_analysis *a, int figure) {
+    for (int64_t row = 0; row < a->runs->count; row++)
+        if (isfinite(sf_analysis_value(a, figure, row)))
+            return true;
+    return false;
+}
+
+static bool has_effects(const sf_analysis *a, int figure) {
+    for (int f = 0; f < a->plan->factor_count; f++)
+        if (isfinite(a->effect[figure][f].low))
+            return true;
+    return false;
+}
+
+static bool has_indices(const sf_analysis *a, int figure) {
+    return a->with_indices && !isnan(a->index[figure][0].first);
+}
+
+static bool has_surface(const sf_analysis *a, int figure) {
+    return isfinite(a->surface[figure].fit.left_out_rms);
+}
+
+/* The figures of the plan that have one. */
+static int list_panels(const sf_analysis *a, bool (*has)(const sf_analysis *, int), int *list) {
+    int count = 0;
+    for (int k = 0; k < a->plan->figure_count; k++)
+        if (has(a, k))
+            list[count++] = k;
+    return count;
+}
+
 /* ---- figures against factors ---- */
 
 /* Points and means of one factor, series by series: $p<column>_<series> and $m... */
 static sf_status put_factor_data(FILE *g, const sf_analysis *a, int column, int factor, const series *s,
                                  sf_error *err) {
     const sf_plan *p = a->plan;
-    int64_t every = p->rows / POINTS + 1;
     sf_groups g2 = {0};
     if (sf_groups_make(p, factor, &g2, err) != SF_OK)
         return err->status;
     int64_t groups = g2.count, cells = groups * p->figure_count;
     double *sum = sf_alloc(err, (unsigned long)cells, sizeof *sum, "a picture");
     double *number = sf_alloc(err, (unsigned long)cells, sizeof *number, "a picture");
+    bool *shown = sf_analysis_pick(a->done - a->unusable, POINTS, err);
     const sf_block *b = &p->block[p->block_of[factor]];
     for (int k = 0; k < series_count(s) && err->status == SF_OK; k++) {
         memset(sum, 0, (size_t)cells * sizeof *sum);
         memset(number, 0, (size_t)cells * sizeof *number);
         fprintf(g, "$p%d_%d << EOD\nNaN,NaN\n", column, k);
-        for (int64_t row = 0; row < p->rows; row++) {
-            if (!sf_runs_usable(a->runs, row) || series_of(p, s, row) != k)
+        for (int64_t row = 0, at = -1; row < p->rows; row++) {
+            if (!sf_runs_usable(a->runs, row) || (++at, series_of(p, s, row) != k))
                 continue;
             int64_t group = g2.of_row[row / b->stride % b->rows];
-            if (row % every == 0)
+            if (shown[at])
                 fprintf(g, "%.9g", sf_plan_value(p, factor, row));
             for (int f = 0; f < p->figure_count; f++) {
                 double value = sf_analysis_value(a, f, row);
-                if (row % every == 0)
+                if (shown[at])
                     fprintf(g, ",%.6g", value);
                 sum[f * groups + group] += isnan(value) ? 0 : value;
                 number[f * groups + group] += !isnan(value);
             }
-            if (row % every == 0)
+            if (shown[at])
                 fputc('\n', g);
         }
         fprintf(g, "EOD\n$m%d_%d << EOD\nNaN,NaN\n", column, k);
@@ -154,16 +187,17 @@ static sf_status put_factor_data(FILE *g, const sf_analysis *a, int column, int 
     }
     free(sum);
     free(number);
+    free(shown);
     sf_groups_free(&g2);
     return err->status;
 }
 
-static void put_factor_panel(FILE *g, const sf_analysis *a, int figure, int column, int factor,
+static void put_factor_panel(FILE *g, const sf_analysis *a, int figure, bool key, int column, int factor,
                              const series *s) {
     const sf_sweep_limit *limit = &a->plan->figure[figure];
     put_factor_label(g, "set xlabel", &a->plan->factor[factor]);
     put_label(g, "set ylabel", limit->figure);
-    fputs(figure == 0 && s->factor >= 0 ? "set key top left\n" : "unset key\n", g);
+    fputs(key && s->factor >= 0 ? "set key top left\n" : "unset key\n", g);
     fputs("plot ", g);
     if (!isnan(limit->limit))
         fprintf(g, "%.9g with lines lw 2 dt 2 lc rgb '#cb181d' notitle, \\\n     ", limit->limit);
@@ -177,10 +211,13 @@ static void put_factor_panel(FILE *g, const sf_analysis *a, int figure, int colu
 }
 
 static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, sf_error *err) {
-    int list[SF_SWEEP_FACTORS], columns = sf_analysis_numbers(a->plan, list), figures = a->plan->figure_count;
+    int list[SF_SWEEP_FACTORS], columns = 0;
+    int panel[SF_SWEEP_FIGURES], figures = list_panels(a, has_values, panel);
     series s[COLUMNS] = {{0}};
-    columns = columns < COLUMNS ? columns : COLUMNS;
-    if (columns == 0)
+    for (int f = 0; f < a->plan->factor_count && columns < COLUMNS; f++)
+        if (!a->plan->factor[f].words)
+            list[columns++] = f;
+    if (columns == 0 || figures == 0)
         return SF_OK;
     FILE *g = sf_gnuplot_begin(output, "factors", columns > 1 ? 1800 : 1300, 620 * figures, err);
     for (int c = 0; c < columns && g && err->status == SF_OK; c++)
@@ -191,7 +228,7 @@ static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, sf
                 figures, columns);
     for (int k = 0; k < figures && g; k++)
         for (int c = 0; c < columns; c++)
-            put_factor_panel(g, a, k, c, list[c], &s[c]);
+            put_factor_panel(g, a, panel[k], k == 0, c, list[c], &s[c]);
     for (int c = 0; c < columns; c++)
         sf_groups_free(&s[c].groups);
     if (g)
@@ -241,15 +278,17 @@ static void put_curve_plot(FILE *g, const sf_plan *p, const series *s, int count
 static sf_status plot_curves(const sf_staging *output, const sf_analysis *a, const char *folder,
                              sf_error *err) {
     int of[CURVES + 1], count = 0;
-    int64_t usable = a->done - a->unusable, every = usable / CURVES + 1, at = 0;
+    int64_t at = -1;
     series s;
     if (choose_series(a->plan, -1, &s, err) != SF_OK)
         return err->status;
-    FILE *g = sf_gnuplot_begin(output, "curves", 1600, 900, err);
-    for (int64_t row = 0; row < a->runs->count && g && count < CURVES; row++)
-        if (sf_runs_usable(a->runs, row) && a->runs->folder[row] && at++ % every == 0 &&
+    bool *shown = sf_analysis_pick(a->done - a->unusable, CURVES, err);
+    FILE *g = shown ? sf_gnuplot_begin(output, "curves", 1600, 900, err) : NULL;
+    for (int64_t row = 0; row < a->runs->count && g; row++)
+        if (sf_runs_usable(a->runs, row) && shown[++at] && a->runs->folder[row] &&
             put_curve(g, folder, a->runs->folder[row], count))
             of[count++] = series_of(a->plan, &s, row);
+    free(shown);
     if (g && count > 0)
         put_curve_plot(g, a->plan, &s, count, of);
     sf_groups_free(&s.groups);
@@ -308,13 +347,16 @@ static void put_effect_panel(FILE *g, const sf_analysis *a, int figure) {
 }
 
 static sf_status plot_effects(const sf_staging *output, const sf_analysis *a, sf_error *err) {
-    int figures = a->plan->figure_count, height = 160 + 70 * a->plan->factor_count;
+    int panel[SF_SWEEP_FIGURES], figures = list_panels(a, has_effects, panel);
+    int height = 160 + 70 * a->plan->factor_count;
+    if (figures == 0)
+        return SF_OK;
     FILE *g = sf_gnuplot_begin(output, "effects", 1600, (height < 400 ? 400 : height) * figures, err);
     if (!g)
         return err->status;
     fprintf(g, "set multiplot layout %d,1\nset lmargin 26\nunset key\n", figures);
     for (int k = 0; k < figures; k++)
-        put_effect_panel(g, a, k);
+        put_effect_panel(g, a, panel[k]);
     fputs("unset multiplot\n", g);
     return sf_staging_close(g, "effects.gp", err);
 }
@@ -344,28 +386,29 @@ static void put_index_panel(FILE *g, const sf_analysis *a, int figure) {
 }
 
 static sf_status plot_indices(const sf_staging *output, const sf_analysis *a, sf_error *err) {
-    int figures = a->plan->figure_count;
-    if (!a->with_indices || isnan(a->index[0][0].first))
+    int panel[SF_SWEEP_FIGURES], figures = list_panels(a, has_indices, panel);
+    if (figures == 0)
         return SF_OK;
     FILE *g = sf_gnuplot_begin(output, "indices", 1600, (240 + 70 * a->plan->factor_count) * figures, err);
     if (!g)
         return err->status;
     fprintf(g, "set multiplot layout %d,1\nset lmargin 26\nset key top right\n", figures);
     for (int k = 0; k < figures; k++)
-        if (!isnan(a->index[k][0].first))
-            put_index_panel(g, a, k);
+        put_index_panel(g, a, panel[k]);
     fputs("unset multiplot\n", g);
     return sf_staging_close(g, "indices.gp", err);
 }
 
 /* ---- response surface ---- */
 
-static void put_surface_panel(FILE *g, const sf_analysis *a, int figure) {
+static void put_surface_panel(FILE *g, const sf_analysis *a, int figure, sf_error *err) {
     const sf_sweep_surface *s = &a->surface[figure];
-    int64_t every = s->rows / POINTS + 1;
+    bool *shown = sf_analysis_pick(s->rows, POINTS, err);
     fprintf(g, "$s%d << EOD\n", figure);
-    for (int64_t k = 0; k < s->rows; k += every)
-        fprintf(g, "%.6g,%.6g\n", s->simulated[k], s->left_out[k]);
+    for (int64_t k = 0; k < s->rows && shown; k++)
+        if (shown[k])
+            fprintf(g, "%.6g,%.6g\n", s->simulated[k], s->left_out[k]);
+    free(shown);
     fprintf(g, "EOD\nset xlabel '%s, simulated'\nset ylabel 'by the surface without its place'\n",
             a->plan->figure[figure].figure);
     fprintf(g,
@@ -375,20 +418,18 @@ static void put_surface_panel(FILE *g, const sf_analysis *a, int figure) {
 }
 
 static sf_status plot_surface(const sf_staging *output, const sf_analysis *a, sf_error *err) {
-    int panels = 0;
-    for (int k = 0; k < a->plan->figure_count; k++)
-        panels += isfinite(a->surface[k].fit.left_out_rms);
+    int panel[SF_SWEEP_FIGURES], panels = list_panels(a, has_surface, panel);
     if (panels == 0)
         return SF_OK;
     FILE *g = sf_gnuplot_begin(output, "surface", 1600, panels > 1 ? 800 * ((panels + 1) / 2) : 1000, err);
     if (!g)
         return err->status;
     fprintf(g, "set multiplot layout %d,%d\n", panels > 1 ? (panels + 1) / 2 : 1, panels > 1 ? 2 : 1);
-    for (int k = 0; k < a->plan->figure_count; k++)
-        if (isfinite(a->surface[k].fit.left_out_rms))
-            put_surface_panel(g, a, k);
+    for (int k = 0; k < panels; k++)
+        put_surface_panel(g, a, panel[k], err);
     fputs("unset multiplot\n", g);
-    return sf_staging_close(g, "surface.gp", err);
+    sf_staging_close(g, "surface.gp", err);
+    return err->status;
 }
 
 /* ---- probability ---- */
@@ -500,11 +541,13 @@ sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *a, const ch
         plot_effects(output, a, err) != SF_OK || plot_indices(output, a, err) != SF_OK ||
         plot_surface(output, a, err) != SF_OK || plot_probability(output, a, err) != SF_OK)
         return err->status;
-    for (const sf_sweep_picture *p = pictures; p->name && !*warning; p++) {
-        char script[64];
+    for (const sf_sweep_picture *p = pictures; p->name; p++) {
+        char script[64], own[320] = "";
         snprintf(script, sizeof script, "%s.gp", p->name);
         if (sf_staging_has(output, script))
-            sf_gnuplot_draw(output, p->name, warning, size);
+            sf_gnuplot_draw(output, p->name, own, sizeof own);
+        if (!*warning)
+            snprintf(warning, size, "%s", own);
     }
     return SF_OK;
 }

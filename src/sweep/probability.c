@@ -36,7 +36,7 @@ static int64_t cell_of(const sf_plan *p, int64_t row) {
 }
 
 /* Rows of a cell that share no draw: of crossed blocks those of the smallest, of a sample for Sobol' indices
- * its two first matrices. */
+ * its two first matrices, and nowhere more than a posterior has draws. */
 static double count_independent(const sf_plan *p) {
     double least = INFINITY;
     for (int k = 0; k < p->block_count; k++) {
@@ -44,6 +44,9 @@ static double count_independent(const sf_plan *p) {
         double rows = (double)b->rows;
         if (b->kind == SF_BLOCK_SAMPLE && b->method == SF_SAMPLING_SALTELLI)
             rows *= 2. / (b->count + 2);
+        for (int f = b->first; f < b->first + b->count; f++)
+            if (p->factor[f].posterior)
+                rows = fmin(rows, (double)p->factor[f].count);
         if (!sf_block_is_chosen(p, k))
             least = fmin(least, rows);
     }

@@ -336,6 +336,7 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
 }
 
 static void put_effects(FILE *page, const sf_sweep_report *r) {
+    bool scatter = false;
     sf_html_heading(page, "Main effects");
     sf_html_table t = sf_html_table_begin(
         page, "dense", "figure|factor|>lowest mean|>highest mean|>at the least value|>at the greatest value");
@@ -349,13 +350,18 @@ static void put_effects(FILE *page, const sf_sweep_report *r) {
             sf_html_number(&t, 1, e->high);
             sf_html_number(&t, 1, e->first);
             sf_html_number(&t, 1, e->last);
+            scatter |= sf_effect_is_scatter(r->plan, f);
         }
     sf_html_table_end(&t);
     sf_html_note(
         page,
         "Means over all runs whose figures count. More than %d numbers are taken in %d parts; of draws of "
-        "an unknown the means at 5 and 95 %% of them are shown.",
-        SF_EFFECT_LEVELS, SF_EFFECT_BINS);
+        "an unknown the means at 5 and 95 %% of them are shown.%s",
+        SF_EFFECT_LEVELS, SF_EFFECT_BINS,
+        scatter
+            ? " Draws, or many words, that a sample mixes with other factors have no bar: each has few runs, and "
+              "their means are mostly scatter of the others. A saltelli sample tells their share (Sobol' indices)."
+            : "");
 }
 
 static void put_indices(FILE *page, const sf_sweep_report *r) {
