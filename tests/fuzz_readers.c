@@ -233,6 +233,9 @@ static void write_file(const char *name, const void *data, size_t size) {
     "0.04,20\n0.07,40\n0.11,60\n0.14,80\n0.18,100\n0.21,120\n0.25,140\n0.28,160\n0.32,180\n0.35,200\n0.39,"  \
     "220\n0.42,240\n0.46,260\n0.49,280\n0.53,300\n0.56,320\n0.60,340\n0.63,360\n0.67,380\n0.70,400\n0.74,"   \
     "420\n0.77,440\n"
+#define QUICK                                                                                                \
+    "strain,stress_kPa\n"                                                                                    \
+    "0.04,30\n0.07,60\n0.11,90\n0.14,120\n0.18,150\n0.21,180\n0.25,210\n0.28,240\n0.32,270\n0.35,300\n0.39,330\n0.42,360\n0.46,390\n0.49,420\n0.53,450\n0.56,480\n0.60,510\n0.63,540\n0.67,570\n0.70,600\n0.74,630\n0.77,660\n"
 #define GEOMETRY                                                                                             \
     "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\nsolver: { end_time = \"1 ms\"; };\n"
 
@@ -243,6 +246,7 @@ void fuzz_begin(void) {
         {"motion.csv", "time_ms,displacement_mm\n0,0\n50,10\n"},
         {"measured.csv", "time_ms,acceleration_g\n0,0\n1,20\n2,80\n3,20\n4,0\n"},
         {"pressing.csv", PRESSING},
+        {"quick.csv", QUICK},
         {"material.cfg", MATERIAL},
         {"good.cfg",
          GEOMETRY "material: { " MATERIAL "};\nmissile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"},

@@ -13,8 +13,10 @@
 
 enum { CHAINS = 3, KEPT = 333, STATES = CHAINS * KEPT, KINDS = 3, PARAMETERS = 2 };
 
+enum { NO_COLUMNS = STATES + 1 };
+
 /* States 1 to STATES, of which the last `collapsed` have no value; the others the logarithm of their number.
- */
+ * NO_COLUMNS: none has one. */
 typedef struct posterior {
     sf_fit_input input;
     sf_drop_fit fit;
@@ -31,6 +33,7 @@ static posterior *posterior_new(int collapsed) {
     p->input.drop[0].predicted = true;
     snprintf(p->input.drop[0].name, sizeof p->input.drop[0].name, "held");
     p->fit.input = &p->input;
+    p->fit.columns[0].count = collapsed != NO_COLUMNS;
     p->inference = (sf_drop_inference){.fit = &p->fit,
                                        .parameters = PARAMETERS,
                                        .quantities = KINDS,
@@ -143,6 +146,11 @@ static void every_output_says_open(void **state) {
     assert_says(write_json, 600, "\"median\": null,\n        \"low95\": 25,\n        \"high95\": null");
     assert_says(write_json, STATES, "\"high95\": null,\n        \"open\": null"); /* of the window */
     assert_says(write_json, 4, "\"share_of_draws_without_value\": 0.004004");
+    assert_says(sf_inference_print, NO_COLUMNS,
+                "a_max –  (95 %: –); no columns, as its simulation failed before");
+    assert_says(sf_inference_html, NO_COLUMNS,
+                "held (no columns, as its simulation failed before the pad was");
+    assert_says(write_json, NO_COLUMNS, "\"median\": null,\n        \"low95\": null");
     char *text = text_of(sf_inference_html, 0);
     assert_null(strstr(text, "collapse"));
     free(text);

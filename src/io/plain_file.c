@@ -66,11 +66,17 @@ sf_plain_record sf_plain_get(size_t index) {
     return record;
 }
 
+/* The number of an inode is given again once its file is gone. */
+static bool is_still_there(const sf_plain_record *record) {
+    struct stat info;
+    return stat(record->path, &info) == 0 && info.st_dev == record->device && info.st_ino == record->inode;
+}
+
 const char *sf_plain_name(uint64_t device, uint64_t inode) {
     const char *name = NULL;
     pthread_mutex_lock(&list.lock);
     for (size_t k = 0; k < list.count && !name; k++)
-        if (list.entry[k].device == device && list.entry[k].inode == inode)
+        if (list.entry[k].device == device && list.entry[k].inode == inode && is_still_there(&list.entry[k]))
             name = list.entry[k].path;
     pthread_mutex_unlock(&list.lock);
     return name;

@@ -57,7 +57,7 @@ typedef struct sf_plain_record {
 size_t sf_plain_count(void);
 /* Entry `index` < sf_plain_count(). Its path is valid until sf_plain_forget. */
 sf_plain_record sf_plain_get(size_t index);
-/* The name under which the file of this device and inode was read; NULL: it was not. */
+/* The name under which the file of this device and inode was read and still is; NULL: it was not. */
 const char *sf_plain_name(uint64_t device, uint64_t inode);
 /* Empties the register. */
 void sf_plain_forget(void);

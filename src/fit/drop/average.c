@@ -70,6 +70,18 @@ typedef struct weighted {
     int count;
 } weighted;
 
+/* Without: its simulation failed before the pad was touched. */
+static bool has_columns(const sf_drop_inference *in, int drop) {
+    return in->fit->columns[drop].count > 0;
+}
+
+bool sf_drop_average_has_columns(const sf_drop_average *a, int quantity) {
+    for (int m = 0; m < a->models; m++)
+        if (a->weight[m] > 0 && !has_columns(a->model[m], a->model[m]->quantity[quantity].drop))
+            return false;
+    return true;
+}
+
 /* A state without a value, as its foam collapses, counts as infinite if `above_all`, else not at all. */
 static void add_states(const sf_drop_inference *in, const double *column, int width, double weight,
                        bool above_all, weighted *w) {
@@ -115,17 +127,18 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
                                     const double *probability, double *value, sf_error *err) {
     weighted w;
     int most = 0;
-    bool above_all = sf_drop_kind_get(a->model[0]->quantity[quantity].kind)->above_all;
+    const sf_drop_quantity *q = &a->model[0]->quantity[quantity];
+    bool above_all = sf_drop_kind_get(q->kind)->above_all;
     for (int m = 0; m < a->models; m++)
         most += states_of(a->model[m]);
     if (make_weighted(most, &w, err) == SF_OK) {
         for (int m = 0; m < a->models; m++)
             if (model < 0 ? a->weight[m] > 0 : m == model)
                 add_states(a->model[m], &a->model[m]->chains.quantity[quantity], a->model[m]->quantities,
-                           model < 0 ? a->weight[m] : 1, above_all, &w);
+                           model < 0 ? a->weight[m] : 1, above_all && has_columns(a->model[m], q->drop), &w);
         take_quantiles(&w, count, probability, value, err);
-        for (int q = 0; q < count; q++)
-            value[q] = exp(value[q]);
+        for (int k = 0; k < count; k++)
+            value[k] = exp(value[k]);
     }
     free(w.value);
     free(w.weight);

@@ -40,8 +40,10 @@ bool sf_drop_average_reached(const sf_drop_average *average);
  * quantiles are those of the draws that have a value. NaN if none counts. */
 sf_status sf_drop_average_quantiles(const sf_drop_average *average, int model, int quantity, int count,
                                     const double *probability, double *value, sf_error *err);
-/* Weight of the draws that have no value of it: the foam of the columns collapses. */
+/* Weight of the draws that have no value of it: the foam of the columns collapses, or there are none. */
 double sf_drop_average_missing(const sf_drop_average *average, int quantity);
+/* False: the drop's simulation failed before the pad was touched, so nothing was predicted. */
+bool sf_drop_average_has_columns(const sf_drop_average *average, int quantity);
 /* Quantiles of a parameter of one model, as the chains have it. */
 sf_status sf_drop_parameter_quantiles(const sf_drop_inference *inference, int parameter, int count,
                                       const double *probability, double *value, sf_error *err);

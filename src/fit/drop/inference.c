@@ -218,7 +218,8 @@ static sf_status find_jacobian(sf_drop_inference *in, sf_error *err) {
             }
             for (int q = 0; q < in->quantities; q++) {
                 unsigned long k = (unsigned long)row_of(in, q);
-                in->steep = in->steep || !isfinite(high[b * n + k] - low[b * n + k]);
+                bool known = isfinite(high[b * n + k] - low[b * n + k]);
+                in->steep = in->steep || (!known && in->fit->columns[in->quantity[q].drop].count > 0);
             }
         }
     }

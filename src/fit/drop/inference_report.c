@@ -37,7 +37,7 @@ static void find_worst(const sf_chains *c, double *rhat, double *effective) {
 
 /* ---- quantiles: low, median, high; INFINITY: among the draws that collapse ---- */
 
-enum { SHARE = 24, SHOWN = 64 };
+enum { SHARE = 24, MISSING = 128, SHOWN = 64 };
 
 /* "0.4 %"; more than nothing does not read "0 %". */
 static const char *share_text(double share, char text[SHARE]) {
@@ -45,6 +45,19 @@ static const char *share_text(double share, char text[SHARE]) {
         snprintf(text, SHARE, "less than 0.01 %%");
     else
         snprintf(text, SHARE, "%.3g %%", 100 * share);
+    return text;
+}
+
+/* "; the columns of 3 % of the draws collapse"; empty where all have a value. */
+static const char *missing_text(const sf_drop_average *a, int q, const char *joint, char text[MISSING]) {
+    char share[SHARE];
+    double missing = sf_drop_average_missing(a, q);
+    *text = '\0';
+    if (missing > 0 && !sf_drop_average_has_columns(a, q))
+        snprintf(text, MISSING, "%sno columns, as its simulation failed before the pad was touched", joint);
+    else if (missing > 0)
+        snprintf(text, MISSING, "%sthe columns of %s of the draws collapse", joint,
+                 share_text(missing, share));
     return text;
 }
 
@@ -128,7 +141,7 @@ static void put_prediction_notes(FILE *f, const sf_drop_average *a) {
 
 static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
-    char text[LABEL], share[SHARE], shown[SHOWN];
+    char text[LABEL], missing[MISSING], shown[SHOWN];
     if (in->quantities == 0)
         return SF_OK;
     sf_html_heading(f, "Predictions, averaged over the models");
@@ -141,14 +154,11 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
         if (sf_drop_average_quantiles(a, -1, q, 3, THREE, all, err) != SF_OK ||
             sf_drop_average_quantiles(a, sf_drop_average_best(a), q, 3, THREE, best, err) != SF_OK)
             return err->status;
-        double missing = sf_drop_average_missing(a, q);
         snprintf(text, sizeof text, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
         sf_html_row(&table);
-        if (missing > 0)
-            sf_html_cell(&table, "%s (the columns of %s of the draws collapse)",
-                         in->fit->input->drop[in->quantity[q].drop].name, share_text(missing, share));
-        else
-            sf_html_cell(&table, "%s", in->fit->input->drop[in->quantity[q].drop].name);
+        missing_text(a, q, "", missing);
+        sf_html_cell(&table, *missing ? "%s (%s)" : "%s", in->fit->input->drop[in->quantity[q].drop].name,
+                     missing);
         sf_html_cell(&table, "%s", text);
         sf_html_cell(&table, "%s", median_text(about->digits, all, shown));
         sf_html_cell(&table, "%s", interval_text(about->digits, all, shown));
@@ -498,16 +508,13 @@ void sf_inference_print_chains(FILE *f, const sf_drop_inference *in) {
 static sf_status print_prediction(FILE *f, const sf_drop_average *a, int q, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
     const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
-    double value[3], missing = sf_drop_average_missing(a, q);
-    char median[SHOWN], interval[SHOWN], share[SHARE];
+    double value[3];
+    char median[SHOWN], interval[SHOWN], missing[MISSING];
     if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
         return err->status;
-    fprintf(f, "  %-20s %s %s %s (95 %%: %s)", in->fit->input->drop[in->quantity[q].drop].name, about->name,
-            median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
-            interval_text(about->digits, value, interval));
-    if (missing > 0)
-        fprintf(f, "; the columns of %s of the draws collapse", share_text(missing, share));
-    fputc('\n', f);
+    fprintf(f, "  %-20s %s %s %s (95 %%: %s)%s\n", in->fit->input->drop[in->quantity[q].drop].name,
+            about->name, median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
+            interval_text(about->digits, value, interval), missing_text(a, q, "; ", missing));
     return SF_OK;
 }
 

@@ -8,9 +8,11 @@
 #include "post/reference.h"
 #include "case/case.h"
 #include "solver/material/foam.h"
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const double SAMPLE_INTERVAL = 0.5e-3; /* s, of a measured curve */
 static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are left out */
@@ -147,11 +149,21 @@ static sf_status read_measurement(const sf_config *config, const config_setting_
     return err->status;
 }
 
-/* The file, or a copy of it. */
+/* The folder that holds the file. */
+static bool stat_folder(const char *path, struct stat *info) {
+    char folder[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+    return stat(folder, info) == 0;
+}
+
+/* The file, or a copy of it in its folder: elsewhere the files that it names are others. */
 static bool is_same_file(const char *a, const char *b) {
     sf_error none = SF_ERROR_INIT;
     uint64_t first, second;
-    return sf_plain_hash(a, NULL, SF_PLAIN_TEXT, &first, &none) == SF_OK &&
+    struct stat here, there;
+    return stat_folder(a, &here) && stat_folder(b, &there) && here.st_dev == there.st_dev &&
+           here.st_ino == there.st_ino && sf_plain_hash(a, NULL, SF_PLAIN_TEXT, &first, &none) == SF_OK &&
            sf_plain_hash(b, NULL, SF_PLAIN_TEXT, &second, &none) == SF_OK && first == second;
 }
 
@@ -468,6 +480,12 @@ static sf_status put_unknown(const sf_config *config, const config_setting_t *wh
         return sf_config_refuse(config, where, err,
                                 "%s would be one more than %d unknown parameters, which is the most",
                                 sf_parameter_get(p)->name, SF_FIT_MAX_UNKNOWNS);
+    const sf_parameter_info *about = sf_parameter_get(p);
+    if (!(in->start[p] >= about->low && in->start[p] <= about->high))
+        return sf_config_refuse(config, where, err,
+                                "%s is unknown, and starts at %g%s%s; it can be sought from %g to %g",
+                                about->name, in->start[p] / about->per_unit, *about->unit ? " " : "",
+                                about->unit, about->low / about->per_unit, about->high / about->per_unit);
     in->unknown[k] = p;
     in->prior[k] = in->start[p];
     in->prior_sd[k] = sf_foam_form_prior_sd(&in->form, p);

@@ -191,9 +191,9 @@ static void print_response(FILE *f, const sf_drop_fit *fit, int d, int kind) {
     else
         fprintf(f, "  %s %.*f%s%s", about->name, about->digits + 1, sf_report_response(fit, d, kind),
                 *about->unit ? " " : "", about->unit);
-    if (drop->predicted && !isnan(sf_report_response(fit, d, kind)))
-        fprintf(f, " ± %.1f %% (95 %%, linearised)",
-                100 * sf_report_half_width(fit) * sf_report_response_sd(fit, d, kind));
+    double width = 100 * sf_report_half_width(fit) * sf_report_response_sd(fit, d, kind);
+    if (drop->predicted && isfinite(sf_report_response(fit, d, kind) * width))
+        fprintf(f, " ± %.1f %% (95 %%, linearised)", width);
     if (!isnan(drop->value[kind]))
         fprintf(f, " (measured %.4g)", drop->value[kind]);
 }
