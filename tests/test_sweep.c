@@ -933,6 +933,10 @@ static void draws_that_are_sampled_with_others_have_no_main_effect(void **state)
     evaluate_plan(*state, SAMPLED_DRAWS, &plan, &runs, &a);
     assert_true(isnan(a.effect[0][2].low) && isnan(a.effect[0][2].high));
     assert_true(a.effect[0][0].high > a.effect[0][0].low);
+    assert_true(sf_effect_is_scatter(&plan, 2));
+    plan.block[plan.block_of[2]].rows = SF_EFFECT_RUNS * plan.factor[2].count; /* so many have a mean */
+    assert_false(sf_effect_is_scatter(&plan, 2));
+    plan.block[plan.block_of[2]].rows = 40;
     free_evaluated(&plan, &runs, &a);
     evaluate_plan(*state, "{ key = \"a.x\"; values = [1, 2]; }, { key = \"material\"; posterior = \"ten\"; }",
                   &plan, &runs, &a); /* crossed: a_max moves by 9/3 with the index of the draw */

@@ -148,6 +148,9 @@ static sf_status run_program(const char *const *arguments, const char *log, sf_e
         return SF_FAIL(err, SF_ERR_LIBRARY, SF_PROCESS_KILLED " %d (see %s)", SIGKILL, log);
     char said[800];
     last_line(log, said, sizeof said);
+    if (code == 126 || code == 127) /* of the loader: a library is missing here, for every drop */
+        return SF_FAIL(err, SF_ERR_IO, "%s does not start: %s (exit code %d; see %s)", arguments[0], said,
+                       code, log);
     return SF_FAIL(err, code <= SF_ERR_LIBRARY ? (sf_status)code : SF_ERR_LIBRARY,
                    "%s (exit code %d; see %s)", said, code, log);
 }

@@ -69,8 +69,10 @@ static sf_status write_keys(const sf_sweep_campaign *c, uint64_t runs, sf_error 
 /* sweep.key knows the table by its text: what something else has written, or was written under another key,
  * is not believed. */
 static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, sf_error *err) {
-    path table = file_of(c, "runs.csv");
+    path table = file_of(c, "runs.csv"), key = file_of(c, "sweep.key");
     uint64_t hash = 0;
+    if (access(key.text, F_OK) != 0) /* first of all: without it the table is somebody else's */
+        SF_TRY(write_keys(c, 0, err));
     return sf_runs_write(runs, table.text, &hash, err) == SF_OK ? write_keys(c, hash, err) : err->status;
 }
 

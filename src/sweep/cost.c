@@ -132,6 +132,8 @@ void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {
             "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
             (long long)c->open, c->seconds, hours, jobs, c->bytes * (double)c->open / 1e9, c->basis);
     if (c->there > 0)
-        fprintf(out, "  (up to %lld of them may be there already: the folder has so many drops more)\n",
-                (long long)c->there);
+        fprintf(
+            out,
+            "  (up to %lld of them may be there already: the folder has drops that runs.csv does not list, or lists with earlier inputs)\n",
+            (long long)c->there);
 }

@@ -90,7 +90,7 @@ bool sf_effect_is_scatter(const sf_plan *p, int factor) {
     const sf_factor *f = &p->factor[factor];
     const sf_block *b = &p->block[p->block_of[factor]];
     return b->kind == SF_BLOCK_SAMPLE && b->count > 1 && f->words &&
-           (f->posterior || f->count > SF_EFFECT_LEVELS);
+           (f->posterior || f->count > SF_EFFECT_LEVELS) && b->rows < SF_EFFECT_RUNS * f->count;
 }
 
 sf_status sf_effect_measure(const sf_runs *r, int factor, size_t figure, sf_effect *e, sf_error *err) {

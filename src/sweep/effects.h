@@ -5,11 +5,11 @@
 
 #include "sweep/runs.h"
 
-enum { SF_EFFECT_LEVELS = 12, SF_EFFECT_BINS = 5 };
+enum { SF_EFFECT_LEVELS = 12, SF_EFFECT_BINS = 5, SF_EFFECT_RUNS = 50 /* in a mean, fewer are scatter */ };
 
 typedef struct sf_effect {
     double low, high;   /* smallest and greatest mean; of draws the means at 5 and 95 % of them; NaN: none, or
-                           words whose   means are scatter (sf_effect_is_scatter) */
+                           words whose means are scatter (sf_effect_is_scatter) */
     double first, last; /* of numbers: the means at the least and at the greatest value */
 } sf_effect;
 

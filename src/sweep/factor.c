@@ -393,7 +393,9 @@ static sf_status read_levels(reading *r, bool sampled, sf_error *err) {
     static const char *const kinds[] = {"values", "files", "posterior", "from", NULL},
                              *const names[] = {"key|name|values|uncertain", "key|name|files|uncertain",
                                                "key|name|posterior|draws|uncertain",
-                                               "key|name|from|to|count|spacing|uncertain"};
+                                               "key|name|from|to|count|spacing|uncertain"},
+                             *const drawn[] = {"key|name|values", "key|name|files",
+                                               "key|name|posterior|draws"}; /* no `from` there */
     const config_setting_t *found = NULL;
     int which = -1;
     for (int k = 0; kinds[k]; k++) {
@@ -411,8 +413,7 @@ static sf_status read_levels(reading *r, bool sampled, sf_error *err) {
                                 "%s: give values, files, posterior, or from, to and count; a distribution "
                                 "belongs into a group with sample",
                                 r->factor->key);
-    if (sf_config_names(r->config, r->group, names[which], err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(r->config, r->group, sampled ? drawn[which] : names[which], err));
     return which == 2   ? read_posterior(r, found, err)
            : which == 3 ? read_range(r, err)
                         : read_list(r, found, which == 1, err);

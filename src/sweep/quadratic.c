@@ -170,8 +170,9 @@ sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const
     int terms = count_terms(s);
     if (d == 0 || terms > SF_QUADRATIC_TERMS || n < terms + 2) {
         snprintf(s->problem, sizeof s->problem,
-                 d == 0 ? "no factor is a number" : "%d terms need at least %d runs, there are %lld", terms,
-                 terms + 2, (long long)n);
+                 d == 0 ? "no factor is a number with more than one value"
+                        : "%d terms need at least %d runs, there are %lld",
+                 terms, terms + 2, (long long)n);
         return SF_OK;
     }
     fit f;

@@ -356,12 +356,15 @@ static void put_effects(FILE *page, const sf_sweep_report *r) {
     sf_html_note(
         page,
         "Means over all runs whose figures count. More than %d numbers are taken in %d parts; of draws of "
-        "an unknown the means at 5 and 95 %% of them are shown.%s",
-        SF_EFFECT_LEVELS, SF_EFFECT_BINS,
-        scatter
-            ? " Draws, or many words, that a sample mixes with other factors have no bar: each has few runs, and "
-              "their means are mostly scatter of the others. A saltelli sample tells their share (Sobol' indices)."
-            : "");
+        "an unknown the means at 5 and 95 %% of them are shown.",
+        SF_EFFECT_LEVELS, SF_EFFECT_BINS);
+    if (scatter)
+        sf_html_note(
+            page,
+            "Draws, or many words, that a sample mixes with other factors have no bar where each has "
+            "fewer than %d runs: their means are mostly scatter of the others. A saltelli sample "
+            "tells their share (Sobol' indices).",
+            SF_EFFECT_RUNS);
 }
 
 static void put_indices(FILE *page, const sf_sweep_report *r) {
@@ -404,7 +407,7 @@ static void put_surfaces(FILE *page, const sf_sweep_report *r) {
         sf_html_number(&t, 3, s->fit.left_out_rms);
         sf_html_number(&t, 3, s->fit.q2);
         sf_html_cell(&t, "%s%s%s", s->fit.problem, *s->fit.problem && s->rows < s->of ? "; " : "",
-                     s->rows < s->of ? "a part of the runs, evenly chosen" : "");
+                     s->rows < s->of ? "a part of the runs, drawn at random" : "");
     }
     sf_html_table_end(&t);
     sf_html_note(
