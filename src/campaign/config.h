@@ -54,6 +54,11 @@ sf_status sf_config_file(const sf_config *config, const config_setting_t *group,
 sf_status sf_config_list(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, int most, const config_setting_t **out, sf_error *err);
 
+/* The root's list of texts "group.key=value", as written, at most `most` of them; `*count` stays 0 if it is
+ * absent. text [most]: from malloc, owned by the caller, also on failure. */
+sf_status sf_config_overrides(const sf_config *config, const char *name, int most, char **text, int *count,
+                              sf_error *err);
+
 /* Records SF_ERR_INPUT: "file:line: sentence". */
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
                            const char *format, ...) __attribute__((format(printf, 4, 5)));

@@ -302,9 +302,11 @@ static double distance(const sf_mapping_problem *p, const point *a, const point 
 }
 
 /* The end: the free step is short, or would gain nothing that counts, or two steps in a row changed nothing
- * that counts. */
+ * that counts. Steps of a matrix that began as another problem's are short also along correlated parameters.
+ */
 static bool is_settled(const sf_mapping_problem *p, double step, double gain, int idle) {
-    return step < p->tolerance || gain < p->tolerance * p->tolerance || idle >= 2;
+    bool is_short = step < p->tolerance && (!p->first_matrix || gain < 2 * p->tolerance);
+    return is_short || gain < p->tolerance * p->tolerance || idle >= 2;
 }
 
 /* The first simulation, at the minimum with the given offset or at the start; there too if it fails. */
@@ -315,6 +317,8 @@ static sf_status begin(const sf_mapping_problem *p, const sf_mapping_result *r, 
     memcpy(best->u, p->start, size);
     if (!p->first_offset)
         return simulate(p, 0, best, err);
+    if (p->first_point)
+        memcpy(best->u, p->first_point, size);
     for (int i = 0; i < p->responses; i++)
         best->offset[i] = isfinite(p->first_offset[i]) ? p->first_offset[i] : 0;
     if (propose(p, r, best, INFINITY, next, &failure) == SF_OK) {
@@ -339,6 +343,7 @@ static sf_status iterate(const sf_mapping_problem *p, sf_mapping_result *r, poin
             measure_step(p, r, best, trial->u, &step, err) != SF_OK ||
             predict_gain(p, r, best, trial, &gain, err) != SF_OK)
             return err->status;
+        r->gain = gain;
         r->converged = is_settled(p, step, gain, idle);
         if (r->converged || r->iterations == p->max_iterations)
             return estimate(p, true, r, err);
@@ -367,6 +372,8 @@ sf_status sf_mapping_solve(const sf_mapping_problem *p, sf_mapping_result *r, sf
                   .offset = sf_alloc(err, n, sizeof(double), "responses")};
     point trial = {.y = sf_alloc(err, n, sizeof(double), "responses"),
                    .offset = sf_alloc(err, n, sizeof(double), "responses")};
+    if (err->status == SF_OK && p->first_matrix)
+        memcpy(r->matrix, p->first_matrix, entries * sizeof(double));
     if (err->status == SF_OK)
         iterate(p, r, &best, &trial, err);
     memcpy(r->u, best.u, sizeof r->u);

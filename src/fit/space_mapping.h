@@ -26,15 +26,17 @@ typedef struct sf_mapping_problem {
     const double *measured; /* [responses] */
     const double *sd;       /* [responses] > 0; INFINITY: predicted only, no datum */
     /* [responses] y - s of a similar problem: the first simulation is then at the minimum of s with it; NULL:
-     * at the start */
-    const double *first_offset;
+     * at the start. Of one with the same parameters too: where it is y - s, [parameters], and its M; NULL:
+     * the start, and 0 */
+    const double *first_offset, *first_point, *first_matrix;
     sf_status (*surrogate)(void *context, const double *u, double *y, sf_error *err);
     sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
     void *context;
     int max_iterations; /* simulations at most */
     double tolerance; /* in standard deviations. Converged: the free next step is below it in every parameter,
                          or would lower the objective by less than its square, or two steps in a row, taken or
-                         not, changed it by less than twice the tolerance */
+                         not, changed it by less than twice the tolerance. With a first_matrix a short step
+                         must lower it by less than that, too */
     /* called after each simulation; may be NULL */
     void (*progress)(void *context, int iteration, const double *u, const double *y, double objective);
 } sf_mapping_problem;
@@ -51,6 +53,7 @@ typedef struct sf_mapping_result {
     double freedom;   /* number of data less the effective number of parameters that they determine */
     double scale;     /* factor on the data's standard deviations in `covariance`: sqrt(misfit / freedom) if
                          chi-squared     contradicts them (5 %), else 1 */
+    double gain;      /* by which y_c says that the objective could still fall */
     int iterations;
     bool converged;
 } sf_mapping_result;

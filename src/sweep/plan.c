@@ -214,29 +214,17 @@ static sf_status read_factors(const sf_config *config, bool huge, sf_plan *p, sf
 
 static sf_status read_set(const sf_config *config, sf_plan *p, sf_error *err) {
     const config_setting_t *list = config_lookup(&config->config, "set");
-    int most = SF_RUNNER_OVERRIDES - p->factor_count;
-    if (!list)
-        return SF_OK;
-    if (!config_setting_is_array(list) && !config_setting_is_list(list))
-        return sf_config_refuse(config, list, err, "set must be a list of texts, [\"group.key=value\", ...]");
-    if (config_setting_length(list) > most)
+    SF_TRY(sf_config_overrides(config, "set", SF_RUNNER_OVERRIDES, p->set, &p->set_count, err));
+    if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES)
         return sf_config_refuse(config, list, err, "set and the factors change more than %d keys",
                                 SF_RUNNER_OVERRIDES);
-    for (int k = 0; k < config_setting_length(list); k++) {
-        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
-        const char *text = config_setting_get_string(s);
-        if (!text || !strchr(text, '='))
-            return sf_config_refuse(config, s, err, "set: each entry must be a text \"group.key=value\"");
+    for (int k = 0; k < p->set_count; k++)
         for (int f = 0; f < p->factor_count; f++) {
             size_t length = strlen(p->factor[f].key);
-            if (strncmp(text, p->factor[f].key, length) == 0 && text[length] == '=')
-                return sf_config_refuse(config, s, err, "set: %s is a factor, at %s", p->factor[f].key,
-                                        p->factor[f].where);
+            if (strncmp(p->set[k], p->factor[f].key, length) == 0 && p->set[k][length] == '=')
+                return sf_config_refuse(config, config_setting_get_elem(list, (unsigned)k), err,
+                                        "set: %s is a factor, at %s", p->factor[f].key, p->factor[f].where);
         }
-        p->set[p->set_count] = strdup(text);
-        if (!p->set[p->set_count++])
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the plan %s", p->path);
-    }
     return SF_OK;
 }
 

@@ -248,8 +248,10 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
         return SF_FAIL(err, SF_ERR_NUMERIC, "the fit does not go through the drop %s: %.800s", drop->name,
                        result->verdict);
     sf_fit_simulated *last = &fit->simulated[d];
-    if (fit->columns[d].count == 0)
+    if (fit->columns[d].count == 0 || (fit->borrowed[d] && !fit->coarse)) {
         find_columns(result->path, &fit->columns[d], err);
+        fit->borrowed[d] = fit->coarse;
+    }
     const sf_columns_figures figures = {.a_max_g = result->a_max_g,
                                         .hic = result->hic,
                                         .hic_window = result->hic_window,
@@ -331,10 +333,13 @@ static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char
                                sf_error *err) {
     sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
     sf_runner_result result[SF_FIT_MAX_DROPS];
-    for (int d = first; d < last; d++)
+    for (int d = first; d < last; d++) {
         request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
                                               .case_path = fit->input->drop[d].case_path,
-                                              .material = material};
+                                              .material = material,
+                                              .override_count = fit->coarse ? fit->input->coarse_count : 0};
+        memcpy(request[d - first].overrides, fit->input->coarse, sizeof fit->input->coarse);
+    }
     sf_runner_run_batch(fit->runner, last - first, request, result, err);
     for (int d = first; d < last; d++) {
         if (err->status == SF_OK)
@@ -406,7 +411,7 @@ static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, 
 static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
     sf_drop_fit *fit = context;
     char name[SF_FIT_NAME_SIZE];
-    snprintf(name, sizeof name, "iterate-%02d", fit->iteration++);
+    snprintf(name, sizeof name, "%s-%02d", fit->coarse ? "coarse" : "iterate", fit->iteration++);
     if (simulate_drops(fit, 0, fit->measured_drops, name, u, y, err) != SF_OK)
         return err->status;
     return add_speeds(fit, u, y, err);
@@ -418,7 +423,7 @@ static void report_progress(void *context, int iteration, const double *u, const
     (void)y;
     if (!fit->log)
         return;
-    fprintf(fit->log, "iteration %d: objective %.4g;", iteration, objective);
+    fprintf(fit->log, "%siteration %d: objective %.4g;", fit->coarse ? "coarse " : "", iteration, objective);
     for (int k = 0; k < fit->input->unknown_count; k++) {
         const sf_parameter_info *p = sf_parameter_get(fit->input->unknown[k]);
         fprintf(fit->log, " %s %.4g%s%s", p->name, exp(u[k]) / p->per_unit, *p->unit ? " " : "", p->unit);
@@ -591,6 +596,28 @@ static sf_status conclude(sf_drop_fit *fit, const sf_mapping_problem *problem, s
     return locate_information(fit, err);
 }
 
+/* The coarse drops cost little and differ from the drops by a correction that hardly changes with the foam:
+ * the fit through them tells `problem` where to begin. If they cannot be simulated it begins at the start. */
+static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_mapping_result *coarse,
+                              sf_error *err) {
+    sf_error failure = SF_ERROR_INIT;
+    fit->coarse = true;
+    sf_mapping_solve(problem, coarse, &failure);
+    fit->coarse = false;
+    fit->iteration = 0;
+    fit->coarse_iterations = coarse->iterations;
+    if (failure.status == SF_OK) {
+        problem->first_offset = coarse->offset;
+        problem->first_point = coarse->u;
+        problem->first_matrix = coarse->matrix;
+    } else if (failure.status == SF_ERR_NUMERIC && fit->log) {
+        fprintf(fit->log, "coarse_set is left out: %s\n", failure.text);
+    } else if (failure.status != SF_ERR_NUMERIC) {
+        SF_FAIL(err, failure.status, "coarse_set: %.800s", failure.text);
+    }
+    return err->status;
+}
+
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
     double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS];
@@ -606,23 +633,28 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     for (int d = 0; d < in->drop_count; d++)
         if (fit->speed[d] >= 0)
             prior_sd[fit->speed[d]] = in->drop[d].speed_sd;
-    const sf_mapping_problem problem = {.parameters = fit->parameters,
-                                        .responses = fit->row[fit->measured_drops],
-                                        .start = start,
-                                        .prior = start,
-                                        .prior_sd = prior_sd,
-                                        .first_offset = fit->earlier ? fit->earlier->result.offset : NULL,
-                                        .measured = fit->measured,
-                                        .sd = fit->sd,
-                                        .surrogate = surrogate,
-                                        .simulate = simulate,
-                                        .context = fit,
-                                        .max_iterations = MAX_ITERATIONS,
-                                        .tolerance = TOLERANCE,
-                                        .progress = report_progress};
-    if (sf_mapping_solve(&problem, &fit->result, err) != SF_OK || finish(fit, err) != SF_OK)
-        return err->status;
-    return conclude(fit, &problem, err);
+    sf_mapping_result coarse = {0};
+    sf_mapping_problem problem = {.parameters = fit->parameters,
+                                  .responses = fit->row[fit->measured_drops],
+                                  .start = start,
+                                  .prior = start,
+                                  .prior_sd = prior_sd,
+                                  .first_offset = fit->earlier ? fit->earlier->result.offset : NULL,
+                                  .measured = fit->measured,
+                                  .sd = fit->sd,
+                                  .surrogate = surrogate,
+                                  .simulate = simulate,
+                                  .context = fit,
+                                  .max_iterations = MAX_ITERATIONS,
+                                  .tolerance = TOLERANCE,
+                                  .progress = report_progress};
+    if (in->coarse_count > 0 && !fit->earlier)
+        begin_coarse(fit, &problem, &coarse, err);
+    if (err->status == SF_OK && sf_mapping_solve(&problem, &fit->result, err) == SF_OK &&
+        finish(fit, err) == SF_OK)
+        conclude(fit, &problem, err);
+    sf_mapping_free(&coarse);
+    return err->status;
 }
 
 void sf_drop_fit_free(sf_drop_fit *fit) {

@@ -47,7 +47,10 @@ typedef struct sf_drop_fit {
     int speed[SF_FIT_MAX_DROPS]; /* index of the drop's speed among them; -1: it is known */
     double *measured, *sd;       /* [responses] scaled; sd INFINITY where nothing was measured; owned */
     sf_columns columns[SF_FIT_MAX_DROPS];
+    bool borrowed[SF_FIT_MAX_DROPS]; /* columns of the coarse drop, until the drop itself was simulated */
     sf_fit_simulated simulated[SF_FIT_MAX_DROPS];
+    bool coarse;           /* now: the drops have the input's coarse_set */
+    int coarse_iterations; /* of the first part; 0: there was none */
     int iteration;
     sf_mapping_result result; /* of the measured drops */
     double *y;                /* [responses] of the simulations with the result; owned */

@@ -4,32 +4,14 @@
 #ifndef SF_FIT_DROP_INPUT_H
 #define SF_FIT_DROP_INPUT_H
 
+#include "campaign/drop.h"
+#include "fit/drop/drop_input.h"
 #include "fit/drop/joint.h"
-#include "fit/drop/kinds.h"
 #include "fit/drop/parameters.h"
 #include "fit/space_mapping.h"
-#include "post/reference.h"
 
 enum { SF_FIT_MAX_MODELS = 16 };
-enum { SF_FIT_MAX_DROPS = 24, SF_FIT_MAX_UNKNOWNS = 20, SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
-
-/* A drop that was measured, or (predicted) is only to be simulated with the identified material. */
-typedef struct sf_fit_drop {
-    char name[SF_FIT_NAME_SIZE];
-    char *case_path; /* owned */
-    bool predicted;
-    double value[SF_FIT_SAMPLES]; /* measured, in the unit of its key (kinds.h); NaN: not */
-    double sd[SF_FIT_SAMPLES];    /* relative standard deviations */
-    double speed_sd;              /* relative standard deviation of the case's speed; 0: it is known */
-    char *curve_path;             /* of the measured curve; NULL: none; owned */
-    char understood[SF_REFERENCE_UNDERSTOOD]; /* how it was read */
-    int samples;                              /* of it; 0: none */
-    double *sample_time;                      /* [samples] s after contact; owned */
-    double *sample_value;                     /* [samples] g; owned */
-    double sample_sd;                         /* of a sample, relative to the measured peak */
-    double sample_scale;                      /* g, that peak */
-    double sample_class;                      /* of the filter that both curves have; 0: the file's own */
-} sf_fit_drop;
+enum { SF_FIT_MAX_DROPS = 24, SF_FIT_MAX_UNKNOWNS = 20 };
 
 typedef struct sf_fit_input {
     char *text;                           /* the file as it is; owned */
@@ -42,8 +24,10 @@ typedef struct sf_fit_input {
     sf_foam_form form;
     int drop_count; /* measured ones first */
     sf_fit_drop drop[SF_FIT_MAX_DROPS];
-    sf_joint joint;                   /* compression tests and cushion curves */
-    double start[SF_PARAMETER_COUNT]; /* SI, every parameter */
+    int coarse_count;                  /* 0: no coarse iterations */
+    char *coarse[SF_RUNNER_OVERRIDES]; /* "group.key=value" of the first iterations; owned */
+    sf_joint joint;                    /* compression tests and cushion curves */
+    double start[SF_PARAMETER_COUNT];  /* SI, every parameter */
     int unknown_count;
     sf_foam_parameter unknown[SF_FIT_MAX_UNKNOWNS];
     double prior[SF_FIT_MAX_UNKNOWNS];    /* SI, median */

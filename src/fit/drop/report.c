@@ -21,9 +21,23 @@ static void put_misfit(FILE *f, const sf_drop_fit *fit) {
             fit->result.scale);
 }
 
+/* The marginal standard deviations of the last step can hide a fall of the objective along correlated
+ * parameters: what is left of it is said. */
+static void describe_gain(const sf_drop_fit *fit, char *text, size_t size) {
+    static const double LEAST = 0.1;
+    *text = '\0';
+    if (fit->result.gain > LEAST)
+        snprintf(text, size, "; the corrected columns expect the objective to fall by %.2g more",
+                 fit->result.gain);
+}
+
 static void put_banner(FILE *f, const sf_drop_fit *fit) {
     double low, high;
     bool misses = fit->result.scale > 1;
+    char coarse[64] = "", gain[96];
+    describe_gain(fit, gain, sizeof gain);
+    if (fit->coarse_iterations > 0)
+        snprintf(coarse, sizeof coarse, " and %d with the coarse mesh of coarse_set", fit->coarse_iterations);
     sf_report_informed_strains(fit, &low, &high);
     sf_html_banner(
         f,
@@ -31,11 +45,11 @@ static void put_banner(FILE *f, const sf_drop_fit *fit) {
         : misses               ? "fair"
                                : "good",
         fit->result.converged ? "converged" : "not converged",
-        "After %d simulations of every measured drop; misfit %.2f with %.1f degrees of freedom%s. The drops "
+        "After %d simulations of every measured drop%s; misfit %.2f with %.1f degrees of freedom%s%s. The drops "
         "inform the curve between strains of %.2f and %.2f.",
-        fit->result.iterations, fit->result.misfit, fit->result.freedom,
-        misses ? ", more than the stated standard deviations allow: the intervals are widened" : "", low,
-        high);
+        fit->result.iterations, coarse, fit->result.misfit, fit->result.freedom,
+        misses ? ", more than the stated standard deviations allow: the intervals are widened" : "", gain,
+        low, high);
 }
 
 static void put_picture(FILE *f, const sf_staging *output) {
@@ -86,6 +100,8 @@ static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *avera
     sf_json_text(&j, "input_text", fit->input->text);
     sf_json_bool(&j, "converged", fit->result.converged);
     sf_json_integer(&j, "iterations", fit->result.iterations);
+    sf_json_integer(&j, "coarse_iterations", fit->coarse_iterations);
+    sf_json_number(&j, "expected_gain", fit->result.gain);
     sf_json_number(&j, "misfit", fit->result.misfit);
     sf_json_number(&j, "degrees_of_freedom", fit->result.freedom);
     sf_json_number(&j, "sd_scale", fit->result.scale);
@@ -114,10 +130,15 @@ sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *av
 
 void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
     double low, high;
+    char gain[96];
     sf_report_informed_strains(fit, &low, &high);
-    fprintf(f, "\n%s after %d iterations; misfit %.2f with %.1f degrees of freedom\n",
-            fit->result.converged ? "Converged" : "NOT converged", fit->result.iterations, fit->result.misfit,
-            fit->result.freedom);
+    describe_gain(fit, gain, sizeof gain);
+    fprintf(f, "\n%s after %d iterations", fit->result.converged ? "Converged" : "NOT converged",
+            fit->result.iterations);
+    if (fit->coarse_iterations > 0)
+        fprintf(f, " (and %d with coarse_set)", fit->coarse_iterations);
+    fprintf(f, "; misfit %.2f with %.1f degrees of freedom%s\n", fit->result.misfit, fit->result.freedom,
+            gain);
     sf_report_parameters_print(f, fit);
     sf_report_drops_print(f, fit);
     sf_report_joint_print(f, fit);
