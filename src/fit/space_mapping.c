@@ -302,8 +302,8 @@ static double distance(const sf_mapping_problem *p, const point *a, const point 
 }
 
 /* The end: the free step is short, or would gain nothing that counts, or two steps in a row changed nothing
- * that counts. Steps of a matrix that began as another problem's are short also along correlated parameters.
- */
+ * that counts. A matrix that began as another problem's can make the step short in every parameter although
+ * the objective would fall along correlated ones: the step must then gain little, too. */
 static bool is_settled(const sf_mapping_problem *p, double step, double gain, int idle) {
     bool is_short = step < p->tolerance && (!p->first_matrix || gain < 2 * p->tolerance);
     return is_short || gain < p->tolerance * p->tolerance || idle >= 2;
@@ -372,8 +372,8 @@ sf_status sf_mapping_solve(const sf_mapping_problem *p, sf_mapping_result *r, sf
                   .offset = sf_alloc(err, n, sizeof(double), "responses")};
     point trial = {.y = sf_alloc(err, n, sizeof(double), "responses"),
                    .offset = sf_alloc(err, n, sizeof(double), "responses")};
-    if (err->status == SF_OK && p->first_matrix)
-        memcpy(r->matrix, p->first_matrix, entries * sizeof(double));
+    for (unsigned long k = 0; err->status == SF_OK && p->first_matrix && k < entries; k++)
+        r->matrix[k] = isfinite(p->first_matrix[k]) ? p->first_matrix[k] : 0;
     if (err->status == SF_OK)
         iterate(p, r, &best, &trial, err);
     memcpy(r->u, best.u, sizeof r->u);

@@ -26,9 +26,11 @@ typedef struct sf_mapping_problem {
     const double *measured; /* [responses] */
     const double *sd;       /* [responses] > 0; INFINITY: predicted only, no datum */
     /* [responses] y - s of a similar problem: the first simulation is then at the minimum of s with it; NULL:
-     * at the start. Of one with the same parameters too: where it is y - s, [parameters], and its M; NULL:
-     * the start, and 0 */
-    const double *first_offset, *first_point, *first_matrix;
+     * at the start */
+    const double *first_offset;
+    /* Of one with the same parameters and responses: [parameters] the point at which first_offset is its y -
+     * s (NULL: the start), and [responses][parameters] its M, with which this one begins (NULL: 0) */
+    const double *first_point, *first_matrix;
     sf_status (*surrogate)(void *context, const double *u, double *y, sf_error *err);
     sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
     void *context;

@@ -241,6 +241,32 @@ static sf_status find_columns(const char *path, sf_columns *columns, sf_error *e
     return err->status;
 }
 
+/* What a coarse drop tells is used for the drop: it must be the same but for the mesh. */
+static sf_status check_coarse(const sf_fit_drop *drop, const sf_columns *a, const sf_columns *b,
+                              sf_error *err) {
+    static const double SLACK = 0.01; /* a coarse surface of the missile begins a little elsewhere */
+    if (fabs(a->thickness / b->thickness - 1) < SLACK && fabs(a->mass / b->mass - 1) < SLACK &&
+        fabs(a->speed / b->speed - 1) < SLACK)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "coarse_set makes another drop of %s: %.4g mm thick, %.4g kg and %.4g m/s, in place of %.4g "
+        "mm, %.4g kg and %.4g m/s; it is for a coarser mesh of the same drop",
+        drop->name, 1e3 * a->thickness, a->mass, a->speed, 1e3 * b->thickness, b->mass, b->speed);
+}
+
+/* Of the first simulation; after coarse ones once more. */
+static sf_status find_own_columns(sf_drop_fit *fit, int d, const char *path, sf_error *err) {
+    const sf_columns before = fit->columns[d];
+    bool replaced = fit->borrowed[d] && !fit->coarse;
+    if (before.count > 0 && !replaced)
+        return SF_OK;
+    fit->borrowed[d] = fit->coarse;
+    if (find_columns(path, &fit->columns[d], err) == SF_OK && replaced)
+        check_coarse(&fit->input->drop[d], &before, &fit->columns[d], err);
+    return err->status;
+}
+
 /* Responses of a simulated drop; takes its curve. */
 static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, double *y, sf_error *err) {
     const sf_fit_drop *drop = &fit->input->drop[d];
@@ -248,10 +274,8 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
         return SF_FAIL(err, SF_ERR_NUMERIC, "the fit does not go through the drop %s: %.800s", drop->name,
                        result->verdict);
     sf_fit_simulated *last = &fit->simulated[d];
-    if (fit->columns[d].count == 0 || (fit->borrowed[d] && !fit->coarse)) {
-        find_columns(result->path, &fit->columns[d], err);
-        fit->borrowed[d] = fit->coarse;
-    }
+    if (find_own_columns(fit, d, result->path, err) != SF_OK)
+        return err->status;
     const sf_columns_figures figures = {.a_max_g = result->a_max_g,
                                         .hic = result->hic,
                                         .hic_window = result->hic_window,
@@ -597,7 +621,7 @@ static sf_status conclude(sf_drop_fit *fit, const sf_mapping_problem *problem, s
 }
 
 /* The coarse drops cost little and differ from the drops by a correction that hardly changes with the foam:
- * the fit through them tells `problem` where to begin. If they cannot be simulated it begins at the start. */
+ * the fit through them tells `problem` where to begin. If they cannot be used it begins at the start. */
 static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_mapping_result *coarse,
                               sf_error *err) {
     sf_error failure = SF_ERROR_INIT;
@@ -605,17 +629,20 @@ static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_
     sf_mapping_solve(problem, coarse, &failure);
     fit->coarse = false;
     fit->iteration = 0;
-    fit->coarse_iterations = coarse->iterations;
     if (failure.status == SF_OK) {
+        fit->coarse_iterations = coarse->iterations;
         problem->first_offset = coarse->offset;
         problem->first_point = coarse->u;
         problem->first_matrix = coarse->matrix;
-    } else if (failure.status == SF_ERR_NUMERIC && fit->log) {
-        fprintf(fit->log, "coarse_set is left out: %s\n", failure.text);
-    } else if (failure.status != SF_ERR_NUMERIC) {
-        SF_FAIL(err, failure.status, "coarse_set: %.800s", failure.text);
+        return SF_OK;
     }
-    return err->status;
+    if (failure.status != SF_ERR_NUMERIC && failure.status != SF_ERR_MODEL)
+        return SF_FAIL(err, failure.status, "coarse_set: %.800s", failure.text);
+    if (fit->log) {
+        fprintf(fit->log, "coarse_set is left out, its drops cannot be used: %s\n", failure.text);
+        fflush(fit->log);
+    }
+    return SF_OK;
 }
 
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {

@@ -26,7 +26,7 @@ static sf_status read_drops(const sf_config *config, const config_setting_t *roo
     return SF_OK;
 }
 
-/* What the first iterations change: the mesh alone. What they find out about the foam is the drops' own. */
+/* What the first iterations change: keys of the discretisation. */
 static sf_status read_coarse(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                              sf_error *err) {
     static const char *const groups[] = {"geometry.", "pad.", "solver."};
@@ -42,7 +42,7 @@ static sf_status read_coarse(const sf_config *config, const config_setting_t *ro
         if (!allowed)
             return sf_config_refuse(config, config_setting_get_elem(list, (unsigned)k), err,
                                     "coarse_set: \"%.80s\" is no key of geometry, pad or solver: the first "
-                                    "iterations differ in the mesh alone",
+                                    "iterations have a coarser mesh, and nothing else",
                                     in->coarse[k]);
     }
     return SF_OK;
@@ -141,11 +141,14 @@ static sf_status read_case(const sf_fit_drop *drop, const char *material, bool f
     return err->status;
 }
 
-static sf_status check_coarse(const sf_fit_drop *drop, const sf_fit_input *in, sf_error *err) {
+/* As the runner will: the material, then the keys. */
+static sf_status check_coarse(const sf_fit_drop *drop, const char *material, const sf_fit_input *in,
+                              sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
     sf_case c;
-    const char *const *overrides = (const char *const *)in->coarse;
-    if (sf_case_read(drop->case_path, in->coarse_count, overrides, NULL, &c, &inner) != SF_OK)
+    const char *overrides[1 + SF_RUNNER_OVERRIDES] = {material};
+    memcpy(&overrides[1], in->coarse, sizeof in->coarse);
+    if (sf_case_read(drop->case_path, 1 + in->coarse_count, overrides, NULL, &c, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "coarse_set: %.800s", inner.text);
     sf_case_free(&c);
     return SF_OK;
@@ -185,7 +188,7 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
         SF_TRY(read_case(&in->drop[k], override, k == 0, in, err));
         if (in->coarse_count > 0 && !in->drop[k].predicted)
-            SF_TRY(check_coarse(&in->drop[k], in, err));
+            SF_TRY(check_coarse(&in->drop[k], override, in, err));
     }
     return read_solid(config, root, in, err);
 }
