@@ -116,6 +116,9 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
         {"{ zip = ( { key = \"missile.velocity\"; values = [\"4 m/s\", \"5 m/s\"]; },"
          " { key = \"missile.mass\"; values = [\"4 kg\"]; } ); }",
          "missile.velocity has 2 values and missile.mass 1; the lists must have one length"},
+        {"{ zip = ( { key = \"missile.velocity\"; values = [\"4 m/s\", \"5 m/s\"]; },"
+         " { key = \"missile.mass\"; values = [\"4 kg\", \"5 kg\"]; uncertain = true; } ); }",
+         "one of missile.velocity and missile.mass is chosen and the other uncertain"},
         {"{ key = \"a.b\"; from = 0.0; to = 1.0; count = 2000; }, { key = \"a.c\"; from = 0.0; to = 1.0; count = 2000; }",
          "the plan has 4000000 runs, more than 1000000: give --yes"},
         {"{ sample = \"sobol\"; count = 2000000; of = ( { key = \"a.b\"; low = 0.0; high = 1.0; } ); }",
@@ -289,11 +292,11 @@ static void the_sobol_sequence_begins_as_it_is_known_and_has_its_limit(void **st
     static const double known[] = {0.5, 0.5, 0.75, 0.25, 0.25, 0.75, 0.375, 0.375};
     double u[8], *many = malloc(41 * 2 * sizeof *many);
     sf_error err = SF_ERROR_INIT;
-    sf_sample(SF_SAMPLING_SOBOL, 2, 4, 0, u, &err);
+    sf_sample(SF_SAMPLING_SOBOL, 2, 4, 1, u, &err);
     for (int k = 0; k < 8; k++)
         assert_close(u[k], known[k], 0);
-    assert_int_equal(sf_sample(SF_SAMPLING_SOBOL, 40, 2, 0, many, &err), SF_OK);
-    assert_int_equal(sf_sample(SF_SAMPLING_SOBOL, 41, 2, 0, many, &err), SF_ERR_INPUT);
+    assert_int_equal(sf_sample(SF_SAMPLING_SOBOL, 40, 2, 1, many, &err), SF_OK);
+    assert_int_equal(sf_sample(SF_SAMPLING_SOBOL, 41, 2, 1, many, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "at most 40 coordinates, not 41"));
     free(many);
 }
@@ -305,13 +308,33 @@ static void a_sample_of_saltelli_mixes_two_samples(void **state) {
     double u[N * (D + 2) * D];
     sf_error err = SF_ERROR_INIT;
     assert_int_equal(sf_sample_rows(SF_SAMPLING_SALTELLI, D, N), N * (D + 2));
-    sf_sample(SF_SAMPLING_SALTELLI, D, N, 0, u, &err);
+    sf_sample(SF_SAMPLING_SALTELLI, D, N, 1, u, &err);
     for (int i = 0; i < D; i++)
         for (int k = 0; k < N; k++)
             for (int j = 0; j < D; j++)
                 assert_close(u[((2 + i) * N + k) * D + j], u[((i == j ? N : 0) + k) * D + j], 0);
     for (int k = 0; k < N * D; k++)
         assert_true(u[k] > 0 && u[k] < 1);
+}
+
+/* Another seed, other points, as evenly spread: in each of 16 parts of each coordinate as many. */
+static void a_seed_moves_the_sobol_sequence(void **state) {
+    (void)state;
+    enum { N = 256, D = 3, PARTS = 16 };
+    double u[3][N * D];
+    static const uint64_t seed[3] = {1, 2, 3};
+    sf_error err = SF_ERROR_INIT;
+    for (int s = 0; s < 3; s++) {
+        int part[D][PARTS] = {{0}};
+        assert_int_equal(sf_sample(SF_SAMPLING_SOBOL, D, N, seed[s], u[s], &err), SF_OK);
+        for (int k = 0; k < N * D; k++) {
+            assert_true(u[s][k] > 0 && u[s][k] < 1);
+            assert_true(s == 0 || u[s][k] != u[s - 1][k]);
+            part[k % D][(int)(PARTS * u[s][k])]++;
+        }
+        for (int k = 0; k < D * PARTS; k++)
+            assert_true(abs(part[k / PARTS][k % PARTS] - N / PARTS) <= 2);
+    }
 }
 
 static void distributions_have_their_quantiles(void **state) {
@@ -352,8 +375,7 @@ static double ishigami(const double *x) {
 }
 
 /* The indices in closed form, of a = 7 and b = 0.1. */
-static void indices_of_ishigami_lie_in_their_intervals(void **state) {
-    (void)state;
+static void assert_indices_of_ishigami(uint64_t seed) {
     enum { N = 1024, D = 3 };
     const double pi = acos(-1), a = 7, b = 0.1, v1 = 0.5 * pow(1 + b * pow(pi, 4) / 5, 2), v2 = a * a / 8,
                  v13 = b * b * pow(pi, 8) * (1.0 / 18 - 1.0 / 50), v = v1 + v2 + v13;
@@ -362,7 +384,7 @@ static void indices_of_ishigami_lie_in_their_intervals(void **state) {
     sf_index index[D];
     sf_error err = SF_ERROR_INIT;
     int64_t used = 0;
-    sf_sample(SF_SAMPLING_SALTELLI, D, N, 0, u, &err);
+    sf_sample(SF_SAMPLING_SALTELLI, D, N, seed, u, &err);
     for (int k = 0; k < N * (D + 2); k++) {
         double x[D];
         for (int i = 0; i < D; i++)
@@ -386,6 +408,13 @@ static void indices_of_ishigami_lie_in_their_intervals(void **state) {
     assert_true(isnan(index[0].first)); /* nothing varies */
     free(u);
     free(y);
+}
+
+/* The sequence, and the sequence moved. */
+static void indices_of_ishigami_lie_in_their_intervals(void **state) {
+    (void)state;
+    assert_indices_of_ishigami(1);
+    assert_indices_of_ishigami(7);
 }
 
 static double quadratic(const double *x) {
@@ -657,6 +686,63 @@ static void runs_are_looked_at_again_when_what_they_read_has_changed(void **stat
     assert_int_equal(rows_done(p, &plan, &f, false, 2), 0);
     f.changed = true; /* what only the engine sees */
     assert_int_equal(rows_done(p, &plan, &f, false, 2), 61);
+    sf_plan_free(&plan);
+}
+
+/* The report of the rows as they were goes before the table turns to other inputs or another plan, also if
+ * the campaign is then interrupted; it stays while nothing changes. */
+static void an_old_report_does_not_stand_beside_another_table(void **state) {
+    const program_place *p = *state;
+    static const char *const report[] = {"report.html", "sweep.json", NULL};
+    static const struct {
+        uint64_t inputs;
+        bool other, stays;
+        int64_t calls;
+    } steps[] = {{1, false, true, 0}, {2, false, false, 60}, {2, false, true, 0}, {2, true, false, 1}};
+    sf_plan plan, other;
+    formula f = {.fails = -1};
+    const sf_sweep_engine engine = {evaluate, &f, 7};
+    finish_grid(p, &plan, &f);
+    read_plan(p, "{ key = \"a.x\"; values = [1, 2]; }, { key = \"a.y\"; values = [1]; }", &other);
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
+        sf_runs runs;
+        sf_error err = SF_ERROR_INIT;
+        const sf_sweep_campaign c = {.plan = steps[k].other ? &other : &plan,
+                                     .folder = p->folder,
+                                     .inputs = steps[k].inputs,
+                                     .report = report,
+                                     .force = steps[k].other};
+        f.calls = 0;
+        f.stop_at = steps[k].other ? 1 : 0;
+        program_shell(p, "touch report.html sweep.json");
+        assert_int_equal(sf_runs_create(c.plan, &runs, &err), SF_OK);
+        assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err),
+                         steps[k].other ? SF_INTERRUPTED : SF_OK);
+        assert_int_equal(f.calls, steps[k].calls);
+        for (int r = 0; r < 2; r++)
+            assert_int_equal(access(program_path(p, report[r]), F_OK) == 0, steps[k].stays);
+        sf_runs_free(&runs);
+    }
+    sf_plan_free(&other);
+    sf_plan_free(&plan);
+}
+
+static void results_that_were_removed_are_made_again(void **state) {
+    const program_place *p = *state;
+    char drops[600];
+    sf_plan plan;
+    sf_runs runs;
+    formula f = {.fails = -1};
+    sf_error err = SF_ERROR_INIT;
+    const sf_sweep_engine engine = {evaluate, &f, 7};
+    finish_grid(p, &plan, &f);
+    snprintf(drops, sizeof drops, "%s/gone", p->folder);
+    const sf_sweep_campaign c = {.plan = &plan, .folder = p->folder, .inputs = 1, .drops = drops};
+    f.calls = 0;
+    assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
+    assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err), SF_OK);
+    assert_int_equal(f.calls, 60);
+    sf_runs_free(&runs);
     sf_plan_free(&plan);
 }
 
@@ -1199,6 +1285,7 @@ int main(void) {
         cmocka_unit_test(a_latin_hypercube_has_one_point_in_each_stratum),
         cmocka_unit_test(the_sobol_sequence_begins_as_it_is_known_and_has_its_limit),
         cmocka_unit_test(a_sample_of_saltelli_mixes_two_samples),
+        cmocka_unit_test(a_seed_moves_the_sobol_sequence),
         cmocka_unit_test(distributions_have_their_quantiles),
         cmocka_unit_test(indices_of_ishigami_lie_in_their_intervals),
         cmocka_unit_test(a_response_surface_is_exact_for_a_quadratic),
@@ -1209,6 +1296,8 @@ int main(void) {
         cmocka_unit_test(probabilities_have_the_interval_of_their_counts),
         cmocka_unit_test(an_interrupted_campaign_goes_on_with_the_same_table),
         cmocka_unit_test(a_failed_run_keeps_its_sentence_and_is_done_again_on_request),
+        cmocka_unit_test(an_old_report_does_not_stand_beside_another_table),
+        cmocka_unit_test(results_that_were_removed_are_made_again),
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
         cmocka_unit_test(a_failed_run_is_looked_at_again_when_what_only_the_geometry_reads_has_changed),
         cmocka_unit_test(failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again),

@@ -34,8 +34,8 @@ enum { SF_ENGINE_KEY = 0x7001, SF_ENGINE_KEY_PROFILE, SF_ENGINE_KEY_RETRY, SF_EN
          (group)},                                                                                           \
     {                                                                                                        \
         "per-job", SF_ENGINE_KEY_GROUP, "N", 0,                                                              \
-            "with --engine snakemake: drops of a job (default 20, or more so that there are at most 1000 "   \
-            "jobs)",                                                                                         \
+            "with --engine snakemake: drops of a job (default of a sweep: 20, or more so that there are at " \
+            "most 1000 jobs; else 1)",                                                                       \
             (group)                                                                                          \
     }
 #define SF_ENGINE_RETRY(group)                                                                               \

@@ -2,6 +2,7 @@
 #include "sweep/campaign.h"
 
 #include "core/hash.h"
+#include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
 #include <limits.h>
@@ -97,15 +98,35 @@ sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_er
 
 /* ---- what is there ---- */
 
-/* `*changed`: the rows are of other inputs. */
+/* A report of the rows as they were must not stand beside a table of others, whatever ends the campaign. */
+static void remove_report(const sf_sweep_campaign *c) {
+    for (const char *const *name = c->report; name && *name; name++)
+        sf_folder_remove_file(file_of(c, *name).text);
+}
+
+/* Somebody may have removed the folder of a run to have it done again. */
+static void open_missing(const sf_sweep_campaign *c, sf_runs *runs) {
+    char place[PATH_MAX];
+    for (int64_t row = 0; c->drops && row < runs->count; row++) {
+        if (runs->state[row] != SF_SWEEP_DONE || !runs->folder[row])
+            continue;
+        snprintf(place, sizeof place, "%s/%s/results.h5", c->drops, runs->folder[row]);
+        if (access(place, F_OK) != 0)
+            sf_runs_open(runs, row);
+    }
+}
+
+/* `*changed`: the rows, if there are any, are of other inputs or of another plan. */
 static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *changed, sf_error *err) {
     keys k;
     bool known = false;
     path table = file_of(c, "runs.csv");
     if (check_keys(c, &k, &known, err) != SF_OK)
         return err->status;
-    *changed = known && k.inputs != c->inputs;
-    return known && access(table.text, F_OK) == 0 ? sf_runs_read(runs, table.text, k.text, err) : SF_OK;
+    *changed = k.there && (!known || k.inputs != c->inputs);
+    if (known && access(table.text, F_OK) == 0 && sf_runs_read(runs, table.text, k.text, err) == SF_OK)
+        open_missing(c, runs);
+    return err->status;
 }
 
 sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err) {
@@ -132,6 +153,7 @@ static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_e
         return SF_OK;
     open_all(runs, SF_SWEEP_DONE);
     open_all(runs, SF_SWEEP_FAILED);
+    remove_report(c);
     return SF_FAIL(err, SF_ERR_IO,
                    "the inputs of the campaign changed while it ran: %.700s; finished drops are kept: repeat "
                    "the command",
@@ -153,9 +175,11 @@ static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, sf_error *
     if (read_table(c, runs, &changed, err) != SF_OK)
         return err->status;
     if (changed) {
+        bool there = sf_runs_count(runs, SF_SWEEP_OPEN) < runs->count;
+        remove_report(c);
         open_all(runs, SF_SWEEP_DONE);
         open_all(runs, SF_SWEEP_FAILED);
-        if (c->log)
+        if (c->log && there)
             fputs("  files or programs have changed since: every run is looked at again\n", c->log);
     }
     if (c->retry)
@@ -260,6 +284,7 @@ static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine
         return err->status;
     open_all(runs, SF_SWEEP_DONE);
     open_all(runs, SF_SWEEP_FAILED);
+    remove_report(c);
     if (c->log)
         fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
               c->log);

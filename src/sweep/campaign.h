@@ -21,9 +21,14 @@ typedef struct sf_sweep_campaign {
     uint64_t inputs;    /* hash of the contents of all inputs */
     /* That hash as it is now, before each writing of the table; NULL: the inputs stay as they are. */
     sf_status (*look)(const sf_plan *plan, uint64_t *hash, sf_error *err);
-    bool retry; /* failed rows are done again */
-    bool force; /* another plan in the folder gives way */
-    FILE *log;  /* NULL: silent */
+    const char *drops; /* folder of the runs' folders: a row whose results have gone from there is open;
+                          NULL: not looked at */
+    const char *const
+        *report; /* names of the files in `folder` that are made of the table, ends with NULL: they
+                    are removed when the table turns to other inputs or another plan; NULL: none */
+    bool retry;  /* failed rows are done again */
+    bool force;  /* another plan in the folder gives way */
+    FILE *log;   /* NULL: silent */
 } sf_sweep_campaign;
 
 /* Is the folder that of a campaign, and of this plan? SF_ERR_INPUT if it is of another plan, without force.

@@ -79,7 +79,9 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
     static const struct argp_option known[] = {
         {"output", 'o', "DIR", 0, "write everything there (required); the drops stay in DIR/runs", 0},
         {"dry-run", KEY_DRY, NULL, 0, "print the table and what it will take, and end", 0},
-        {"yes", 'y', NULL, 0, "take a plan of more than a million runs", 0},
+        {"yes", 'y', NULL, 0,
+         "take a plan of more than a million runs, and begin although the estimate says that the disk is too small",
+         0},
         {"retry", KEY_RETRY, NULL, 0, "do the runs that failed again", 0},
         {"force", 'f', NULL, 0, "replace what DIR holds of another plan; finished drops are used again", 0},
         {"jobs", 'j', "N", 0, "drops side by side, 64 at most (default: as many as processors)", 0},
@@ -163,6 +165,8 @@ static sf_status check(const options *o, job *j, bool *known, sf_error *err) {
     j->campaign.plan = &j->plan;
     j->campaign.look = sf_sweep_check_inputs;
     j->campaign.folder = o->directory;
+    j->campaign.drops = j->folder;
+    j->campaign.report = j->list;
     j->campaign.retry = o->retry;
     j->campaign.force = o->force;
     name_output(j);
@@ -185,7 +189,7 @@ static sf_status estimate(const options *o, job *j, sf_error *err) {
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);
     sf_sweep_cost_print(stdout, &cost, o->jobs);
     fflush(stdout);
-    return sf_sweep_cost_check_disk(&cost, o->directory, o->jobs, err);
+    return o->yes ? SF_OK : sf_sweep_cost_check_disk(&cost, o->directory, o->jobs, err);
 }
 
 static sf_status run(const options *o, job *j, sf_error *err) {

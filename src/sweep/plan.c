@@ -105,6 +105,13 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
             return sf_config_refuse(config, list, err,
                                     "zip: %s has %lld values and %s %lld; the lists must have one length",
                                     p->factor[b->first].key, (long long)b->rows, f->key, (long long)f->count);
+        if (f->uncertain != p->factor[b->first].uncertain)
+            return sf_config_refuse(
+                config, list, err,
+                "zip: one of %s and %s is chosen and the other uncertain, so that no "
+                "probability belongs to a choice: give the chosen one uncertain = true, or "
+                "cross them",
+                p->factor[b->first].key, f->key);
         if (copy_levels(&p->factor[k], err) != SF_OK)
             return err->status;
     }

@@ -381,9 +381,9 @@ static void put_indices(FILE *page, const sf_sweep_report *r) {
             sf_html_cell(&t, "%s", r->plan->figure[k].figure);
             sf_html_cell(&t, "%s", r->plan->factor[f].name);
             sf_html_number(&t, 3, i->first);
-            sf_html_cell(&t, "%.3f to %.3f", i->first_low, i->first_high);
+            sf_html_cell(&t, isnan(i->first_low) ? "–" : "%.3f to %.3f", i->first_low, i->first_high);
             sf_html_number(&t, 3, i->total);
-            sf_html_cell(&t, "%.3f to %.3f", i->total_low, i->total_high);
+            sf_html_cell(&t, isnan(i->total_low) ? "–" : "%.3f to %.3f", i->total_low, i->total_high);
             sf_html_number(&t, 0, (double)a->index_samples[k]);
         }
     sf_html_table_end(&t);
