@@ -601,7 +601,9 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
         double *place = sf_runs_place(runs, row[k]), x = sf_plan_value(runs->plan, 0, row[k]);
         place[sf_runs_figure("a_max_g")] = 100 * sqrt(x) + sf_plan_value(runs->plan, 1, row[k]) / 3;
         place[sf_runs_figure("hic")] = 900 + 100 * x / 3;
-        sf_runs_done(runs, row[k], SF_GRADE_VALID, "drop", NULL, err);
+        char folder[32];
+        snprintf(folder, sizeof folder, "drop-%lld", (long long)row[k] % 6);
+        sf_runs_done(runs, row[k], SF_GRADE_VALID, folder, NULL, err);
     }
     return err->status;
 }
@@ -727,23 +729,69 @@ static void an_old_report_does_not_stand_beside_another_table(void **state) {
     sf_plan_free(&plan);
 }
 
+/* Of the sixth folder, which ten rows name; without all of them nothing begins. */
 static void results_that_were_removed_are_made_again(void **state) {
     const program_place *p = *state;
-    char drops[600];
+    static const struct {
+        const char *made;
+        sf_status status;
+        int64_t calls;
+    } steps[] = {{"0 1 2 3 4 5", SF_OK, 0}, {"0 1 2 3 4", SF_OK, 10}, {"", SF_ERR_INPUT, 0}};
     sf_plan plan;
-    sf_runs runs;
     formula f = {.fails = -1};
-    sf_error err = SF_ERROR_INIT;
     const sf_sweep_engine engine = {evaluate, &f, 7};
+    char drops[600];
+    snprintf(drops, sizeof drops, "%s/drops", p->folder);
     finish_grid(p, &plan, &f);
-    snprintf(drops, sizeof drops, "%s/gone", p->folder);
-    const sf_sweep_campaign c = {.plan = &plan, .folder = p->folder, .inputs = 1, .drops = drops};
-    f.calls = 0;
-    assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
-    assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err), SF_OK);
-    assert_int_equal(f.calls, 60);
-    sf_runs_free(&runs);
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
+        const sf_sweep_campaign c = {.plan = &plan, .folder = p->folder, .inputs = 1, .drops = drops};
+        sf_runs runs;
+        sf_error err = SF_ERROR_INIT;
+        f.calls = 0;
+        program_shell(
+            p, "rm -rf drops; for d in %s; do mkdir -p drops/drop-$d; touch drops/drop-$d/results.h5; done",
+            steps[k].made);
+        assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
+        assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err), steps[k].status);
+        assert_true(!err.text[0] || strstr(err.text, "drops with their results is missing"));
+        assert_int_equal(f.calls, steps[k].calls);
+        sf_runs_free(&runs);
+    }
     sf_plan_free(&plan);
+}
+
+/* The first sample had to be simulated, the second could not: neither the other rows nor the report are those
+ * of the files as they are. The same if the inputs change while the campaign runs. */
+static void a_campaign_that_ends_early_after_a_change_leaves_no_row_and_no_report(void **state) {
+    const program_place *p = *state;
+    static const char *const report[] = {"report.html", NULL};
+    for (int k = 0; k < 2; k++) {
+        sf_plan plan;
+        sf_runs runs;
+        sf_error err = SF_ERROR_INIT;
+        formula f = {.fails = -1};
+        const sf_sweep_engine engine = {evaluate, &f, 7};
+        read_plan(p, "{ key = \"geometry.x\"; values = [1, 2, 3]; }, { key = \"a.y\"; values = [1, 2]; }",
+                  &plan);
+        program_shell(p, "rm -f runs.csv sweep.key");
+        rows_done(p, &plan, &f, false, 1);
+        const sf_sweep_campaign c = {.plan = &plan,
+                                     .folder = p->folder,
+                                     .inputs = 1,
+                                     .look = k == 1 ? look_at_inputs : NULL,
+                                     .report = report};
+        f = (formula){.fails = -1, .changed = k == 0, .stop_at = k == 0 ? 1 : 0};
+        present_inputs = k == 1 ? 99 : 1;
+        program_shell(p, "touch report.html");
+        assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
+        assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err),
+                         k == 0 ? SF_INTERRUPTED : SF_ERR_IO);
+        assert_int_equal(sf_runs_count(&runs, SF_SWEEP_OPEN), 6);
+        assert_int_equal(access(program_path(p, "report.html"), F_OK), -1);
+        assert_int_equal(program_shell(p, "grep -c ',open,' runs.csv").out[0], '6');
+        sf_runs_free(&runs);
+        sf_plan_free(&plan);
+    }
 }
 
 /* A run that failed may have read what has changed, too. */
@@ -1298,6 +1346,7 @@ int main(void) {
         cmocka_unit_test(a_failed_run_keeps_its_sentence_and_is_done_again_on_request),
         cmocka_unit_test(an_old_report_does_not_stand_beside_another_table),
         cmocka_unit_test(results_that_were_removed_are_made_again),
+        cmocka_unit_test(a_campaign_that_ends_early_after_a_change_leaves_no_row_and_no_report),
         cmocka_unit_test(runs_are_looked_at_again_when_what_they_read_has_changed),
         cmocka_unit_test(a_failed_run_is_looked_at_again_when_what_only_the_geometry_reads_has_changed),
         cmocka_unit_test(failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again),

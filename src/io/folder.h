@@ -41,7 +41,8 @@ int64_t sf_folder_count(const char *path, const char *prefix);
 /* Bytes of the files in the folder. */
 uint64_t sf_folder_bytes(const char *path);
 
-/* In a folder with the mark, one file of this name: removed if it is a plain file. */
+/* One file of this name, in a folder with the mark or that of a campaign (sweep.key): removed if it is a
+ * plain file. */
 void sf_folder_remove_file(const char *path);
 
 #endif

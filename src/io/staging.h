@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The output directory. Files are first written in a hidden directory inside it and moved to their places
- * when all of them are complete: a run that fails leaves the files of an earlier run as they were. The hidden
+ * when all of them are complete: a run that fails leaves the files of an earlier run as they were
+ * (softfall-sweep removes an old report itself when its table turns to other inputs). The hidden
  * directory bears the process's number; that of a run that was killed is removed by the next one. */
 #ifndef SF_IO_STAGING_H
 #define SF_IO_STAGING_H

@@ -5,6 +5,7 @@
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
+#include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,14 +68,25 @@ static sf_status write_keys(const sf_sweep_campaign *c, uint64_t runs, sf_error 
     return sf_replace_close(&out, err);
 }
 
+static void remove_report(const sf_sweep_campaign *c) {
+    for (const char *const *name = c->report; name && *name; name++)
+        sf_folder_remove_file(file_of(c, *name).text);
+}
+
 /* sweep.key knows the table by its text: what something else has written, or was written under another key,
- * is not believed. */
-static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, sf_error *err) {
+ * is not believed. `turned`: to other inputs or another plan, so that the report of the rows as they were
+ * goes, after the table could be written and before sweep.key says of what it is: a process that is killed in
+ * between finds it turned again. */
+static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, bool turned, sf_error *err) {
     path table = file_of(c, "runs.csv"), key = file_of(c, "sweep.key");
     uint64_t hash = 0;
     if (access(key.text, F_OK) != 0) /* first of all: without it the table is somebody else's */
         SF_TRY(write_keys(c, 0, err));
-    return sf_runs_write(runs, table.text, &hash, err) == SF_OK ? write_keys(c, hash, err) : err->status;
+    if (sf_runs_write(runs, table.text, &hash, err) != SF_OK)
+        return err->status;
+    if (turned)
+        remove_report(c);
+    return write_keys(c, hash, err);
 }
 
 static sf_status check_keys(const sf_sweep_campaign *c, keys *k, bool *known, sf_error *err) {
@@ -98,22 +110,26 @@ sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_er
 
 /* ---- what is there ---- */
 
-/* A report of the rows as they were must not stand beside a table of others, whatever ends the campaign. */
-static void remove_report(const sf_sweep_campaign *c) {
-    for (const char *const *name = c->report; name && *name; name++)
-        sf_folder_remove_file(file_of(c, *name).text);
-}
-
-/* Somebody may have removed the folder of a run to have it done again. */
-static void open_missing(const sf_sweep_campaign *c, sf_runs *runs) {
+/* Somebody may have removed the folder of a run to have it done again; but all of them are rather elsewhere.
+ */
+static sf_status open_missing(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
     char place[PATH_MAX];
-    for (int64_t row = 0; c->drops && row < runs->count; row++) {
+    if (!c->drops || sf_runs_count(runs, SF_SWEEP_DONE) == 0)
+        return SF_OK;
+    if (access(c->drops, F_OK) != 0)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "runs.csv has runs that are done, but the folder %s with their results is missing: put it "
+            "back, or remove runs.csv and sweep.key to begin anew",
+            c->drops);
+    for (int64_t row = 0; row < runs->count; row++) {
         if (runs->state[row] != SF_SWEEP_DONE || !runs->folder[row])
             continue;
         snprintf(place, sizeof place, "%s/%s/results.h5", c->drops, runs->folder[row]);
-        if (access(place, F_OK) != 0)
+        if (access(place, F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR))
             sf_runs_open(runs, row);
     }
+    return SF_OK;
 }
 
 /* `*changed`: the rows, if there are any, are of other inputs or of another plan. */
@@ -125,7 +141,7 @@ static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *cha
         return err->status;
     *changed = k.there && (!known || k.inputs != c->inputs);
     if (known && access(table.text, F_OK) == 0 && sf_runs_read(runs, table.text, k.text, err) == SF_OK)
-        open_missing(c, runs);
+        open_missing(c, runs, err);
     return err->status;
 }
 
@@ -153,7 +169,6 @@ static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_e
         return SF_OK;
     open_all(runs, SF_SWEEP_DONE);
     open_all(runs, SF_SWEEP_FAILED);
-    remove_report(c);
     return SF_FAIL(err, SF_ERR_IO,
                    "the inputs of the campaign changed while it ran: %.700s; finished drops are kept: repeat "
                    "the command",
@@ -162,21 +177,21 @@ static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_e
 }
 
 /* No row of other inputs comes into the table. It is written in any case; the first failure counts. */
-static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
-    sf_error second = SF_ERROR_INIT;
-    check_unchanged(c, runs, err);
-    if (write_table(c, runs, &second) != SF_OK && err->status == SF_OK)
+static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, bool turned, sf_error *err) {
+    sf_error second = SF_ERROR_INIT, edited = SF_ERROR_INIT;
+    turned = check_unchanged(c, runs, &edited) != SF_OK || turned;
+    if (err->status == SF_OK)
+        *err = edited;
+    if (write_table(c, runs, turned, &second) != SF_OK && err->status == SF_OK)
         *err = second;
     return err->status;
 }
 
-static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
-    bool changed = false;
-    if (read_table(c, runs, &changed, err) != SF_OK)
+static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, bool *changed, sf_error *err) {
+    if (read_table(c, runs, changed, err) != SF_OK)
         return err->status;
-    if (changed) {
+    if (*changed) {
         bool there = sf_runs_count(runs, SF_SWEEP_OPEN) < runs->count;
-        remove_report(c);
         open_all(runs, SF_SWEEP_DONE);
         open_all(runs, SF_SWEEP_FAILED);
         if (c->log && there)
@@ -264,31 +279,34 @@ static sf_status look_at(const sf_sweep_engine *engine, sf_runs *runs, int64_t c
 
 /* Writes the table with the sampled rows open: if the process is killed while they are looked at, the next
  * one takes other samples. */
-static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, int64_t count,
+static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, bool turned, int64_t count,
                                     const int64_t *sample, sf_error *err) {
     for (int64_t k = 0; k < count; k++)
         runs->state[sample[k]] = SF_SWEEP_OPEN;
-    write_table(c, runs, err);
+    write_table(c, runs, turned, err);
     for (int64_t k = 0; k < count; k++)
         runs->state[sample[k]] = SF_SWEEP_DONE;
     return err->status;
 }
 
 /* A file that only the geometry knows of may have changed: one finished run of each geometry, the samples, is
- * given to the engine again. If it has to be simulated, every run is looked at again, those that failed, too.
- */
+ * given to the engine again. If it has to be simulated, every run is looked at again, those that failed, too;
+ * if they cannot all be looked at, the samples are open, and the next start takes others. */
 static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                        int64_t count, const int64_t *sample, sf_error *err) {
     int fresh = 0;
-    if (look_at(engine, runs, count, sample, &fresh, err) != SF_OK || fresh == 0)
+    if (look_at(engine, runs, count, sample, &fresh, err) == SF_OK && fresh == 0)
+        return SF_OK;
+    for (int64_t k = 0; k < count; k++)
+        sf_runs_open(runs, sample[k]);
+    if (fresh == 0)
         return err->status;
     open_all(runs, SF_SWEEP_DONE);
     open_all(runs, SF_SWEEP_FAILED);
-    remove_report(c);
     if (c->log)
         fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
               c->log);
-    return save(c, runs, err);
+    return save(c, runs, true, err);
 }
 
 /* ---- the work ---- */
@@ -324,7 +342,7 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
         double time = now();
         if (time - written < WRITE_INTERVAL || time - written < WRITE_SHARE * duration)
             continue;
-        save(c, runs, err);
+        save(c, runs, false, err);
         written = now();
         duration = written - time;
         tell_progress(c, runs->count - open, done, open, start);
@@ -336,13 +354,14 @@ sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engin
                                 sf_error *err) {
     int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
     int64_t count = 0, *sample = NULL;
-    if (!row || take_over(c, runs, err) != SF_OK)
+    bool turned = false;
+    if (!row || take_over(c, runs, &turned, err) != SF_OK)
         goto done;
     sample = pick_samples(runs, &count, err);
-    if (err->status == SF_OK && write_samples_open(c, runs, count, sample, err) == SF_OK &&
+    if (err->status == SF_OK && write_samples_open(c, runs, turned, count, sample, err) == SF_OK &&
         probe(c, engine, runs, count, sample, err) == SF_OK)
         work(c, engine, runs, row, err);
-    save(c, runs, err);
+    save(c, runs, turned, err);
 done:
     free(sample);
     free(row);

@@ -117,11 +117,9 @@ sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, i
     double need = c->bytes * (double)c->open + c->work_bytes * jobs, there = free_bytes(folder);
     if (need <= there)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "the runs need about %.3g GB and the disk of %s has %.3g GB: give another directory, or --yes if most of "
-        "them are there already",
-        need / 1e9, folder, there / 1e9);
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "the runs need about %.3g GB and the disk of %s has %.3g GB: give another directory",
+                   need / 1e9, folder, there / 1e9);
 }
 
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {

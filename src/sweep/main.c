@@ -181,6 +181,7 @@ static sf_status check(const options *o, job *j, bool *known, sf_error *err) {
 
 static sf_status estimate(const options *o, job *j, sf_error *err) {
     sf_sweep_cost cost;
+    sf_error small = SF_ERROR_INIT;
     int64_t open = 0;
     if (sf_runs_create(&j->plan, &j->runs, err) != SF_OK ||
         sf_sweep_campaign_look(&j->campaign, &j->runs, &open, err) != SF_OK ||
@@ -189,7 +190,14 @@ static sf_status estimate(const options *o, job *j, sf_error *err) {
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);
     sf_sweep_cost_print(stdout, &cost, o->jobs);
     fflush(stdout);
-    return o->yes ? SF_OK : sf_sweep_cost_check_disk(&cost, o->directory, o->jobs, err);
+    if (sf_sweep_cost_check_disk(&cost, o->directory, o->jobs, &small) == SF_OK)
+        return SF_OK;
+    const sf_sink sink = sf_program_sink("softfall-sweep");
+    if (o->yes)
+        sf_sink_tell(&sink, SF_WARNING, "%s", small.text);
+    else
+        SF_FAIL(err, small.status, "%s (--yes begins all the same)", small.text);
+    return err->status;
 }
 
 static sf_status run(const options *o, job *j, sf_error *err) {

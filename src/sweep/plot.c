@@ -12,7 +12,7 @@ enum { COLUMNS = 4, SERIES = 8, POINTS = 3000, CURVES = 200, CURVE_POINTS = 300,
 static const sf_sweep_picture pictures[] = {
     {"factors",
      "Each figure against the factors that are numbers (the first four of them): a point is a run, lines join the means"},
-    {"curves", "Deceleration over time of the runs (of more than 200 as many, drawn at random)"},
+    {"curves", "Deceleration over time of the runs (of more than 200 runs 200, drawn at random)"},
     {"effects", "Main effects: the range of the means between the values of a factor, the greatest on top"},
     {"indices", "Sobol' indices, first order and total, with 95 % intervals"},
     {"surface", "Response surface: each run as the surface without the runs of its place predicts it"},

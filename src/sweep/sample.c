@@ -23,7 +23,7 @@ static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) 
 }
 
 /* The sequence, or, with another seed than 1, moved as a whole (modulo 1; Cranley and Patterson 1976,
- * doi:10.1137/0713071): as uniform, and independent of it. */
+ * doi:10.1137/0713071): each coordinate is as evenly spread, at other points. */
 static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
     double shift[SF_SOBOL_DIMENSIONS] = {0};
     if (d > SF_SOBOL_DIMENSIONS)

@@ -10,7 +10,7 @@ typedef enum sf_sampling {
     SF_SAMPLING_RANDOM, /* independent */
     SF_SAMPLING_LATIN,  /* Latin hypercube: one point in each of `count` strata of each coordinate */
     SF_SAMPLING_SOBOL,  /* the Sobol' sequence from its first point after 0 on; with another seed than 1 moved
-                           by a  random vector, modulo 1 */
+                           by a random vector, modulo 1 */
     SF_SAMPLING_SALTELLI, /* for Sobol' indices, see below */
 } sf_sampling;
 
