@@ -3,7 +3,7 @@
  * leave the result theirs. */
 #include "fit/drop/input.h"
 #include "fit/space_mapping.h"
-#include "program_fixture.h"
+#include "fit_fixture.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -102,22 +102,8 @@ static void mapping_begins_where_a_similar_problem_ended(void **state) {
 /* Two drops on 70 mm, of which no foam has just these numbers. */
 static void put_fit(const program_place *place, const char *name, const char *coarse) {
     char text[2048];
-    const char *source = getenv("SF_SOURCE_DIR");
-    snprintf(
-        text, sizeof text,
-        "geometry: { file = \"%s/geo/pad.geo\"; missile_file = \"%s/geo/hemisphere.geo\"; length_unit = "
-        "\"mm\";\nparameters = { side = 320.0; thickness = 70.0; zone_side = 200.0; fine_spacing = 17.5; "
-        "outer_spacing = 30.0; quarter = 1; };\n"
-        "missile_parameters = { diameter = 160.0; element_size = 15.0; quarter = 1; }; };\n"
-        "material: {\n@include \"start.cfg\"\n};\n"
-        "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\nsolver: { end_time = \"40 ms\"; };\n",
-        source, source);
-    program_write_text(place, "slow.cfg", text);
-    program_shell(place, "sed 's/4.5 m/6.2 m/' slow.cfg > fast.cfg");
-    program_write_text(place, "start.cfg",
-                       "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"start.csv\"; HU = 0.01; ED = "
-                       "\"2 MPa\"; BETA1 = \"5000 1/s\";\n");
-    program_write_text(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
+    fit_fixture_put_case(place);
+    program_shell(place, "mv case.cfg slow.cfg; sed 's/4.5 m/6.2 m/' slow.cfg > fast.cfg");
     snprintf(
         text, sizeof text,
         "material = \"start.cfg\"; posterior = false; unknown = ( { name = \"p0\"; }, { name = \"B\"; }, "

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Several models of one fit file, of which one fails, and predicted drops, of which one fails: both are
  * marked with their sentences, and the others go on. */
-#include "program_fixture.h"
+#include "fit_fixture.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -14,22 +14,7 @@
 
 /* A coarse 70 mm drop; `between.cfg` is slower, `cut.cfg` ends before its peak. */
 static void put_cases(const program_place *place) {
-    char text[2048];
-    const char *source = getenv("SF_SOURCE_DIR");
-    snprintf(
-        text, sizeof text,
-        "geometry: { file = \"%s/geo/pad.geo\"; missile_file = \"%s/geo/hemisphere.geo\"; length_unit = "
-        "\"mm\";\nparameters = { side = 320.0; thickness = 70.0; zone_side = 200.0; fine_spacing = 17.5; "
-        "outer_spacing = 30.0; quarter = 1; };\n"
-        "missile_parameters = { diameter = 160.0; element_size = 15.0; quarter = 1; }; };\n"
-        "material: {\n@include \"start.cfg\"\n};\n"
-        "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\nsolver: { end_time = \"40 ms\"; };\n",
-        source, source);
-    program_write_text(place, "case.cfg", text);
-    program_write_text(place, "start.cfg",
-                       "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"start.csv\"; HU = 0.01; ED = "
-                       "\"2 MPa\"; BETA1 = \"5000 1/s\";\n");
-    program_write_text(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
+    fit_fixture_put_case(place);
     program_shell(place, "sed 's/4.5 m/4.2 m/' case.cfg > between.cfg && "
                          "sed 's/\"40 ms\"/\"4 ms\"/' case.cfg > cut.cfg");
 }
