@@ -75,8 +75,8 @@ static void remove_report(const sf_sweep_campaign *c) {
 
 /* sweep.key knows the table by its text: what something else has written, or was written under another key,
  * is not believed. `turned`: to other inputs or another plan, so that the report of the rows as they were
- * goes, after the table could be written and before sweep.key says of what it is: a process that is killed in
- * between finds it turned again. */
+ * goes, after the table could be written and before sweep.key says of what it is: after a kill in between the
+ * next start finds it turned again (but for a file that only the geometry knows of). */
 static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, bool turned, sf_error *err) {
     path table = file_of(c, "runs.csv"), key = file_of(c, "sweep.key");
     uint64_t hash = 0;
@@ -110,8 +110,8 @@ sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_er
 
 /* ---- what is there ---- */
 
-/* Somebody may have removed the folder of a run to have it done again; but all of them are rather elsewhere.
- */
+/* A run whose folder somebody removed is to be done again. Where all folders are missing, the results are
+ * rather on a disk that is not there. */
 static sf_status open_missing(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
     char place[PATH_MAX];
     if (!c->drops || sf_runs_count(runs, SF_SWEEP_DONE) == 0)
