@@ -5,6 +5,7 @@
 
 #include "campaign/runner.h"
 #include "core/units.h"
+#include "io/plain_file.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -151,10 +152,35 @@ static void a_record_that_cannot_be_is_made_again(void **state) {
     }
 }
 
+/* Of two files whose paths have the same place in the list neither drives the other one out. */
+static void hashes_of_many_files_are_kept(void **state) {
+    const program_place *p = *state;
+    enum { FILES = 60 }; /* of 256 places: some have the same with a probability of 0.999 */
+    uint64_t hash[FILES];
+    long count[2];
+    sf_error err = SF_ERROR_INIT;
+    program_shell(
+        p, "for k in $(seq 0 59); do echo $k > kept-$k; done; sleep 2.1"); /* their times must have settled */
+    for (int round = 0; round < 2; round++) {
+        count[round] = reads();
+        for (int k = 0; k < FILES; k++) {
+            char name[32];
+            uint64_t again = 0;
+            snprintf(name, sizeof name, "kept-%d", k);
+            assert_int_equal(sf_plain_hash_kept(program_path(p, name), &again, &err), SF_OK);
+            assert_true(round == 0 || again == hash[k]);
+            hash[k] = again;
+        }
+    }
+    if (count[0] >= 0) /* the second round reads nothing but the counter itself */
+        assert_true(reads() - count[1] < 5 && count[1] - count[0] >= FILES);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finished_drops_are_collected_without_their_results),
         cmocka_unit_test(a_record_that_cannot_be_is_made_again),
+        cmocka_unit_test(hashes_of_many_files_are_kept),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

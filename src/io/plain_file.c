@@ -82,7 +82,7 @@ const char *sf_plain_name(uint64_t device, uint64_t inode) {
     return name;
 }
 
-/* Hashes that are kept, each at the place that its path gives; behind the lock of the list. */
+/* Hashes that are kept, each at or after the place that its path gives; behind the lock of the list. */
 typedef struct kept_hash {
     char *path; /* NULL: none */
     struct stat info;
@@ -306,8 +306,20 @@ static bool is_settled(const struct stat *info) {
     return info->st_mtim.tv_sec + 1 < now.tv_sec && info->st_ctim.tv_sec + 1 < now.tv_sec;
 }
 
+/* Where the path stands, or else may: in one of the PROBES places from that of its hash on, an empty one
+ * first. */
 static kept_hash *place_of(const char *path) {
-    return &kept[sf_hash_bytes(SF_HASH_START, path, strlen(path)) % KEPT];
+    enum { PROBES = 16 };
+    uint64_t home = sf_hash_bytes(SF_HASH_START, path, strlen(path));
+    kept_hash *empty = NULL;
+    for (int k = 0; k < PROBES; k++) {
+        kept_hash *place = &kept[(home + (uint64_t)k) % KEPT];
+        if (place->path && strcmp(place->path, path) == 0)
+            return place;
+        if (!empty && !place->path)
+            empty = place;
+    }
+    return empty ? empty : &kept[home % KEPT];
 }
 
 static bool find_kept(const char *path, const struct stat *info, uint64_t *hash) {
