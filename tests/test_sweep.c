@@ -691,16 +691,19 @@ static void runs_are_looked_at_again_when_what_they_read_has_changed(void **stat
     sf_plan_free(&plan);
 }
 
-/* The report of the rows as they were goes before the table turns to other inputs or another plan, also if
- * the campaign is then interrupted; it stays while nothing changes. */
+/* The report of the rows as they were goes before the table turns to other inputs or another plan, or begins
+ * anew, also if the campaign is then interrupted; it stays while nothing changes. */
 static void an_old_report_does_not_stand_beside_another_table(void **state) {
     const program_place *p = *state;
     static const char *const report[] = {"report.html", "sweep.json", NULL};
     static const struct {
+        const char *removed;
         uint64_t inputs;
         bool other, stays;
         int64_t calls;
-    } steps[] = {{1, false, true, 0}, {2, false, false, 60}, {2, false, true, 0}, {2, true, false, 1}};
+    } steps[] = {
+        {"", 1, false, true, 0},           {"", 2, false, false, 60},          {"", 2, false, true, 0},
+        {"runs.csv", 2, false, false, 60}, {"sweep.key", 2, false, false, 60}, {"", 2, true, false, 1}};
     sf_plan plan, other;
     formula f = {.fails = -1};
     const sf_sweep_engine engine = {evaluate, &f, 7};
@@ -716,7 +719,7 @@ static void an_old_report_does_not_stand_beside_another_table(void **state) {
                                      .force = steps[k].other};
         f.calls = 0;
         f.stop_at = steps[k].other ? 1 : 0;
-        program_shell(p, "touch report.html sweep.json");
+        program_shell(p, "touch report.html sweep.json; rm -f ./%s", steps[k].removed);
         assert_int_equal(sf_runs_create(c.plan, &runs, &err), SF_OK);
         assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err),
                          steps[k].other ? SF_INTERRUPTED : SF_OK);
@@ -749,11 +752,12 @@ static void results_that_were_removed_are_made_again(void **state) {
         sf_error err = SF_ERROR_INIT;
         f.calls = 0;
         program_shell(
-            p, "rm -rf drops; for d in %s; do mkdir -p drops/drop-$d; touch drops/drop-$d/results.h5; done",
+            p,
+            "rm -rf drops; for d in %s; do mkdir -p drops/drop-$d; touch drops/drop-$d/results.h5; done; mkdir -p drops",
             steps[k].made);
         assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
         assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err), steps[k].status);
-        assert_true(!err.text[0] || strstr(err.text, "drops with their results is missing"));
+        assert_true(!err.text[0] || strstr(err.text, "drops has the results of none of them"));
         assert_int_equal(f.calls, steps[k].calls);
         sf_runs_free(&runs);
     }
@@ -909,6 +913,24 @@ static void a_killed_look_leaves_no_old_figures(void **state) {
         f.other = 1;
         assert_true(rows_done(p, &plan, &f, false, 1) >= 60);
     }
+    sf_plan_free(&plan);
+}
+
+/* Equal rows have one folder. While the sample (row 0) is looked at, 6 and 12, which find its folder, are
+ * open with it, as are 1, 7 and 13 with that of the second geometry: the next start takes others. */
+static void a_killed_look_leaves_no_row_by_whose_folder_nothing_would_show(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    formula f = {.fails = -1};
+    read_plan(p,
+              "{ key = \"geometry.x\"; values = [1, 2]; },"
+              "{ key = \"a.y\"; values = [1, 2, 3, 4, 5, 6, 7]; }",
+              &plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    assert_int_equal(rows_done(p, &plan, &f, false, 1), 14);
+    run_in_child(p, &plan, (formula){.fails = -1, .changed = true, .dies_at = 1}, 1, 0);
+    assert_string_equal(program_shell(p, "grep ',open,' runs.csv | cut -d, -f1 | paste -sd' '").out,
+                        "1 2 7 8 13 14\n");
     sf_plan_free(&plan);
 }
 
@@ -1356,6 +1378,7 @@ int main(void) {
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),
         cmocka_unit_test(a_killed_look_leaves_no_old_figures),
+        cmocka_unit_test(a_killed_look_leaves_no_row_by_whose_folder_nothing_would_show),
         cmocka_unit_test(a_table_that_cannot_be_written_is_not_that_of_new_inputs),
         cmocka_unit_test(each_geometry_is_looked_at),
         cmocka_unit_test(a_surface_of_very_many_rows_has_every_level),

@@ -114,32 +114,34 @@ sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_er
  * rather on a disk that is not there. */
 static sf_status open_missing(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
     char place[PATH_MAX];
-    if (!c->drops || sf_runs_count(runs, SF_SWEEP_DONE) == 0)
-        return SF_OK;
-    if (access(c->drops, F_OK) != 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "runs.csv has runs that are done, but the folder %s with their results is missing: put it "
-            "back, or remove runs.csv and sweep.key to begin anew",
-            c->drops);
-    for (int64_t row = 0; row < runs->count; row++) {
+    int64_t there = 0, gone = 0;
+    for (int64_t row = 0; row < runs->count && c->drops; row++) {
         if (runs->state[row] != SF_SWEEP_DONE || !runs->folder[row])
             continue;
         snprintf(place, sizeof place, "%s/%s/results.h5", c->drops, runs->folder[row]);
-        if (access(place, F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR))
+        bool missing = access(place, F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR);
+        there += !missing;
+        gone += missing;
+        if (missing)
             sf_runs_open(runs, row);
     }
+    if (gone > 0 && there == 0)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "runs.csv has runs that are done, but the folder %s has the results of none of them: "
+                       "put them back, or remove runs.csv to begin anew",
+                       c->drops);
     return SF_OK;
 }
 
-/* `*changed`: the rows, if there are any, are of other inputs or of another plan. */
+/* `*changed`: what the folder holds, if anything, is of other inputs, of another plan, or of a table that is
+ * not there. */
 static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *changed, sf_error *err) {
     keys k;
     bool known = false;
     path table = file_of(c, "runs.csv");
     if (check_keys(c, &k, &known, err) != SF_OK)
         return err->status;
-    *changed = k.there && (!known || k.inputs != c->inputs);
+    *changed = !known || k.inputs != c->inputs || access(table.text, F_OK) != 0;
     if (known && access(table.text, F_OK) == 0 && sf_runs_read(runs, table.text, k.text, err) == SF_OK)
         open_missing(c, runs, err);
     return err->status;
@@ -243,27 +245,58 @@ static int64_t list_geometries(const sf_runs *runs, geometry *list) {
     return n;
 }
 
-/* The first row that is done of each geometry, in the order of rows; from malloc. Rows of a geometry of which
- * all have failed are opened: the files that they read may have changed, too. */
-static int64_t *pick_samples(sf_runs *runs, int64_t *count, sf_error *err) {
+/* Rows that are done by which a change of their geometry's files shows. */
+typedef struct samples {
+    int64_t count, *row;     /* the first one of each geometry, in the order of rows */
+    int64_t shared, *sharer; /* these, and those that share a folder with one of them (equal rows) */
+} samples;
+
+static void free_samples(samples *s) {
+    free(s->row);
+    free(s->sharer);
+}
+
+static int compare_folders(const void *a, const void *b) {
+    const char *p = *(char *const *)a, *q = *(char *const *)b;
+    return strcmp(p ? p : "", q ? q : "");
+}
+
+static sf_status list_sharers(const sf_runs *runs, samples *s, sf_error *err) {
+    char **folder = sf_alloc(err, (unsigned long)s->count, sizeof *folder, "geometries");
+    s->sharer =
+        sf_alloc(err, (unsigned long)sf_runs_count(runs, SF_SWEEP_DONE), sizeof *s->sharer, "geometries");
+    if (folder && s->sharer && s->count > 0) {
+        for (int64_t k = 0; k < s->count; k++)
+            folder[k] = runs->folder[s->row[k]];
+        qsort(folder, (size_t)s->count, sizeof *folder, compare_folders);
+        for (int64_t row = 0; row < runs->count; row++)
+            if (runs->state[row] == SF_SWEEP_DONE &&
+                bsearch(&runs->folder[row], folder, (size_t)s->count, sizeof *folder, compare_folders))
+                s->sharer[s->shared++] = row;
+    }
+    free(folder);
+    return err->status;
+}
+
+/* Rows of a geometry of which all have failed are opened: the files that they read may have changed, too. */
+static sf_status pick_samples(sf_runs *runs, samples *s, sf_error *err) {
     int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
     geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
-    int64_t *sample = sf_alloc(err, (unsigned long)ended, sizeof *sample, "geometries");
-    int64_t n = list && sample ? list_geometries(runs, list) : 0;
+    s->row = sf_alloc(err, (unsigned long)ended, sizeof *s->row, "geometries");
+    int64_t n = list && s->row ? list_geometries(runs, list) : 0;
     bool all_failed = false;
-    *count = 0;
     for (int64_t k = 0; k < n; k++) {
         bool first = k == 0 || list[k].hash != list[k - 1].hash;
         all_failed = first ? list[k].failed : all_failed;
         if (all_failed)
             sf_runs_open(runs, list[k].row);
         else if (first)
-            sample[(*count)++] = list[k].row;
+            s->row[s->count++] = list[k].row;
     }
-    if (*count > 0)
-        qsort(sample, (size_t)*count, sizeof *sample, compare_rows);
+    if (s->count > 0)
+        qsort(s->row, (size_t)s->count, sizeof *s->row, compare_rows);
     free(list);
-    return sample;
+    return err->status == SF_OK ? list_sharers(runs, s, err) : err->status;
 }
 
 /* Gives the rows to the engine, piece by piece, until one of them had to be simulated. */
@@ -278,14 +311,14 @@ static sf_status look_at(const sf_sweep_engine *engine, sf_runs *runs, int64_t c
 }
 
 /* Writes the table with the sampled rows open: if the process is killed while they are looked at, the next
- * one takes other samples. */
-static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, bool turned, int64_t count,
-                                    const int64_t *sample, sf_error *err) {
-    for (int64_t k = 0; k < count; k++)
-        runs->state[sample[k]] = SF_SWEEP_OPEN;
+ * one takes other samples, none of which finds a folder that was made now. */
+static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, bool turned, const samples *s,
+                                    sf_error *err) {
+    for (int64_t k = 0; k < s->shared; k++)
+        runs->state[s->sharer[k]] = SF_SWEEP_OPEN;
     write_table(c, runs, turned, err);
-    for (int64_t k = 0; k < count; k++)
-        runs->state[sample[k]] = SF_SWEEP_DONE;
+    for (int64_t k = 0; k < s->shared; k++)
+        runs->state[s->sharer[k]] = SF_SWEEP_DONE;
     return err->status;
 }
 
@@ -293,12 +326,12 @@ static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, b
  * given to the engine again. If it has to be simulated, every run is looked at again, those that failed, too;
  * if they cannot all be looked at, the samples are open, and the next start takes others. */
 static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
-                       int64_t count, const int64_t *sample, sf_error *err) {
+                       const samples *s, sf_error *err) {
     int fresh = 0;
-    if (look_at(engine, runs, count, sample, &fresh, err) == SF_OK && fresh == 0)
+    if (look_at(engine, runs, s->count, s->row, &fresh, err) == SF_OK && fresh == 0)
         return SF_OK;
-    for (int64_t k = 0; k < count; k++)
-        sf_runs_open(runs, sample[k]);
+    for (int64_t k = 0; k < s->shared; k++)
+        sf_runs_open(runs, s->sharer[k]);
     if (fresh == 0)
         return err->status;
     open_all(runs, SF_SWEEP_DONE);
@@ -353,17 +386,16 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err) {
     int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
-    int64_t count = 0, *sample = NULL;
+    samples s = {0};
     bool turned = false;
     if (!row || take_over(c, runs, &turned, err) != SF_OK)
         goto done;
-    sample = pick_samples(runs, &count, err);
-    if (err->status == SF_OK && write_samples_open(c, runs, turned, count, sample, err) == SF_OK &&
-        probe(c, engine, runs, count, sample, err) == SF_OK)
+    if (pick_samples(runs, &s, err) == SF_OK && write_samples_open(c, runs, turned, &s, err) == SF_OK &&
+        probe(c, engine, runs, &s, err) == SF_OK)
         work(c, engine, runs, row, err);
     save(c, runs, turned, err);
 done:
-    free(sample);
+    free_samples(&s);
     free(row);
     return err->status;
 }
