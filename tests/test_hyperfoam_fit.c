@@ -120,6 +120,9 @@ static void vn600_is_described(void **state) {
         if (!(value >= expected[k].low && value <= expected[k].high))
             fail_msg("%s%g", expected[k].key, value);
     }
+    const char *bound = strstr(json.data, "\"unloading_at_bound\": [");
+    assert_non_null(bound);
+    assert_true(strstr(bound, "\"HU\"") < strchr(bound, ']'));
     free(json.data);
 }
 

@@ -74,7 +74,7 @@ static const sf_model_field fields[] = {
     ARRAY(surface_triangle, I32, surface_triangle_count, 0, 3, "/missile/surface_triangle", "1",
           "outward triangles"),
     OPTIONAL_SCALAR(motion_count, I64, "/missile/motion_count", "1",
-                    "points of the prescribed motion, 0: free missile"),
+                    "points of the prescribed motion, 0: none"),
     OPTIONAL_ARRAY(motion_time, F64, motion_count, "/missile/motion_time", "s",
                    "times of the prescribed motion"),
     OPTIONAL_ARRAY(motion_displacement, F64, motion_count, "/missile/motion_displacement", "m",

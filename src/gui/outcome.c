@@ -20,6 +20,7 @@ static const char *const names[] = {"4Results/1verdict",
                                     "4Results/5largest indentation",
                                     "4Results/6largest local strain"};
 enum { VERDICT, A_MAX, HIC, REBOUND, INDENTATION, STRAIN, ENTRIES };
+enum { FILTER = 1000 }; /* CFC of curve and figures */
 
 void sf_outcome_clear(void) {
     for (int k = 0; k < ENTRIES; k++)
@@ -67,7 +68,7 @@ sf_status sf_outcome_show(const sf_results *r, char *line, size_t size, sf_error
     sf_figures f = {0};
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS;
-    if (sf_figures_compute(r, 1000, &f, err) == SF_OK) {
+    if (sf_figures_compute(r, FILTER, &f, err) == SF_OK) {
         sf_verdict_compute(r, &f, &limits, &verdict);
         sf_verdict_line(&verdict, line, size);
         put(VERDICT, line,
@@ -83,14 +84,28 @@ sf_status sf_outcome_show(const sf_results *r, char *line, size_t size, sf_error
     return err->status;
 }
 
-void sf_outcome_plot(const sf_results *r) {
-    const sf_history *h = &r->history;
-    double *x = malloc(2 * (size_t)h->rows * sizeof *x + 1), *y = x ? x + h->rows : NULL;
-    for (int64_t k = 0; x && k < h->rows; k++) {
-        x[k] = 1e3 * h->time[k];
-        y[k] = h->acceleration[k] / SF_STANDARD_GRAVITY;
+static void plot(const char *title, int64_t count, const double *time, const double *value, double scale) {
+    double *x = malloc(2 * (size_t)count * sizeof *x + 1), *y = x ? x + count : NULL;
+    for (int64_t k = 0; x && k < count; k++) {
+        x[k] = 1e3 * time[k];
+        y[k] = value[k] / scale;
     }
     if (x)
-        sf_view_plot("acceleration [g]", "t [ms]", h->rows, x, y);
+        sf_view_plot(title, "t [ms]", count, x, y);
     free(x);
+}
+
+void sf_outcome_plot(const sf_results *r) {
+    const sf_history *h = &r->history;
+    sf_figures f = {0};
+    sf_error none = SF_ERROR_INIT;
+    char title[64];
+    if (sf_figures_compute(r, FILTER, &f, &none) == SF_OK) {
+        snprintf(title, sizeof title, "%s%sacceleration, CFC %d [g]", f.turns ? "resultant " : "",
+                 f.kinematic ? "kinematic " : "", FILTER);
+        plot(title, f.filtered.count, f.filtered.time, f.filtered.value, 1);
+    } else {
+        plot("raw, along the direction [g]", h->rows, h->time, h->acceleration, SF_STANDARD_GRAVITY);
+    }
+    sf_figures_free(&f);
 }

@@ -10,7 +10,8 @@
 sf_status sf_outcome_show(const sf_results *results, char *line, size_t size, sf_error *err);
 /* Empties the branch. */
 void sf_outcome_clear(void);
-/* The curve so far, with the graph's labels. */
+/* The curve of the figures so far, filtered as they are; the raw one, and its title says so, of a run that
+ * has no figures yet. */
 void sf_outcome_plot(const sf_results *results);
 
 #endif

@@ -47,7 +47,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/missile_speed", "m s-1", "speed at t = 0"}, SF_H5_F64, 0, {0}, &m->missile.speed},
         {{"/model/impact_x", "m", "where the missile's lowest point arrives at the pad's top, x; NaN: not known"}, SF_H5_F64, 0, {0}, impact ? &impact[0] : &unknown},
         {{"/model/impact_y", "m", "the same, y"}, SF_H5_F64, 0, {0}, impact ? &impact[1] : &unknown},
-        {{"/model/missile_driven", "1", "1: the missile had a prescribed motion, 0: it was free"}, SF_H5_I64, 0, {0}, &driven},
+        {{"/model/missile_driven", "1", "1: the missile had a prescribed motion, 0: none"}, SF_H5_I64, 0, {0}, &driven},
         {{"/model/missile_free", "1", "1: the missile had six degrees of freedom, 0: it was guided or driven"}, SF_H5_I64, 0, {0}, &turns},
         {{"/model/missile_centre", "m", "centre of mass at t = 0; of a free missile"}, SF_H5_F64, 1, {3, 0}, m->missile.centre},
         {{"/model/sphere_radius", "m", "of the missile's exact sphere, 0: contact with its triangles"}, SF_H5_F64, 0, {0}, &radius},
