@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Differences between the versions of gmsh's C API, from 4.8 on, for the mesher (gui/gmsh/window.c has its own). */
+/* Differences between the versions of gmsh's C API, from 4.8 on, for the mesher (gui/gmsh/window.c has its
+ * own). */
 #ifndef SF_MESHER_GMSH_ADAPTER_H
 #define SF_MESHER_GMSH_ADAPTER_H
 
