@@ -43,7 +43,7 @@ static const sf_key keys[] = {
     {"pad", "gravity", SF_KEY_QUANTITY, "\"" SF_STANDARD_GRAVITY_TEXT "\"", AT(pad_gravity),
      "along -z, on a resting pad", .quantity = SF_ACCELERATION, .high = 1e4},
     {"pad", "sliding", SF_KEY_NAMES, "[]", AT(sliding_group),
-     "plane physical surfaces that lie on a smooth anvil: held along their normal only",
+     "plane physical surfaces that lie on a smooth anvil, normal to x, y or z: held along their normal only",
      .count_offset = offsetof(sf_case, sliding_count)},
     {"pad", "symmetry", SF_KEY_NAMES, "[\"symmetry_x\", \"symmetry_y\"]", AT(symmetry_group),
      "physical surfaces that are symmetry planes; those of the default may be absent from the geometry",
@@ -107,7 +107,7 @@ static const sf_key keys[] = {
     {"solver", "step_limit", SF_KEY_QUANTITY, "\"20 us\"", AT(run.step_limit),
      "largest time step; 20 us records the history at 50 kHz", .quantity = SF_TIME, .low = 1e-12, .high = 20e-6},
     {"solver", "energy_limit", SF_KEY_NUMBER, "0.05", AT(run.energy_limit),
-     "relative energy error at which the run stops", .low = 1e-9, .high = 1.0},
+     "the run stops at this relative energy error, or when contact or stabilisation has given the pad this part of the impact energy", .low = 1e-9, .high = 1.0},
     {"solver", "stop_after_rebound", SF_KEY_BOOL, "true", AT(run.stop_after_rebound),
      "end when the missile has left the pad upwards"},
     /* output */

@@ -130,16 +130,16 @@ static sf_status check_region(const sf_series *measured, const sf_series *model,
     return SF_OK;
 }
 
-/* The model at `time`; 0 in the free flight before and after its curve. */
-static double model_at(const sf_series *model, double time, int64_t *flight) {
+/* The model at `time`; `flight` in the free flight before and after its curve, of which `*beyond` counts. */
+static double model_at(const sf_series *model, double time, double flight, int64_t *beyond) {
     if (time >= model->time[0] - SLACK && time <= model->time[model->count - 1] + SLACK)
         return sf_series_at(model, time);
-    ++*flight;
-    return 0;
+    ++*beyond;
+    return flight;
 }
 
-sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double shift,
-                         sf_region region, double interval, sf_fit *fit, sf_error *err) {
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double flight,
+                         double shift, sf_region region, double interval, sf_fit *fit, sf_error *err) {
     *fit =
         (sf_fit){.region = region, .first = NAN, .last = NAN, .interval = interval, .r2 = NAN, .rmse_g = NAN};
     if (check_region(measured, model, left, shift, region, err) != SF_OK)
@@ -155,7 +155,7 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
     for (int64_t k = 0; k < samples; k++) {
         double time = region.begin + (double)k * interval;
         double a = sf_series_at(measured, time);
-        double difference = a - model_at(model, time + shift, &fit->flight);
+        double difference = a - model_at(model, time + shift, flight, &fit->flight);
         if (fit->count++ == 0) {
             fit->first = time;
             origin = a; /* keeps the sum of squares free of cancellation */
@@ -187,8 +187,8 @@ static sf_status fit_all(const sf_compare_options *options, const sf_series *mod
     for (int64_t k = -1; k < options->region_count; k++) {
         sf_region region = k < 0 ? window : options->regions[k];
         for (int j = 0; j < 2; j++)
-            if (sf_compare_fit(&c->measured, model, options->left, c->shift, region, intervals[j],
-                               &c->fits[c->fit_count++], err))
+            if (sf_compare_fit(&c->measured, model, options->left, options->flight, c->shift, region,
+                               intervals[j], &c->fits[c->fit_count++], err))
                 return err->status;
     }
     return SF_OK;

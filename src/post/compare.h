@@ -34,6 +34,7 @@ typedef struct sf_fit {
 typedef struct sf_compare_options {
     sf_reference_options reference;
     bool left;                /* the model's curve ends with the missile off the pad */
+    double flight;            /* g: the model's curve in free flight */
     double shift;             /* s; NaN = align the contacts */
     sf_region window;         /* NaN = HIC window of the measured curve */
     const sf_region *regions; /* [region_count], besides the window */
@@ -65,10 +66,10 @@ sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count
 sf_status sf_contact_instant(const sf_series *curve, const char *name, double *instant, sf_error *err);
 
 /* One region at one sampling interval (s). `left`: the missile is off the pad at the model's end, and stays
- * in free flight. SF_ERR_INPUT if the region is not within the measured curve, or where the model has no
- * value. */
-sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double shift,
-                         sf_region region, double interval, sf_fit *fit, sf_error *err);
+ * in free flight; `flight` (g): the model there, and before its curve. SF_ERR_INPUT if the region is not
+ * within the measured curve, or where the model has no value. */
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double flight,
+                         double shift, sf_region region, double interval, sf_fit *fit, sf_error *err);
 
 /* Reads the measured curve and compares `model` (s, g) with it. Release with sf_comparison_free. */
 sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *comparison,

@@ -107,34 +107,46 @@ static sf_status filter_resultant(const sf_results *r, const double *const chann
     return err->status;
 }
 
+/* What is added to the specific force along z, and against the direction of a guided missile. */
+static double shift_of_z(const sf_results *r) {
+    return r->kinematic ? r->gravity_along / r->missile_direction[2] : 0;
+}
+
+static double shift_along(const sf_results *r) {
+    return r->kinematic ? -r->gravity_along / SF_STANDARD_GRAVITY : 0;
+}
+
+double sf_figures_reading(const sf_results *r, int64_t row) {
+    const sf_history *h = &r->history;
+    if (!r->turns)
+        return h->acceleration[row] / SF_STANDARD_GRAVITY + shift_along(r);
+    double x = h->specific_force_x[row], y = h->specific_force_y[row],
+           z = h->specific_force_z[row] + shift_of_z(r);
+    return sqrt(x * x + y * y + z * z) / SF_STANDARD_GRAVITY;
+}
+
 static sf_status compute_resultant(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
     const double *const channel[3] = {h->specific_force_x, h->specific_force_y, h->specific_force_z};
     static const double none[3] = {0};
-    double shift[3] = {0};
-    shift[2] = r->kinematic ? r->gravity_along / r->missile_direction[2] : 0;
-    for (int64_t i = 0; i < h->rows; i++) {
-        double square = 0;
-        for (int c = 0; c < 3; c++)
-            square += (channel[c][i] + shift[c]) * (channel[c][i] + shift[c]);
-        f->raw.value[i] = sqrt(square) / SF_STANDARD_GRAVITY;
-    }
+    const double shift[3] = {0, 0, shift_of_z(r)};
+    f->free_flight = fabs(shift[2]) / SF_STANDARD_GRAVITY;
     f->rate = sf_signal_rate(&f->raw);
     return filter_resultant(r, channel, none, shift, SF_STANDARD_GRAVITY, f, &f->filtered, err);
 }
 
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
-    double free_flight = r->kinematic ? -r->gravity_along / SF_STANDARD_GRAVITY : 0;
     if (sf_series_create(h->rows, &f->raw, err) != SF_OK)
         return err->status;
     memcpy(f->raw.time, h->time, (size_t)h->rows * sizeof *f->raw.time);
+    for (int64_t i = 0; i < h->rows; i++)
+        f->raw.value[i] = sf_figures_reading(r, i);
     if (r->turns)
         return compute_resultant(r, f, err);
-    for (int64_t i = 0; i < h->rows; i++)
-        f->raw.value[i] = h->acceleration[i] / SF_STANDARD_GRAVITY + free_flight;
+    f->free_flight = shift_along(r);
     f->rate = sf_signal_rate(&f->raw);
-    return filter(r, &f->raw, free_flight, f, &f->filtered, err);
+    return filter(r, &f->raw, f->free_flight, f, &f->filtered, err);
 }
 
 /* `known`: the first row is still that of free flight. */

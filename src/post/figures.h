@@ -109,6 +109,7 @@
 typedef struct sf_figures {
     sf_series raw;      /* s, g: the history as it is; of a missile that turns the resultant; owned */
     sf_series filtered; /* s, g: resampled and CFC filtered, each axis by itself; owned */
+    double free_flight; /* g: what both are while nothing touches the missile */
     sf_injury injury_raw;
     sf_injury injury;            /* of the filtered curve */
     sf_layer_figures *layers;    /* [results->layer_count] owned; NULL: one material, or no contact */
@@ -124,6 +125,9 @@ typedef struct sf_figure {
     double factor;
     const char *meaning;
 } sf_figure;
+
+/* g: the acceleration that a_max and HIC are of, not filtered, in a row of the history. */
+double sf_figures_reading(const sf_results *results, int64_t row);
 
 /* The list; static storage. */
 const sf_figure *sf_figure_list(size_t *count);

@@ -354,6 +354,7 @@ static sf_status run(const options *o, job *j, sf_error *err) {
                        o->results_path);
     sf_compare_options compare = o->compare;
     compare.left = j->figures.rebounded;
+    compare.flight = j->figures.free_flight;
     if (o->comparing && sf_compare_run(&compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
         return err->status;
     sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);

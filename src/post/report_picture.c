@@ -24,9 +24,9 @@ static const char *const moments[SF_INSTANTS] = {"a third of the way", "peak", "
 /* ---- which frames ---- */
 
 /* Times (s) of the instants; false if the history has no peak within it. */
-static bool find_instants(const sf_results *r, instant list[SF_INSTANTS]) {
+static bool find_instants(const sf_results *r, const sf_series *raw, instant list[SF_INSTANTS]) {
     const sf_history *h = &r->history;
-    const double *load = r->driven ? h->contact_force : h->acceleration;
+    const double *load = r->driven ? h->contact_force : raw->value;
     int64_t peak = sf_history_row_of_lasting(h, load), first = 0, half = peak;
     while (first < peak && !(h->contact_nodes[first] > 0))
         first++;
@@ -58,18 +58,18 @@ static double force_at(const sf_history *h, double time) {
     return h->contact_force[k];
 }
 
-static void name_instant(const sf_results *r, instant *i, const char *moment) {
+static void name_instant(const sf_results *r, const sf_series *raw, instant *i, const char *moment) {
     if (r->driven)
         snprintf(i->title, sizeof i->title, "%.1f ms: %.3g N, %s", i->head->time * 1e3,
                  force_at(&r->history, i->head->time), moment);
     else
         snprintf(i->title, sizeof i->title, "%.1f ms: %.0f g, %s", i->head->time * 1e3,
-                 i->head->acceleration / SF_STANDARD_GRAVITY, moment);
+                 sf_series_at(raw, i->head->time), moment);
 }
 
 /* Reads the frames nearest to the instants, within a fifth of the time to the peak, or what there is. */
-static void read_instants(const sf_results *r, instant list[SF_INSTANTS]) {
-    if (!find_instants(r, list))
+static void read_instants(const sf_results *r, const sf_series *raw, instant list[SF_INSTANTS]) {
+    if (!find_instants(r, raw, list))
         return;
     double reach = 0.3 * (list[1].wanted - list[0].wanted);
     for (int k = 0; k < SF_INSTANTS; k++) {
@@ -80,7 +80,7 @@ static void read_instants(const sf_results *r, instant list[SF_INSTANTS]) {
         if (!head || sf_frame_read(r, head, &list[k].frame, &ignored) != SF_OK || !has_fields(&list[k].frame))
             continue;
         list[k].head = head;
-        name_instant(r, &list[k], moments[k]);
+        name_instant(r, raw, &list[k], moments[k]);
     }
 }
 
@@ -292,7 +292,7 @@ sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *re
     instant list[SF_INSTANTS] = {0};
     sf_cut cut = {0};
     *p = (sf_report_pictures){0};
-    read_instants(results, list);
+    read_instants(results, &figures->raw, list);
     if (sf_cut_make(results, &cut, err) == SF_OK) {
         p->pad = draw_pad(&cut, &list[1], p->pad_text, sizeof p->pad_text, err);
         p->instants = draw_instants(&cut, list, p->instants_text, sizeof p->instants_text, err);

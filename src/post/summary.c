@@ -262,8 +262,7 @@ static void print_comparison(FILE *out, const char *path, const sf_comparison *c
         print_cell(out, fit->r2, 8, 4);
         print_cell(out, fit->rmse_g, 10, 3);
         if (fit->flight > 0)
-            fprintf(out, "   %lld of them beyond the model's curve: free flight, 0 g",
-                    (long long)fit->flight);
+            fprintf(out, "   %lld of them beyond the model's curve: free flight", (long long)fit->flight);
         fputc('\n', out);
     }
 }

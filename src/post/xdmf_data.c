@@ -3,6 +3,7 @@
 
 #include "core/units.h"
 #include "io/provenance.h"
+#include "post/figures.h"
 #include "post/results_check.h"
 #include <float.h>
 #include <math.h>
@@ -13,7 +14,7 @@
 const sf_missile_array sf_missile_arrays[SF_MISSILE_ARRAYS] = {
     [SF_MISSILE_SPEED] = {"speed_m_s", "m s-1", "speed of the missile along its direction of motion", 1},
     [SF_MISSILE_ACCELERATION] = {"acceleration_g", "9.80665 m s-2",
-                                 "specific force on the missile, against its direction of motion", 1},
+                                 "the acceleration that a_max is of, not filtered", 1},
     [SF_MISSILE_FORCE] = {"contact_force_N", "N", "on the missile, against its direction of motion", 1},
     [SF_MISSILE_CENTRE] = {"sphere_centre_m", "m", "centre of the missile's exact sphere", 3},
 };
@@ -178,10 +179,9 @@ static sf_status write_missile_arrays(const store *s, const sf_frame_head *head,
                                       sf_error *err) {
     const sf_results *r = s->results;
     int64_t row = row_at(&r->history, head->time), n = r->surface_node_count;
-    double value[SF_MISSILE_ARRAYS][3] = {
-        [SF_MISSILE_SPEED] = {r->history.velocity[row]},
-        [SF_MISSILE_ACCELERATION] = {head->acceleration / SF_STANDARD_GRAVITY},
-        [SF_MISSILE_FORCE] = {r->history.contact_force[row]}};
+    double value[SF_MISSILE_ARRAYS][3] = {[SF_MISSILE_SPEED] = {r->history.velocity[row]},
+                                          [SF_MISSILE_ACCELERATION] = {sf_figures_reading(r, row)},
+                                          [SF_MISSILE_FORCE] = {r->history.contact_force[row]}};
     sf_results_place(r, head, r->sphere_centre, value[SF_MISSILE_CENTRE]);
     double *all = sf_alloc(err, 3 * (unsigned long)n, sizeof *all, "arrays of the missile");
     for (int k = 0; k < sf_missile_array_count(r) && err->status == SF_OK; k++) {

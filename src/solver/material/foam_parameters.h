@@ -53,7 +53,7 @@ sf_status sf_foam_check_shared_keys(const sf_foam_shared *card, const sf_given *
      "part by which the stress of loading grows with each decade of the strain rate above `rate_reference`", \
      .high = 10.0, .acts = sf_foam_has_rate_factor}, \
     {"material", "rate_reference", SF_PARAMETER_QUANTITY, "\"0.01 1/s\"", SF_FOAM_AT(rate_reference), \
-     reference, .quantity = SF_RATE, .low = 1e-9, .high = 1e6, SF_FOAM_IN("1/s", 1), .acts = sf_foam_has_rate_factor}
+     reference "; must be given when rate_factor is", .quantity = SF_RATE, .low = 1e-9, .high = 1e6, SF_FOAM_IN("1/s", 1), .acts = sf_foam_has_rate_factor}
 #define SF_FOAM_RATE_FILTER(use, has) \
     {"material", "rate_filter_time", SF_PARAMETER_QUANTITY, "\"0.1 ms\"", SF_FOAM_AT(rate_filter_time), \
      "time constant of the strain rate " use, .quantity = SF_TIME, .low = 1e-9, .high = 1e3, \
