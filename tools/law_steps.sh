@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What rate factor, Maxwell branch, DAMP and ALPHA cost and do in a drop (docs/performance.md, "The law"):
 #     tools/law_steps.sh [spacing in mm, 5.0] [case, eva50-v4.5]
-# Columns: a_max and HIC filtered, a_max unfiltered, steps, processor seconds, stabilisation's part of the energy.
+# Columns: a_max and HIC filtered, a_max unfiltered, largest local strain, steps, processor seconds, stabilisation's part of the energy.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bin=$PWD/${BUILD_DIR:-build}/bin spacing=${1:-5.0} case=${2:-eva50-v4.5}
@@ -24,8 +24,8 @@ drop() { # name, then --set arguments
 import json, re, sys
 s = json.load(open(sys.argv[1] + "/out/summary.json"))
 steps = re.search(r"after (\d+) steps", open(sys.argv[1] + "/log").read()).group(1)
-print("%-34s %7.2f g %7.1f  unfiltered %7.2f g  %5s steps %6s s  stabilisation %.3f %%" % (sys.argv[2], s["a_max_g"],
-      s["hic"], s["a_max_raw_g"], steps, sys.argv[3], 100 * s["stabilisation_energy_fraction"]))
+print("%-34s %7.2f g %7.1f  unfiltered %7.2f g  strain %.3f  %5s steps %6s s  stabilisation %.3f %%" % (sys.argv[2], s["a_max_g"],
+      s["hic"], s["a_max_raw_g"], s["max_local_strain"], steps, sys.argv[3], 100 * s["stabilisation_energy_fraction"]))
 P
 }
 

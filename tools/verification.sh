@@ -47,6 +47,9 @@ The studies in `verify/` print every table and plot of this page, and this comma
     tools/verification.sh            # all, or: tools/verification.sh NAME...
     tools/verification.sh --ran      # from what the last ./setup.sh test and ./setup.sh slow of this tree left
 
+The row of the Debug build needs `cmake --preset debug && cmake --build build-debug` and then `tools/verification.sh reproducibility`; `--ran` does not
+have it.
+
 A study measures, compares with the required bounds, and fails if it misses one. `ctest --test-dir build -L verify` runs the short
 studies, with `-L slow` the long ones (base, calculix, coverage_drop, hyperfoam, mesh, sensitivity). A study without a section below has not been run
 for this document yet. Equation numbers are those of [theory.md](theory.md). Wall times depend on the machine; all
