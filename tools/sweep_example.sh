@@ -1,19 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs examples/sweep into out/sweep, and one foam of it (20 drops) with the mesh of the case, 5 mm in the core, into
-# out/sweep_fine. Prints the tables of docs/campaigns.md: the probability of HIC < 1000, and what 100,000 such drops take.
+# out/sweep_fine. Prints the probability of HIC < 1000 as a table, and what 100,000 such drops take (docs/campaigns.md).
 #
 #     tools/sweep_example.sh           ten minutes on two idle cores; neither folder may be there
-#     tools/sweep_example.sh --docs    the same, and writes tables and picture into docs/
 #
 # The programs are those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-case ${1:-} in
-'' | --docs) ;;
-*) echo 'usage: tools/sweep_example.sh [--docs]' >&2 && exit 2 ;;
-esac
+[ $# -eq 0 ] || { echo 'usage: tools/sweep_example.sh' >&2 && exit 2; }
 for folder in out/sweep out/sweep_fine; do
     [ ! -e "$folder" ] || { echo "sweep_example: $folder is there: its drops cannot be timed, remove it" >&2 && exit 2; }
 done
@@ -26,14 +22,10 @@ sweep() {
 }
 sweep "$plan" out/sweep
 sweep "$fine" out/sweep_fine
-[ "${1:-}" != --docs ] || cp out/sweep/probability.png docs/images/sweep_probability.png
-PYTHONPATH=tools PYTHONDONTWRITEBYTECODE=1 exec python3 - "${1:-}" <<'PYTHON'
+exec python3 - <<'PYTHON'
 import glob
 import json
 import os
-import sys
-
-from results_table import replace_table
 
 DROPS, CORES, PER_JOB, WAVE, STARTS = 1e5, 1000, 20, 20000, 10  # of the budget; starts of jobs per second
 
@@ -76,6 +68,4 @@ budget = table([["quarter pad", "processor time of a drop", "10⁵ drops, one co
                 row_of_budget("10 mm", "out/sweep"), row_of_budget("5 mm", "out/sweep_fine")])
 for rows in (probabilities, budget):
     print("\n".join(rows) + "\n")
-    if sys.argv[1] == "--docs":
-        replace_table("docs/campaigns.md", rows)
 PYTHON
