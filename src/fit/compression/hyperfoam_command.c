@@ -159,8 +159,6 @@ static void put_error(FILE *out, double error, bool at_bound) {
         fprintf(out, " +- %.2g", error);
 }
 
-static const char *const unloading_names[3] = {"HU", "SHAPE", "ALPHA"};
-
 static void put_unloading(FILE *out, const sf_hyperfoam_fit *fit) {
     const bool *at_bound = fit->unloading_at_bound;
     fprintf(out, "  unloading: HU %.4g%s, SHAPE %.4g%s, ALPHA %.4g%s; rms %.2g %% of the largest stress\n",
@@ -292,11 +290,9 @@ static sf_status write_json(const sf_staging *output, const input *in, const sf_
     sf_json_number(&json, "HU", fit->card.hysteresis_hu);
     sf_json_number(&json, "SHAPE", fit->card.hysteresis_shape);
     sf_json_number(&json, "ALPHA", fit->card.hysteresis_alpha);
-    sf_json_open(&json, "unloading_at_bound", '[');
-    for (int k = 0; k < 3; k++)
-        if (fit->unloading_at_bound[k])
-            sf_json_text(&json, NULL, unloading_names[k]);
-    sf_json_close(&json, ']');
+    sf_json_bool(&json, "HU_at_bound", fit->unloading_at_bound[0]);
+    sf_json_bool(&json, "SHAPE_at_bound", fit->unloading_at_bound[1]);
+    sf_json_bool(&json, "ALPHA_at_bound", fit->unloading_at_bound[2]);
     sf_json_number(&json, "unloading_rms", fit->unloading_rms);
     sf_json_close(&json, '}');
     fputs("\n", file);
