@@ -477,8 +477,8 @@ static void two_processes_of_one_group_simulate_it_once(void **state) {
             p,
             "rm -rf doubled/first-* doubled/second-* doubled/shared; "
             "'%s/softfall-batch' doubled/manifest.tsv --group %s > first.log 2>&1 & sleep 0.%d; "
-            "'%s/softfall-batch' doubled/manifest.tsv --group %s > second.log 2>&1; code=$?; wait $! && cat first.log second.log && "
-            "exit $code",
+            "'%s/softfall-batch' doubled/manifest.tsv --group %s > second.log 2>&1; code=$?; "
+            "wait $! || code=$?; cat first.log second.log; exit $code",
             getenv("SF_BIN_DIR"), m.run[0].group, turn, getenv("SF_BIN_DIR"), m.run[0].group);
         if (r.code != 0 || strstr(r.out, " failed: "))
             fail_msg("exit code %d: %s", r.code, r.out);

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <cmocka.h>
 
@@ -187,6 +188,32 @@ static void a_folder_with_strange_files_is_not_taken(void **state) {
     assert_int_not_equal(access(program_path(p, "empty"), F_OK), 0);
 }
 
+/* As the jobs of one campaign do: whoever comes second finds the mark of the first. */
+static void processes_that_begin_at_once_share_a_folder(void **state) {
+    enum { TURNS = 300, PROCESSES = 4 };
+    const program_place *p = *state;
+    char path[600];
+    for (int turn = 0; turn < TURNS; turn++) {
+        int gate[2], byte, status, failed = 0;
+        snprintf(path, sizeof path, "%s/shared-%d", p->folder, turn);
+        assert_int_equal(pipe(gate), 0);
+        for (int k = 0; k < PROCESSES; k++)
+            if (fork() == 0) {
+                sf_error err = SF_ERROR_INIT;
+                close(gate[1]);
+                read(gate[0], &byte, 1); /* returns when the gate is closed */
+                if (sf_folder_own(path, &err) != SF_OK)
+                    print_error("%s\n", err.text);
+                _exit((int)err.status);
+            }
+        close(gate[0]);
+        close(gate[1]);
+        for (int k = 0; k < PROCESSES; k++)
+            failed += wait(&status) > 0 && status != 0;
+        assert_int_equal(failed, 0);
+    }
+}
+
 static bool is_known(const char *name) {
     return strcmp(name, "base.h5") == 0;
 }
@@ -223,6 +250,7 @@ int main(void) {
         cmocka_unit_test(what_was_read_is_no_output),
         cmocka_unit_test(rests_of_killed_processes_go_and_nothing_else),
         cmocka_unit_test(a_folder_with_strange_files_is_not_taken),
+        cmocka_unit_test(processes_that_begin_at_once_share_a_folder),
         cmocka_unit_test(files_of_a_known_name_but_strange_content_stay),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

@@ -86,8 +86,11 @@ bool sf_folder_is_own(int handle) {
     return length >= 0 && length <= (ssize_t)strlen(TEXT) && memcmp(text, TEXT, (size_t)length) == 0;
 }
 
-sf_status sf_folder_mark(int handle, const char *path, sf_error *err) {
+/* Another process may make the mark at the same time: both have it then. */
+static sf_status make_mark(int handle, const char *path, sf_error *err) {
     int file = openat(handle, MARK, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file < 0 && errno == EEXIST && sf_folder_is_own(handle))
+        return SF_OK;
     bool done = file >= 0 && write(file, TEXT, strlen(TEXT)) == (ssize_t)strlen(TEXT);
     int reason = errno;
     if (file >= 0 && close(file) != 0)
@@ -99,13 +102,13 @@ sf_status sf_folder_mark(int handle, const char *path, sf_error *err) {
 static sf_status take(int handle, const char *path, sf_error *err) {
     if (sf_folder_is_own(handle))
         return SF_OK;
-    if (count_others(handle) != 0)
+    if (count_others(handle) != 0 && !sf_folder_is_own(handle)) /* nor by another process meanwhile */
         return SF_FAIL(
             err, SF_ERR_INPUT,
             "the folder %s holds files and was not made by softfall: move it away, or give another "
             "output",
             path);
-    return sf_folder_mark(handle, path, err);
+    return make_mark(handle, path, err);
 }
 
 sf_status sf_folder_own(const char *path, sf_error *err) {

@@ -8,12 +8,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Makes the folder, or takes an empty one or one with the mark. SF_ERR_INPUT: it holds files but no mark, or
- * is no folder. */
+/* Makes the folder, or takes an empty one or one with the mark; several processes may do so at once.
+ * SF_ERR_INPUT: it holds files but no mark, or is no folder. */
 sf_status sf_folder_own(const char *path, sf_error *err);
 
-/* Of an open folder: makes the mark; true if it has the mark. */
-sf_status sf_folder_mark(int handle, const char *path, sf_error *err);
+/* Has an open folder the mark? */
 bool sf_folder_is_own(int handle);
 
 /* Opens it: -1 with errno on failure. */
