@@ -73,8 +73,8 @@ static void other_variables_of_openmp_have_no_effect(void **state) {
 
 /* Values that the runtime would know or not: the program runs and tells of them. */
 static void values_for_openmp_that_are_left_out_are_told(void **state) {
-    static const char *const values[] = {"OMP_WAIT_POLICY=never", "OMP_PROC_BIND=spread,close", "OMP_PLACES={0:4}",
-                                         "GOMP_SPINCOUNT=100k", "GOMP_CPU_AFFINITY=0-3"};
+    static const char *const values[] = {"OMP_WAIT_POLICY=never", "OMP_PROC_BIND=spread,close",
+                                         "OMP_PLACES={0:4}", "GOMP_SPINCOUNT=100k", "GOMP_CPU_AFFINITY=0-3"};
     for (size_t v = 0; v < sizeof values / sizeof *values; v++) {
         program_result r = program_shell(
             *state, "env '%s' \"$SF_BIN_DIR\"/softfall-solve model.h5 -o other.h5 --force", values[v]);
@@ -118,8 +118,8 @@ static void file_size_limits_are_told_and_leave_no_pieces(void **state) {
         bool campaign = strcmp(runs[k][0], "cfh") == 0;
         program_result r = run_after(p, "ulimit -f 8;", k);
         assert_sentence(&r, campaign ? "log.txt" : "softfall-");
-        program_result left =
-            program_shell(p, "find . -path './NEW*' -type f ! -name log.txt ! -name .softfall-own; ls -d NEW*.* .soft*");
+        program_result left = program_shell(
+            p, "find . -path './NEW*' -type f ! -name log.txt ! -name .softfall-own; ls -d NEW*.* .soft*");
         if (*left.out)
             fail_msg("%s leaves %s", runs[k][0], left.out);
         program_shell(p, "rm -rf NEW*");
