@@ -7,6 +7,13 @@
 #include "io/h5.h"
 #include <stddef.h>
 
+/* A build with a sanitizer takes address space and stack of its own: its programs bear no limits of them. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { SANITIZED = 1 };
+#else
+enum { SANITIZED = 0 };
+#endif
+
 typedef struct program_place {
     char folder[512]; /* absolute, removed by program_tear_down */
 } program_place;

@@ -167,6 +167,7 @@ static void figures_change_smoothly(void **state) {
                   worst[2], worst[3], worst[4]);
     for (int j = 0; j < FIGURES; j++)
         assert_true(worst[j] < 0.05);
+    sf_foam_free(&foam);
 }
 
 /* Beyond what the foam bears, one sentence. */

@@ -14,11 +14,6 @@
 #include <cmocka.h>
 
 /* Nothing takes 2 s on an idle machine; one with other work may let a program wait for its turn. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define MEMORY "unlimited" /* of addresses: a sanitizer takes them all */
-#else
-#define MEMORY "8000000"
-#endif
 enum { PROCESSOR_SECONDS = 2, SECONDS = 30 };
 
 /* Sound but for the file `hostile`. */
@@ -109,8 +104,9 @@ static void use(const program_place *p, const char *target, const char *words, c
     const char *as =
         geteuid() == 0 && strcmp(target, "closed") == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
     program_result r =
-        program_shell(p, "ulimit -v " MEMORY "; ulimit -t %d; %stimeout -s KILL %d '%s/softfall-%s' %s",
-                      PROCESSOR_SECONDS, as, SECONDS, getenv("SF_BIN_DIR"), program, words);
+        program_shell(p, "ulimit -v %s; ulimit -t %d; %stimeout -s KILL %d '%s/softfall-%s' %s",
+                      SANITIZED ? "unlimited" : "8000000", PROCESSOR_SECONDS, as, SECONDS,
+                      getenv("SF_BIN_DIR"), program, words);
     const char *end = strchr(r.err, '\n');
     if (r.code == 0 || r.code >= 126 || strncmp(r.err, "softfall-", 9) != 0 || !end || end[1] != '\0')
         snprintf(failure, size, "softfall-%s %s, hostile is %s: exit code %d: %.600s", program, words, target,

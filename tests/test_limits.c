@@ -83,12 +83,6 @@ static void values_for_openmp_that_are_left_out_are_told(void **state) {
     }
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-enum { SANITIZED = 1 }; /* needs address space and stack of its own */
-#else
-enum { SANITIZED = 0 };
-#endif
-
 static void threads_that_cannot_be_started_are_refused(void **state) {
     if (SANITIZED)
         skip();

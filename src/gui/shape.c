@@ -111,9 +111,10 @@ static sf_status take_missile(int64_t nodes, const double *position, int64_t tri
         return err->status;
     s->missile.node_count = nodes;
     s->missile.face_count = triangles;
-    memcpy(s->missile_position, position, n * sizeof(double));
-    for (unsigned long k = 0; k < n; k++)
+    for (unsigned long k = 0; k < n; k++) {
+        s->missile_position[k] = position[k];
         s->missile.position[k] = position[k] / s->unit;
+    }
     for (int64_t k = 0; k < 4 * triangles; k++)
         s->missile.face[k] = k % 4 == 3 ? -1 : triangle[3 * (k / 4) + k % 4];
     return SF_OK;
