@@ -57,11 +57,15 @@ def cells_of_map():
 
 def runs(folder):
     with open(folder + "/runs.csv", newline="") as stream:
-        return {(row["thickness"], row["speed (m/s)"]): row for row in csv.DictReader(stream)}
+        return list(csv.DictReader(stream))
+
+
+def place_of(row):
+    return row["thickness"], row["speed (m/s)"]
 
 
 def cells_of_mesh():
-    coarse, fine = runs("out/sweep_coarse"), runs("out/sweep_fine")
+    coarse, fine = ({place_of(row): row for row in runs(folder)} for folder in ("out/sweep_coarse", "out/sweep_fine"))
     cells = {}
     for place, run in fine.items():
         both = (run, coarse[place])
@@ -77,10 +81,9 @@ def cells_of_mesh():
 def lines_of_runs():
     """What docs/campaigns.md says of single runs."""
     for name, folder in (("10 mm", "out/sweep"), ("5 mm", "out/sweep_fine")):
-        with open(folder + "/runs.csv", newline="") as stream:
-            rows = [row for row in csv.DictReader(stream) if row["run_status"] == "done"]
+        rows = [row for row in runs(folder) if row["run_status"] == "done"]
         for speed in sorted({row["speed (m/s)"] for row in rows}, key=float):
-            hic = [float(row["hic"]) for row in rows if (row["thickness"], row["speed (m/s)"]) == ("70", speed)]
+            hic = [float(row["hic"]) for row in rows if place_of(row) == ("70", speed)]
             yield "%s mesh, pad of 70 mm at %s m/s: largest HIC %.0f of %d runs" % (name, speed, max(hic), len(hic))
         times = sorted(float(row["wall_s"]) for row in rows)
         yield "%s mesh: a solver's wall time is %.1f to %.1f s, median %.1f s" % (
