@@ -65,7 +65,8 @@ static void cut_and_changed_seeds_are_read_or_refused(void **state) {
         {"case", "drop.cfg"},          {"curve", "foam.csv"},    {"motion", "press.csv"},
         {"reference", "measured.csv"}, {"rig", "pairs.csv"},     {"fit", "drops.cfg"},
         {"compression", "fit.cfg"},    {"pressing", "slow.csv"}, {"geo", "cube.geo"},
-        {"model", "cube.h5"},          {"results", "cube.h5"},   {"stream", "tetrahedron.stream"}};
+        {"model", "cube.h5"},          {"results", "cube.h5"},   {"stream", "tetrahedron.stream"},
+        {"plan", "zip.cfg"},           {"plan", "sample.cfg"},   {"manifest", "three.tsv"}};
     uint64_t seed = 5;
     for (size_t k = 0; k < sizeof seeds / sizeof seeds[0]; k++) {
         char name[128];

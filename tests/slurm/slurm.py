@@ -5,7 +5,8 @@
 Starts munged, slurmctld and slurmd in namespaces of their own (processes, network, mounts, host name), which end with this
 program whatever happens to it. 40 coarse drops go through softfall-sweep, Snakemake and sbatch. In the middle jobs are
 cancelled, the node is drained, the campaign is interrupted, its program is killed, and then Snakemake, too. It must finish
-with the bits of the same campaign on this machine alone. The programs are those of SF_BIN_DIR, or of build/bin.
+with the bits of the same campaign on this machine alone, and so must a copy that is taken from Slurm unfinished and ended
+here. The programs are those of SF_BIN_DIR, or of build/bin.
 Exit code 77, with a line that says why, where it cannot run."""
 import csv
 import glob
@@ -280,13 +281,24 @@ def statuses_are_told(campaign):
     expect(status("999999") == "failed", "a job that Slurm does not know has failed", status("999999"))
 
 
-def assert_same(campaign):
-    here, there = campaign.table("here"), campaign.table("out")
+def finish_here(slurm, campaign):
+    """What Slurm has begun, in a copy, as jobs of the original are still to come: the node is drained."""
+    wait_for("an idle node", lambda: not slurm.jobs("R,CG"))
+    shutil.copytree(campaign.file("out"), campaign.file("copy"))
+    begun = campaign.done()
+    expect(0 < begun < DROPS, "the copy has drops that are done and drops that are not", begun)
+    finish(campaign.sweep("copy", "--jobs", "2"), 0, "%d drops simulated" % (DROPS - begun))
+    assert_same(campaign, "copy")
+    tell(campaign, "a copy was finished on this machine alone, with the same bits")
+
+
+def assert_same(campaign, directory):
+    here, there = campaign.table("here"), campaign.table(directory)
     expect(len(here) == DROPS and here == there, "runs.csv is the same", "%s\n%s" % (here, there))
     names = [row["folder"] for row in here]
     expect(len(set(names)) == DROPS, "each run has a folder", names)
     for name in names[::HISTORIES]:
-        expect(campaign.history("here", name) == campaign.history("out", name), "history.csv of %s is the same" % name)
+        expect(campaign.history("here", name) == campaign.history(directory, name), "history.csv of %s is the same" % name)
 
 
 def inside(folder):
@@ -309,10 +321,11 @@ def inside(folder):
             raise
         programs_are_killed(slurm, campaign)
         statuses_are_told(campaign)
+        finish_here(slurm, campaign)
         slurm.node("resume")
         finish(campaign.on_slurm(), 0, "%d runs: %d done, 0 failed, 0 open" % (DROPS, DROPS))
         tell(campaign, "finished after being resumed")
-        assert_same(campaign)
+        assert_same(campaign, "out")
         tell(campaign, "runs.csv and history.csv are those of the campaign on this machine alone")
         return 0
     except (RuntimeError, subprocess.SubprocessError) as failure:
