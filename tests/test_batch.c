@@ -221,12 +221,16 @@ static void a_drop_that_crashes_is_done_and_one_that_is_killed_is_not(void **sta
     sf_manifest_free(&m);
 }
 
-/* A batch of 100,000 is at most 1000 jobs. */
+/* Some minutes each; a batch of 100,000 is at most 1000 jobs, one of few drops more than a few. */
 static void groups_are_of_several_drops(void **state) {
     (void)state;
     assert_int_equal(sf_manifest_group_size(3, 0), 20);
     assert_int_equal(sf_manifest_group_size(100000, 0), 100);
-    assert_int_equal(sf_manifest_group_size(100000, 7), 7);
+    assert_int_equal(sf_manifest_group_size(100, 60), 3);
+    assert_int_equal(sf_manifest_group_size(100, 1000), 1);
+    assert_int_equal(sf_manifest_group_size(100, 1), 20);
+    assert_int_equal(sf_manifest_group_size(20000, 1), 100);
+    assert_int_equal(sf_manifest_group_size(20000, 17), 20);
 }
 
 static void what_is_no_manifest_is_refused(void **state) {

@@ -29,9 +29,10 @@ exec python3 - <<'PYTHON'
 import csv
 import glob
 import json
+import math
 import os
 
-DROPS, CORES, PER_JOB, WAVE, STARTS = 1e5, 1000, 20, 20000, 10  # of the budget; starts of jobs per second
+DROPS, CORES, WAVE, STARTS = 1e5, 1000, 20000, 10  # of the budget; starts of jobs per second
 
 
 def read(path):
@@ -96,9 +97,11 @@ def row_of_budget(name, folder):
     folders = glob.glob(folder + "/runs/drop-*")
     size = sum(os.path.getsize(path) for path in glob.glob(folder + "/runs/drop-*/*"))
     drop = seconds / len(folders)
-    waves, jobs = DROPS / WAVE, WAVE / PER_JOB
+    waves, per_job = DROPS / WAVE, max(20, min(math.ceil(180 / drop), 100))  # as sf_manifest_group_size has it
+    jobs = WAVE / per_job
+    work = per_job * drop * math.ceil(jobs / CORES)
     return [name, "%.1f s" % drop, "%.0f h" % (DROPS * drop / 3600),
-            "%.0f × %.0f s = %.1f min" % (waves, WAVE * drop / CORES, waves * WAVE * drop / CORES / 60),
+            "%.0f × %.0f of %.0f drops" % (waves, jobs, per_job), "%.0f × %.0f s = %.1f min" % (waves, work, waves * work / 60),
             "%.0f × %.1f min" % (waves, jobs / STARTS / 60), "%.0f GB" % (DROPS * size / len(folders) / 1e9)]
 
 
@@ -108,8 +111,8 @@ def table(rows):
 
 probabilities = table(rows_of_places(cells_of_map()))
 mesh = table(rows_of_places(cells_of_mesh()))
-budget = table([["quarter pad", "processor time of a drop", "10⁵ drops, one core", "work on %d cores" % CORES,
-                 "starting the jobs", "results on disk"], ["---"] + ["---:"] * 5,
+budget = table([["quarter pad", "processor time of a drop", "10⁵ drops, one core", "jobs",
+                 "work on %d cores" % CORES, "starting the jobs", "results on disk"], ["---"] + ["---:"] * 6,
                 row_of_budget("10 mm", "out/sweep"), row_of_budget("5 mm", "out/sweep_fine")])
 for rows in (probabilities, mesh, budget, lines_of_runs()):
     print("\n".join(rows) + "\n")

@@ -21,6 +21,7 @@ typedef struct sf_runner_engine {
     const char *name;    /* NULL or "local": this process; "snakemake" (engine.h) */
     const char *profile; /* of Snakemake; NULL: none */
     int per_job;         /* drops of a job; 0: sf_manifest_group_size */
+    double drop_seconds; /* that a drop takes on one core; 0: not known */
     int job_threads;     /* of a job; 0: one */
     bool retry;          /* drops that failed earlier are simulated again; else they fail as they did */
     const int *lock;     /* of the campaign (sf_folder_lock): an engine that outlives this process keeps it;

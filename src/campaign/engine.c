@@ -93,8 +93,8 @@ static sf_status make_absolute(const char *path, char out[PATH_MAX], sf_error *e
 
 /* --nolock: a killed Snakemake would leave its lock, and the campaign has one of its own; groups may be run
  * twice. On SIGTERM it would wait for its jobs, on SIGINT it cancels them: so it is apart. */
-sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const char *manifest, int *code,
-                        sf_error *err) {
+sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const char *manifest,
+                        void (*tick)(void *context), void *context, int *code, sf_error *err) {
     char snakefile[PATH_MAX], found[PATH_MAX], program[PATH_MAX], file[PATH_MAX], folder[PATH_MAX],
         profile[PATH_MAX], shared[PATH_MAX], share[PATH_MAX], log[SF_RUN_PATH_SIZE], manifest_word[WORD_SIZE],
         program_word[WORD_SIZE], cores[32], threads[48];
@@ -119,8 +119,13 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
     int n = 12;
     words[n++] = engine->profile ? "--profile" : "--cores";
     words[n++] = engine->profile ? profile : cores;
-    const sf_process process = {
-        .arguments = words, .log = log, .stoppable = true, .apart = true, .held = engine->lock};
+    const sf_process process = {.arguments = words,
+                                .log = log,
+                                .stoppable = true,
+                                .apart = true,
+                                .held = engine->lock,
+                                .tick = tick,
+                                .context = context};
     int reason = sf_process_run(&process, code);
     if (reason == ENOENT)
         return missing(err);

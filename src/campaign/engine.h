@@ -17,26 +17,27 @@ sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err);
 
 /* Runs every group of the manifest by Snakemake, without a profile on `threads` processors of this machine;
  * returns when no more can be done. What was done is told by the drops' folders and the files of the groups.
- * SF_ERR_IO: it cannot be started; SF_INTERRUPTED. `*code` its exit code. */
-sf_status sf_engine_run(const sf_runner_engine *engine, int threads, const char *manifest, int *code,
-                        sf_error *err);
+ * `tick`: called with `context` every ten seconds meanwhile. SF_ERR_IO: it cannot be started;
+ * SF_INTERRUPTED. `*code` its exit code. */
+sf_status sf_engine_run(const sf_runner_engine *engine, int threads, const char *manifest,
+                        void (*tick)(void *context), void *context, int *code, sf_error *err);
 
 /* The rows of the options of a program that runs batches, in its `group` of argp_option, and what each does
  * with its text: false if `key` is none of them. */
 enum { SF_ENGINE_KEY = 0x7001, SF_ENGINE_KEY_PROFILE, SF_ENGINE_KEY_RETRY, SF_ENGINE_KEY_GROUP };
-#define SF_ENGINE_OPTIONS(group)                                                                               \
-    {"engine", SF_ENGINE_KEY, "NAME", 0, "what runs the drops: local (default) or snakemake", (group)},        \
-        {"profile",                                                                                            \
-         SF_ENGINE_KEY_PROFILE,                                                                                \
-         "PROFILE",                                                                                            \
-         0,                                                                                                    \
-         "with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall",           \
-         (group)},                                                                                             \
-    {                                                                                                          \
-        "per-job", SF_ENGINE_KEY_GROUP, "N", 0,                                                                \
-            "with --engine snakemake: drops of a job (default 1; of softfall-sweep 20, or more so that there " \
-            "are at most 1000 jobs)",                                                                          \
-            (group)                                                                                            \
+#define SF_ENGINE_OPTIONS(group)                                                                             \
+    {"engine", SF_ENGINE_KEY, "NAME", 0, "what runs the drops: local (default) or snakemake", (group)},      \
+        {"profile",                                                                                          \
+         SF_ENGINE_KEY_PROFILE,                                                                              \
+         "PROFILE",                                                                                          \
+         0,                                                                                                  \
+         "with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall",         \
+         (group)},                                                                                           \
+    {                                                                                                        \
+        "per-job", SF_ENGINE_KEY_GROUP, "N", 0,                                                              \
+            "with --engine snakemake: drops of a job (default 1; of softfall-sweep as many as take three "   \
+            "minutes, within bounds)",                                                                       \
+            (group)                                                                                          \
     }
 #define SF_ENGINE_RETRY(group)                                                                               \
     { "retry", SF_ENGINE_KEY_RETRY, NULL, 0, "simulate drops again that failed earlier", (group) }

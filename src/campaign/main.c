@@ -50,8 +50,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
 static sf_status find_group(const sf_manifest *m, const options *o, int *first, int *last, sf_error *err) {
     for (*first = 0; *first < m->count && strcmp(m->run[*first].group, o->group) != 0;)
         ++*first;
-    for (*last = *first; *last < m->count && strcmp(m->run[*last].group, o->group) == 0;)
-        ++*last;
+    *last = *first < m->count ? sf_manifest_group_end(m, *first) : *first;
     if (*first == *last)
         return SF_FAIL(err, SF_ERR_INPUT, "%s has no group %s", o->manifest, o->group);
     return SF_OK;

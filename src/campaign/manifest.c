@@ -5,17 +5,23 @@
 #include "io/plain_file.h"
 #include "io/replace.h"
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 static const char HEAD[] = "softfall-manifest 1";
-enum { LEAST = 20, MOST_GROUPS = 1000, MOST_FIELDS = 5 + SF_RUNNER_OVERRIDES };
+enum { USUAL = 20, FEW_GROUPS = 200, MOST_FIELDS = 5 + SF_RUNNER_OVERRIDES };
+static const double JOB_SECONDS = 180;
 
-int sf_manifest_group_size(int count, int wanted) {
-    int bounded = (count + MOST_GROUPS - 1) / MOST_GROUPS;
-    return wanted > 0 ? wanted : bounded > LEAST ? bounded : LEAST;
+int sf_manifest_group_size(int count, double seconds) {
+    int least = (count + SF_MANIFEST_GROUPS - 1) / SF_MANIFEST_GROUPS,
+        most = (count + FEW_GROUPS - 1) / FEW_GROUPS;
+    most = most > USUAL ? most : USUAL;
+    double wanted = seconds > 0 ? ceil(JOB_SECONDS / seconds) : USUAL;
+    int size = wanted < most ? (int)wanted : most;
+    return size > least ? size : least;
 }
 
 /* ---- writing ---- */
@@ -128,6 +134,13 @@ void sf_manifest_free(sf_manifest *m) {
     *m = (sf_manifest){0};
 }
 
+int sf_manifest_group_end(const sf_manifest *m, int k) {
+    int end = k + 1;
+    while (end < m->count && strcmp(m->run[end].group, m->run[k].group) == 0)
+        end++;
+    return end;
+}
+
 /* ---- outcomes ---- */
 
 void sf_manifest_outcome_path(const char *manifest, const char *group, char *path, size_t size) {
@@ -166,4 +179,16 @@ bool sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run
         take_failure(line, count, run, failure);
     free(text);
     return true;
+}
+
+int sf_manifest_count_failed(const char *path) {
+    sf_error none = SF_ERROR_INIT;
+    char *text = NULL;
+    int lines = 0;
+    if (!sf_replace_exists(path) || sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
+        return -1;
+    for (const char *c = text; (c = strchr(c, '\n')); c++)
+        lines++;
+    free(text);
+    return lines;
 }

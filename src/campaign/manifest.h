@@ -12,7 +12,7 @@
 
 #define SF_MANIFEST_FOLDER "batch" /* in the folder of the runs */
 #define SF_MANIFEST_NAME "manifest.tsv"
-enum { SF_MANIFEST_GROUP_SIZE = 32 };
+enum { SF_MANIFEST_GROUP_SIZE = 32, SF_MANIFEST_GROUPS = 1000 /* of a batch, at most, unless asked for */ };
 
 /* A drop, its key and its group. */
 typedef struct sf_manifest_run {
@@ -29,9 +29,10 @@ typedef struct sf_manifest {
     char *text;           /* owned */
 } sf_manifest;
 
-/* Drops of a group, so that few jobs wait at an engine: `wanted`, or if that is 0 at least 20, and as many as
- * make at most 1000 groups. */
-int sf_manifest_group_size(int count, int wanted);
+/* Drops of a group, a job of an engine: as many as take three minutes, if it is known how many `seconds` one
+ * takes (else 0), but of few drops not so many that only a few jobs are left: at most 20, or what makes 200
+ * groups. At least as many as make SF_MANIFEST_GROUPS. */
+int sf_manifest_group_size(int count, double seconds);
 
 /* Writes the manifest of drop[index[k]] with their keys, k < count. SF_ERR_INPUT: a text holds a tab or a
  * line end. */
@@ -41,6 +42,9 @@ sf_status sf_manifest_write(const char *path, const char *runs, int count, const
 sf_status sf_manifest_read(const char *path, sf_manifest *manifest, sf_error *err);
 void sf_manifest_free(sf_manifest *manifest);
 
+/* The first run behind the group of run k. */
+int sf_manifest_group_end(const sf_manifest *manifest, int k);
+
 /* Name of the file, beside the manifest, that says that a group is done. */
 void sf_manifest_outcome_path(const char *manifest, const char *group, char *path, size_t size);
 
@@ -49,5 +53,7 @@ sf_status sf_manifest_write_outcome(const char *path, int count, const sf_manife
                                     const sf_error *failure, sf_error *err);
 /* Puts the failures in the file into failure[k] of the drop with that key; false: there is no such file. */
 bool sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure);
+/* How many failures there are in the file; -1: there is no such file. */
+int sf_manifest_count_failed(const char *path);
 
 #endif

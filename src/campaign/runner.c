@@ -23,6 +23,14 @@ enum { MATERIAL_SIZE = PATH_MAX + 64 };
 static const char *const lean_output[] = {"output.fields=[\"displacement\"]", "output.frame_interval=1000 s"};
 enum { LEAN = sizeof lean_output / sizeof lean_output[0] };
 
+bool sf_runner_sets_key(const char *key) {
+    size_t length = strlen(key);
+    for (int k = 0; k < LEAN; k++)
+        if (strncmp(lean_output[k], key, length) == 0 && lean_output[k][length] == '=')
+            return true;
+    return false;
+}
+
 /* Every override of the drop, ours included; `material` is the buffer of the first. */
 static int list_overrides(const sf_runner_drop *drop, char *material, const char **list) {
     int count = 0;
@@ -220,7 +228,7 @@ typedef struct batch {
     const sf_runner_drop *drop;
     request *request;
     int *pending; /* those that must be simulated */
-    int pending_count, threads /* of each */, failed;
+    int pending_count, threads /* of each */, failed, ended;
     double start, told; /* s */
 } batch;
 
@@ -362,20 +370,25 @@ static int count_abreast(const sf_runner *runner, int pending) {
     return abreast;
 }
 
-/* A line every ten seconds, with the time that is left at the pace so far. */
+/* The time that is left at the pace so far. */
+static void tell_pace(const batch *b, int ended) {
+    double spent = now() - b->start, left = spent / ended * (b->pending_count - ended);
+    fprintf(b->runner->log, "  %d of %d drops, %d failed, %.3g drops per hour, %d h %02d min to go\n", ended,
+            b->pending_count, b->failed, 3600 * ended / spent, (int)(left / 3600), (int)fmod(left / 60, 60));
+    fflush(b->runner->log);
+}
+
+/* A line every ten seconds. */
 static void tell_progress(void *context, int index, int ended, const sf_error *result) {
     enum { EVERY = 10 };
     batch *b = context;
-    double time = now(), left = (time - b->start) / ended * (b->pending_count - ended);
+    double time = now();
     (void)index;
     b->failed += result->status != SF_OK;
     if (!b->runner->log || time < b->told + EVERY || ended == b->pending_count)
         return;
     b->told = time;
-    fprintf(b->runner->log, "  %d of %d drops, %d failed, %.3g drops per hour, %d h %02d min to go\n", ended,
-            b->pending_count, b->failed, 3600 * ended / (time - b->start), (int)(left / 3600),
-            (int)fmod(left / 60, 60));
-    fflush(b->runner->log);
+    tell_pace(b, ended);
 }
 
 /* One drop alone has all threads and needs no process of its own. `failure` by the pending ones. */
@@ -396,30 +409,66 @@ static void look_again(const batch *b, const sf_manifest *m, const char *manifes
                        sf_error *failure) {
     char path[SF_RUN_PATH_SIZE];
     for (int k = 0, last; k < m->count; k = last) {
-        for (last = k + 1; last < m->count && strcmp(m->run[last].group, m->run[k].group) == 0;)
-            last++;
+        last = sf_manifest_group_end(m, k);
         sf_manifest_outcome_path(manifest, m->run[k].group, path, sizeof path);
         bool done = sf_manifest_read_outcome(path, last - k, &m->run[k], &failure[k]);
         for (int j = k; j < last && !done; j++) {
             located l;
             if (locate(b->runner, &m->run[j].drop, &l, &failure[j]) == SF_OK &&
                 !sf_run_folder_is_finished(&l.at))
-                SF_FAIL(&failure[j], SF_ERR_IO,
-                        "snakemake (exit code %d) left the drop %s undone; see %.*slog.txt; run the same "
-                        "command again to resume",
-                        code, m->run[j].drop.label, (int)(strrchr(manifest, '/') + 1 - manifest), manifest);
+                SF_FAIL(
+                    &failure[j], SF_ERR_IO,
+                    "snakemake (exit code %d) left the drop in %s undone; %.*slog.txt says why; run the same "
+                    "command again to resume",
+                    code, l.at.path, (int)(strrchr(manifest, '/') + 1 - manifest), manifest);
         }
         sf_folder_remove_file(path);
     }
 }
 
+typedef struct elsewhere {
+    batch *b;
+    const sf_manifest *m;
+    const char *manifest;
+} elsewhere;
+
+/* The drops of the groups that have ended, if there are more than the last time. */
+static void tell_groups(void *context) {
+    const elsewhere *e = context;
+    batch *b = e->b;
+    char path[SF_RUN_PATH_SIZE];
+    int ended = 0;
+    b->failed = 0;
+    for (int k = 0, last; k < e->m->count; k = last) {
+        last = sf_manifest_group_end(e->m, k);
+        sf_manifest_outcome_path(e->manifest, e->m->run[k].group, path, sizeof path);
+        int failed = sf_manifest_count_failed(path);
+        ended += failed >= 0 ? last - k : 0;
+        b->failed += failed > 0 ? failed : 0;
+    }
+    if (ended > b->ended && ended < b->pending_count)
+        tell_pace(b, ended);
+    b->ended = ended;
+}
+
+/* Drops of a job: what was asked for, or else what takes some minutes; on the processors of this machine
+ * alone, as few as keep them all at work. */
+static int choose_group_size(const batch *b) {
+    const sf_runner_engine *engine = &b->runner->engine;
+    int size = sf_manifest_group_size(b->pending_count, engine->drop_seconds),
+        shared = (b->pending_count + b->runner->threads - 1) / b->runner->threads;
+    if (engine->per_job > 0)
+        return engine->per_job;
+    return engine->profile || size < shared ? size : shared;
+}
+
 /* By the engine, group by group. `failure` by the pending ones. */
-static sf_status simulate_elsewhere(const batch *b, sf_error *failure, sf_error *err) {
+static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) {
     const sf_runner *runner = b->runner;
     char folder[SF_RUN_PATH_SIZE], path[SF_RUN_PATH_SIZE + 32];
     sf_manifest m = {0};
     uint64_t *key = sf_alloc(err, (unsigned long)b->count, sizeof *key, "keys");
-    int code = 0, size = sf_manifest_group_size(b->pending_count, runner->engine.per_job);
+    int code = 0, size = choose_group_size(b);
     for (int k = 0; key && k < b->count; k++)
         key[k] = b->request[k].key;
     snprintf(folder, sizeof folder, "%s/" SF_MANIFEST_FOLDER, runner->folder);
@@ -439,7 +488,10 @@ static sf_status simulate_elsewhere(const batch *b, sf_error *failure, sf_error 
                     b->pending_count, size, folder);
             fflush(runner->log);
         }
-        if (sf_engine_run(&runner->engine, runner->threads, path, &code, err) == SF_OK)
+        elsewhere watched = {b, &m, path};
+        b->start = now();
+        if (sf_engine_run(&runner->engine, runner->threads, path, runner->log ? tell_groups : NULL, &watched,
+                          &code, err) == SF_OK)
             look_again(b, &m, path, code, failure);
     }
     sf_manifest_free(&m);

@@ -48,6 +48,9 @@ typedef struct sf_runner_result {
     bool reused;
 } sf_runner_result;
 
+/* Does a campaign set this key ("output.fields") itself, whatever the drop says? */
+bool sf_runner_sets_key(const char *key);
+
 /* Simulates the drop unless a finished run of the same inputs is there: the same values of every key of the
  * case and the material, the same curves and geometry files, and programs of the same revision. Release with
  * sf_runner_result_free. Errors: the message of the program that failed, with the path of its log; a drop

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 /* The folder of the programs. */
@@ -130,11 +131,18 @@ static int start(const sf_process *p, pid_t *child) {
 }
 
 /* Waits for the child; 0 or an errno value. */
-static int await(pid_t child, int *exit_code) {
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
+static int await(const sf_process *p, pid_t child, int *exit_code) {
+    enum { TURNS = 100 }; /* of a tenth of a second between two ticks */
+    int status = 0, turn = 0;
+    pid_t ended;
+    while ((ended = waitpid(child, &status, p->tick ? WNOHANG : 0)) <= 0) {
+        if (ended < 0 && errno != EINTR)
             return errno;
+        if (ended == 0)
+            nanosleep(&(struct timespec){0, 100000000}, NULL);
+        if (ended == 0 && ++turn % TURNS == 0)
+            p->tick(p->context);
+    }
     *exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return 0;
 }
@@ -147,7 +155,7 @@ int sf_process_run(const sf_process *p, int *exit_code) {
         return result;
     if (p->stoppable)
         watch(0, p->apart ? -child : child);
-    result = await(child, exit_code);
+    result = await(p, child, exit_code);
     running[0] = 0;
     return result;
 }

@@ -28,6 +28,8 @@ typedef struct sf_process {
                    SIGINT to the whole group. Only one such program at a time */
     const int *held; /* a descriptor that it keeps open while it runs: a lock of this process's folder that
                         outlives this process; NULL or *held < 0: none */
+    void (*tick)(void *context); /* called every ten seconds while it runs; NULL: not */
+    void *context;
 } sf_process;
 
 /* Runs the program with nothing to read. Returns 0 and its exit code (128 + the signal that ended it), or the

@@ -20,9 +20,10 @@ typedef struct sf_sweep_cost {
 sf_status sf_sweep_cost_estimate(const sf_runs *runs, int64_t open, const char *folder, sf_sweep_cost *cost,
                                  sf_error *err);
 
-/* SF_ERR_INPUT if the file system of `folder` has too little room. */
+/* SF_ERR_INPUT if the file system of `folder` has too little room for all runs, and for `jobs` at work. */
 sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *cost, const char *folder, int jobs, sf_error *err);
 
+/* `jobs` 0: on machines that are not known. */
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *cost, int jobs);
 
 #endif

@@ -2,6 +2,7 @@
 /* softfall-sweep PLAN.cfg -o DIR: many drops of one case, by a plan. */
 #include "build_info.h"
 #include "campaign/engine.h"
+#include "campaign/manifest.h"
 #include "core/program.h"
 #include "core/units.h"
 #include "io/folder.h"
@@ -120,6 +121,7 @@ typedef struct job {
     sf_sweep_campaign campaign;
     char *command;
     char folder[PATH_MAX]; /* DIR/runs */
+    double drop_seconds;   /* sf_sweep_cost.seconds */
     char names[24][32];    /* of the pictures */
     const char *list[24 + 3];
     int lock;
@@ -182,15 +184,18 @@ static sf_status check(const options *o, job *j, bool *known, sf_error *err) {
 static sf_status estimate(const options *o, job *j, sf_error *err) {
     sf_sweep_cost cost;
     sf_error small = SF_ERROR_INIT;
+    const bool elsewhere = o->engine.profile != NULL;
     int64_t open = 0;
     if (sf_runs_create(&j->plan, &j->runs, err) != SF_OK ||
         sf_sweep_campaign_look(&j->campaign, &j->runs, &open, err) != SF_OK ||
         sf_sweep_cost_estimate(&j->runs, open, j->folder, &cost, err) != SF_OK)
         return err->status;
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);
-    sf_sweep_cost_print(stdout, &cost, o->jobs);
+    sf_sweep_cost_print(stdout, &cost, elsewhere ? 0 : o->jobs);
     fflush(stdout);
-    if (sf_sweep_cost_check_disk(&cost, o->directory, o->jobs, &small) == SF_OK)
+    j->drop_seconds = cost.seconds;
+    int abreast = !elsewhere ? o->jobs : open < SF_MANIFEST_GROUPS ? (int)open : SF_MANIFEST_GROUPS;
+    if (sf_sweep_cost_check_disk(&cost, o->directory, abreast, &small) == SF_OK)
         return SF_OK;
     const sf_sink sink = sf_program_sink("softfall-sweep");
     if (o->yes)
@@ -213,6 +218,7 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     sf_runner runner = {
         .folder = j->folder, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
     runner.engine.lock = &j->lock;
+    runner.engine.drop_seconds = j->drop_seconds;
     const sf_sweep_engine engine = sf_sweep_drops(&runner, o->jobs);
     j->campaign.log = stdout;
     if (sf_sweep_campaign_run(&j->campaign, &engine, &j->runs, err) != SF_OK)
