@@ -142,6 +142,32 @@ static void inputs_that_change_meanwhile_end_the_campaign(void **state) {
     assert_non_null(strstr(r.out, "4 runs: 4 done, 0 failed, 0 open"));
 }
 
+/* A file that only the mesher reads is changed when the first drop is done. */
+static void a_geometry_that_changes_meanwhile_ends_the_campaign(void **state) {
+    const program_place *p = *state;
+    char text[1536];
+    program_shell(p, "(echo 'Include \"size.geo\";'; cat '%s') > pad.geo; echo '// one' > size.geo",
+                  fixture_source("geo/pad.geo"));
+    snprintf(
+        text, sizeof text,
+        "case = \"%s\";\nset = [\"geometry.parameters.fine_spacing=20.0\", "
+        "\"geometry.parameters.outer_spacing=40.0\", \"pad.mesh_error_limit=9.0\", \"geometry.file=%s/pad.geo\"];\n"
+        "factors = ( { key = \"missile.velocity\"; values = [\"3 m/s\", \"4 m/s\", \"4.5 m/s\"]; } );\n",
+        fixture_source("examples/eva50-v4.5/case.cfg"), p->folder);
+    program_write_text(p, "included.cfg", text);
+    program_result r = program_shell(
+        p,
+        "'%s/softfall-sweep' included.cfg -o included --jobs 1 & for k in $(seq 6000); do "
+        "ls included/runs/drop-*/results.h5 >/dev/null 2>&1 && break; sleep 0.01; done; echo '// two' > size.geo; "
+        "wait $!",
+        getenv("SF_BIN_DIR"));
+    if (r.code != 3 || !strstr(r.err, "includes or merges, or its result, changed while the campaign ran"))
+        fail_msg("%d: %s%s", r.code, r.out, r.err);
+    assert_int_equal(program_shell(p, "test -e included/report.html").code, 1);
+    r = program_succeed(p, "sweep", "included.cfg -o included --jobs 1");
+    assert_non_null(strstr(r.out, "3 runs: 3 done, 0 failed, 0 open"));
+}
+
 /* Of the same folder: the figures are those of runs.csv, in columns. */
 static void runs_are_overlaid(void **state) {
     const program_place *p = *state;
@@ -215,6 +241,7 @@ int main(void) {
         cmocka_unit_test(a_sweep_writes_its_table_and_report_and_resumes),
         cmocka_unit_test(what_a_run_reads_is_simulated_again_when_it_changes),
         cmocka_unit_test(inputs_that_change_meanwhile_end_the_campaign),
+        cmocka_unit_test(a_geometry_that_changes_meanwhile_ends_the_campaign),
         cmocka_unit_test(runs_are_overlaid),
         cmocka_unit_test(folders_that_are_not_of_the_plan_or_taken_are_refused),
     };

@@ -342,6 +342,49 @@ static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine
     return save(c, runs, true, err);
 }
 
+enum { LOOKED_AT = 200 }; /* geometries at the end */
+
+static sf_status refuse_row(int64_t row, sf_error *err) {
+    return SF_FAIL(
+        err, SF_ERR_IO,
+        "a file that the geometry of run %lld includes or merges, or its result, changed while the "
+        "campaign ran; finished drops are kept: repeat the command",
+        (long long)row + 1);
+}
+
+/* The same at the end, without simulating anything: the first and the last row that is done of each geometry
+ * (of many geometries, some evenly spread ones, as all come from a few files). If one is of other files, all
+ * rows are opened, as these may be of either. */
+static sf_status probe_again(const sf_sweep_engine *engine, sf_runs *runs, sf_error *err) {
+    if (!engine->is_current)
+        return SF_OK;
+    int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
+    geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
+    int64_t n = list ? list_geometries(runs, list) : 0, geometries = 0, at = 0;
+    for (int64_t k = 0; k < n; k++)
+        geometries += k == 0 || list[k].hash != list[k - 1].hash;
+    int64_t every = geometries / LOOKED_AT + 1;
+    for (int64_t k = 0, last; k < n && err->status == SF_OK; k = last + 1, at++) {
+        for (last = k; last + 1 < n && list[last + 1].hash == list[k].hash;)
+            last++;
+        int64_t done = last;
+        while (done >= k && list[done].failed)
+            done--;
+        if (at % every != 0 || done < k)
+            continue;
+        if (!engine->is_current(engine->context, runs, list[k].row))
+            refuse_row(list[k].row, err);
+        else if (!engine->is_current(engine->context, runs, list[done].row))
+            refuse_row(list[done].row, err);
+    }
+    free(list);
+    if (err->status != SF_OK) {
+        open_all(runs, SF_SWEEP_DONE);
+        open_all(runs, SF_SWEEP_FAILED);
+    }
+    return err->status;
+}
+
 /* ---- the work ---- */
 
 static int next_piece(const sf_runs *runs, int64_t *from, int most, int64_t *row) {
@@ -391,8 +434,8 @@ sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engin
     if (!row || take_over(c, runs, &turned, err) != SF_OK)
         goto done;
     if (pick_samples(runs, &s, err) == SF_OK && write_samples_open(c, runs, turned, &s, err) == SF_OK &&
-        probe(c, engine, runs, &s, err) == SF_OK)
-        work(c, engine, runs, row, err);
+        probe(c, engine, runs, &s, err) == SF_OK && work(c, engine, runs, row, err) == SF_OK)
+        turned = probe_again(engine, runs, err) != SF_OK || turned;
     save(c, runs, turned, err);
 done:
     free_samples(&s);

@@ -13,6 +13,9 @@ typedef struct sf_sweep_engine {
     sf_status (*run)(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh, sf_error *err);
     void *context;
     int piece; /* rows at a time */
+    /* Does what is there of a row that is done still come from its inputs as they are now, those that only
+     * its geometry knows of, too? NULL: not looked at. */
+    bool (*is_current)(void *context, const sf_runs *runs, int64_t row);
 } sf_sweep_engine;
 
 typedef struct sf_sweep_campaign {

@@ -111,10 +111,21 @@ static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row
     return err->status;
 }
 
+static bool is_current(void *context, const sf_runs *runs, int64_t row) {
+    piece p;
+    sf_runner_state state = SF_DROP_OPEN;
+    sf_error failure = SF_ERROR_INIT, err = SF_ERROR_INIT;
+    if (begin_piece(&p, runs->plan, 1, &row, &err) == SF_OK)
+        sf_runner_look(context, &p.drop[0], &state, &failure, &err);
+    end_piece(&p);
+    return state == SF_DROP_DONE;
+}
+
 sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
     runner->figures_only = true;
     int abreast = jobs < 1 ? 1 : jobs < SF_PROCESS_JOBS ? jobs : SF_PROCESS_JOBS;
     return (sf_sweep_engine){.run = run,
+                             .is_current = is_current,
                              .context = runner,
                              .piece = sf_engine_is_local(&runner->engine) ? SF_SWEEP_PIECE * abreast
                                                                           : SF_SWEEP_ELSEWHERE};

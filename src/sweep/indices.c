@@ -110,7 +110,7 @@ sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index 
         index[i] = (sf_index){NAN, NAN, NAN, NAN, NAN, NAN};
     if (s.place) {
         list_whole(&s);
-        if (s.used >= LEAST)
+        if (s.used >= LEAST && (double)s.used >= SF_INDEX_SHARE * (double)n)
             evaluate(&s, seed, index, err);
     }
     *used = s.used;

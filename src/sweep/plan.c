@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { MOST_SAMPLES = 100000000 };
+#define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"
 
 /* ---- blocks ---- */
 
@@ -32,6 +33,8 @@ static sf_status add_factor(const sf_config *config, const config_setting_t *gro
         return sf_config_refuse(config, group, err,
                                 "\"%s\" is a column of runs.csv already: give the factor another name",
                                 f->name);
+    if (sf_runner_sets_key(f->key))
+        return sf_config_refuse(config, group, err, SETS_ITSELF, f->key);
     for (int k = 0; k < p->factor_count - 1; k++) {
         const sf_factor *other = &p->factor[k];
         if (strcmp(other->key, f->key) == 0)
@@ -219,19 +222,29 @@ static sf_status read_factors(const sf_config *config, bool huge, sf_plan *p, sf
 
 /* ---- the rest ---- */
 
+/* The key of an override, without blanks. */
+static void key_of(const char *set, char *key, size_t size) {
+    set += strspn(set, " \t");
+    snprintf(key, size, "%.*s", (int)strcspn(set, " \t="), set);
+}
+
 static sf_status read_set(const sf_config *config, sf_plan *p, sf_error *err) {
     const config_setting_t *list = config_lookup(&config->config, "set");
     SF_TRY(sf_config_overrides(config, "set", SF_RUNNER_OVERRIDES, p->set, &p->set_count, err));
     if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES)
         return sf_config_refuse(config, list, err, "set and the factors change more than %d keys",
                                 SF_RUNNER_OVERRIDES);
-    for (int k = 0; k < p->set_count; k++)
-        for (int f = 0; f < p->factor_count; f++) {
-            size_t length = strlen(p->factor[f].key);
-            if (strncmp(p->set[k], p->factor[f].key, length) == 0 && p->set[k][length] == '=')
-                return sf_config_refuse(config, config_setting_get_elem(list, (unsigned)k), err,
-                                        "set: %s is a factor, at %s", p->factor[f].key, p->factor[f].where);
-        }
+    for (int k = 0; k < p->set_count; k++) {
+        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
+        char key[SF_FACTOR_KEY_SIZE];
+        key_of(p->set[k], key, sizeof key);
+        if (sf_runner_sets_key(key))
+            return sf_config_refuse(config, s, err, "set: " SETS_ITSELF, key);
+        for (int f = 0; f < p->factor_count; f++)
+            if (strcmp(p->factor[f].key, key) == 0)
+                return sf_config_refuse(config, s, err, "set: %s is a factor, at %s", key,
+                                        p->factor[f].where);
+    }
     return SF_OK;
 }
 

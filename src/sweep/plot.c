@@ -16,7 +16,9 @@ static const sf_sweep_picture pictures[] = {
     {"effects", "Main effects: the range of the means between the values of a factor, the greatest on top"},
     {"indices", "Sobol' indices, first order and total, with 95 % intervals"},
     {"surface", "Response surface: each run as the surface without the runs of its place predicts it"},
-    {"probability", "Probability of staying below the limit"},
+    {"probability",
+     "Probability of staying below the limit; where a \"?\" stands, unknown runs (failed, or not to be "
+     "used) are taken as above"},
     {NULL, NULL}};
 
 static const char *const colours[SERIES] = {"#08519c", "#cb181d", "#238b45", "#6a51a3",
@@ -465,7 +467,7 @@ static void put_level_tics(FILE *g, const char *axis, const sf_plan *p, int bloc
 
 enum { MAP_INTERVALS = 8 }; /* columns of a map in which there is room for them */
 
-/* A cell with unknown runs, which its share leaves out, has a "?". */
+/* A cell with unknown runs, which its share takes as above, has a "?". */
 static void put_map(FILE *g, const sf_analysis *a, int figure, const int *block) {
     const sf_plan *p = a->plan;
     int64_t nx = p->block[block[0]].rows, ny = p->block[block[1]].rows;
@@ -501,11 +503,15 @@ static void put_line(FILE *g, const sf_analysis *a, int figure, const int *block
     fprintf(g, "set yrange [-0.02:1.02]\nset ylabel 'probability'\n$q%d << EOD\n", figure);
     for (int64_t k = 0; k < q->cells; k++) {
         const sf_probability *c = &q->cell[figure * q->cells + k];
-        fprintf(g, "%lld,%.6g,%.6g,%.6g\n", (long long)k, c->share, c->low, c->high);
+        fprintf(g, "%lld,%.6g,%.6g,%.6g,%s\n", (long long)k, c->share, c->low, c->high,
+                c->unknown > 0 ? "?" : "");
     }
     fprintf(g, "EOD\nset title 'P(%s < %g), 95 %% interval'\n", a->plan->figure[figure].figure,
             a->plan->figure[figure].limit);
-    fprintf(g, "plot $q%d using 1:2:3:4 with yerrorbars pt 7 lw 2 lc rgb '#08519c' notitle\n", figure);
+    fprintf(g,
+            "plot $q%d using 1:2:3:4 with yerrorbars pt 7 lw 2 lc rgb '#08519c' notitle, \\\n"
+            "     '' using 1:2:5 with labels offset 1.5,0 notitle\n",
+            figure);
 }
 
 static sf_status plot_probability(const sf_staging *output, const sf_analysis *a, sf_error *err) {

@@ -57,7 +57,7 @@ void sf_probability_judge(sf_probability *p, double independent) {
     double all = (double)(p->below + p->above + p->unknown), part = all > independent ? independent / all : 1,
            n = part * all, certain = part * (double)p->below,
            possible = part * (double)(p->below + p->unknown);
-    p->share = p->below + p->above > 0 ? (double)p->below / (double)(p->below + p->above) : NAN;
+    p->share = all > 0 ? (double)p->below / all : NAN;
     p->low = certain > 0 ? gsl_cdf_beta_Pinv(TAIL, certain, n - certain + 1) : 0;
     p->high = possible < n ? gsl_cdf_beta_Pinv(1 - TAIL, possible + 1, n - possible) : 1;
 }

@@ -9,11 +9,12 @@
 enum { SF_PROBABILITY_CELLS = 4096 };
 
 /* Of one combination and one figure. A run that ended because the missile reached the anvil is above every
- * limit. Runs that failed otherwise or are not to be used are unknown: the interval counts them as above for
- * its low end and as below for its high end. */
+ * limit. Runs that failed otherwise or are not to be used are unknown: mostly the hardest drops, so that a
+ * share of the others alone would be too kind. The share and the low end of the interval count them as above,
+ * its high end as below. */
 typedef struct sf_probability {
     int64_t below, above, unknown;
-    double share;     /* of those that are known; NaN: none */
+    double share;     /* `below` of all three; NaN: no run */
     double low, high; /* the 95 % interval of Clopper and Pearson */
 } sf_probability;
 

@@ -245,6 +245,9 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
         snprintf(title, sizeof title, "P(%s < %g)", r->plan->figure[k].figure, r->plan->figure[k].limit);
         snprintf(value, sizeof value, "%.3f", c->share);
         snprintf(remark, sizeof remark, "95 %% interval %.3f to %.3f", c->low, c->high);
+        if (c->unknown > 0)
+            snprintf(remark, sizeof remark, "%.3f to %.3f; %lld unknown runs are taken as above", c->low,
+                     c->high, (long long)c->unknown);
         sf_html_tile(page, "plain", title, value, remark);
     }
     sf_html_tiles_end(page);
@@ -328,11 +331,21 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
     sf_html_note(
         page,
         "Over the uncertain factors of the plan, all draws equally probable; the interval (Clopper and Pearson) "
-        "is that of the number of runs, and takes the unknown ones (failed, or not to be used) as above for its "
-        "low end and as below for its high end. A run that reached the anvil counts as above. It holds neither "
+        "is that of the number of runs. Unknown ones (failed, or not to be used) are taken as above, and as "
+        "below for the high end of the interval alone. A run that reached the anvil counts as above. It holds neither "
         "the error of the model nor what the plan does not vary.%s%s",
         q->open > 0 ? " Open runs are not counted." : "",
         q->cells > CELLS_LISTED ? " sweep.json has the other combinations." : "");
+}
+
+/* Means and fits of a part that the outcome has chosen. */
+static void note_missing(FILE *page, const sf_sweep_report *r, const char *what) {
+    int64_t missing = r->plan->rows - (r->analysis->done - r->analysis->unusable);
+    if (missing > 0)
+        sf_html_note(page,
+                     "%lld of %lld runs are left out (failed, not to be used, or open). These are no random "
+                     "part, but mostly the hardest drops: %s.",
+                     (long long)missing, (long long)r->plan->rows, what);
 }
 
 static void put_effects(FILE *page, const sf_sweep_report *r) {
@@ -358,6 +371,7 @@ static void put_effects(FILE *page, const sf_sweep_report *r) {
         "Means over all runs whose figures count. More than %d numbers are taken in %d parts; of draws of "
         "an unknown the means at 5 and 95 %% of them are shown.",
         SF_EFFECT_LEVELS, SF_EFFECT_BINS);
+    note_missing(page, r, "the means of hard levels are too low, and their bars too short");
     if (scatter)
         sf_html_note(
             page,
@@ -384,13 +398,17 @@ static void put_indices(FILE *page, const sf_sweep_report *r) {
             sf_html_cell(&t, isnan(i->first_low) ? "–" : "%.3f to %.3f", i->first_low, i->first_high);
             sf_html_number(&t, 3, i->total);
             sf_html_cell(&t, isnan(i->total_low) ? "–" : "%.3f to %.3f", i->total_low, i->total_high);
-            sf_html_number(&t, 0, (double)a->index_samples[k]);
+            sf_html_cell(&t, "%lld of %lld", (long long)a->index_samples[k],
+                         (long long)sf_plan_saltelli(r->plan)->samples);
         }
     sf_html_table_end(&t);
     sf_html_note(
         page,
-        "Estimators of Saltelli (2010) and Jansen, intervals by bootstrap. A sample of which one run failed "
-        "is left out as a whole.");
+        "Estimators of Saltelli (2010) and Jansen, intervals by bootstrap. A sample of which one run has no "
+        "figure (failed, or not to be used) is left out as a whole. Such runs are mostly the hardest drops: "
+        "a figure has no indices where fewer than %.0f %% of the samples are left, as these are no random "
+        "part of all. Take narrower ranges, or a thicker pad.",
+        100 * SF_INDEX_SHARE);
 }
 
 static void put_surfaces(FILE *page, const sf_sweep_report *r) {
@@ -415,6 +433,7 @@ static void put_surfaces(FILE *page, const sf_sweep_report *r) {
         "A quadratic of the factors that are numbers, with a constant for each level of chosen words; what is "
         "uncertain and no number is scatter about it. The error is that at each run by the surface without "
         "all runs of its place in these factors; Q² is 1 less its square over the variance. The coefficients are in sweep.json.");
+    note_missing(page, r, "the surface says nothing about where they are");
 }
 
 static void put_failures(FILE *page, const sf_sweep_report *r) {
@@ -480,6 +499,13 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
             fprintf(out, "  run %lld failed: %s\n", (long long)row + 1, r->runs->message[row]);
     if (a->failed > listed)
         fprintf(out, "  %lld more in runs.csv; --retry does them again\n", (long long)a->failed - listed);
+    for (int k = 0; k < r->plan->figure_count && a->with_indices; k++)
+        if (isnan(a->index[k][0].first))
+            fprintf(
+                out,
+                "  %s: no Sobol' indices: it does not vary, or too few samples have all runs, %lld of %lld\n",
+                r->plan->figure[k].figure, (long long)a->index_samples[k],
+                (long long)sf_plan_saltelli(r->plan)->samples);
     for (int k = 0; k < r->plan->figure_count; k++) {
         const sf_quadratic *s = &a->surface[k].fit;
         if (s->terms > 0 && *s->problem)
