@@ -271,9 +271,10 @@ static void an_engine_that_is_missing_is_named_with_its_package(void **state) {
         {{.name = "snakemake"}, "Snakemake is not installed (package snakemake of Debian)"},
         {{.name = "make"}, "the engines are local and snakemake"},
         {{.profile = "slurm"}, "add --engine snakemake"},
+        {{.per_job = 3}, "--per-job 3: jobs are Snakemake's: add --engine snakemake"},
     };
     setenv("PATH", program_path(p, "tree/bin"), 1);
-    for (size_t k = 0; k < 3; k++) {
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         sf_error err = SF_ERROR_INIT;
         sf_engine_check(&cases[k].engine, &err);
         if (!strstr(err.text, cases[k].part))

@@ -240,7 +240,7 @@ static void set_replaces_a_group_by_a_file(void **state) {
     snprintf(set, sizeof set, "material=@%s", in_folder("materials/other.cfg"));
     snprintf(where, sizeof where, "%s:2: material.E", in_folder("materials/other.cfg"));
     assert_refused(GOOD, set, where, NULL);
-    assert_refused(GOOD, "material=@none.cfg", "the case file none.cfg cannot be read", NULL);
+    assert_refused(GOOD, "material=@none.cfg", "the file none.cfg cannot be read", NULL);
     write_file("materials/broken.cfg", "density = ;\n");
     snprintf(set, sizeof set, "material=@%s", in_folder("materials/broken.cfg"));
     assert_refused(GOOD, set, "broken.cfg:1: syntax error", NULL);

@@ -562,6 +562,58 @@ static void free_evaluated(sf_plan *plan, sf_runs *runs, sf_analysis *a) {
 
 /* Ten draws in 40 rows, over the folder of the test before: the means of four runs each are mostly scatter of
  * the other factors. */
+/* Twenty rows, each of other numbers: no mean of one row is an effect. a_max = 100 sqrt(x) + y / 3 has 100
+ * from x and 3 from y between 0 and 9, the surface is off by 1 or so; z does nothing. */
+static void numbers_that_are_sampled_have_the_effect_of_the_surface(void **state) {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    evaluate_plan(
+        *state,
+        "{ sample = \"latin_hypercube\"; count = 20; of = ( { key = \"a.x\"; low = 1.0; high = 4.0; },"
+        "{ key = \"a.y\"; low = 0.0; high = 9.0; }, { key = \"a.z\"; low = 0.0; high = 1.0; } ); }",
+        &plan, &runs, &a);
+    assert_true(a.surface[0].fit.q2 > 0.99);
+    const sf_effect *e = a.effect[0];
+    const double expected[3] = {100 * (sqrt(4) - sqrt(1)), 3, 0};
+    for (int k = 0; k < 3; k++) {
+        const double *value = plan.factor[k].value;
+        double range = k == 0 ? 3 : k == 1 ? 9 : 1, least = INFINITY, greatest = -INFINITY;
+        for (int row = 0; row < 20; row++) {
+            least = value[row] < least ? value[row] : least;
+            greatest = value[row] > greatest ? value[row] : greatest;
+        }
+        assert_close(e[k].last - e[k].first, expected[k] * (greatest - least) / range, 4);
+        assert_true(e[k].low <= e[k].first && e[k].high >= e[k].last);
+    }
+    free_evaluated(&plan, &runs, &a);
+}
+
+/* A run of x = 1 fails: without it the mean of its y would be that of greater x, 22 more than that of the
+ * other y. */
+static void main_effects_are_over_combinations_that_are_whole(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+    sf_error err;
+    formula f = {.fails = 3};
+    sweep_read_plan(p, GRID, &plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+    assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
+    assert_int_equal(sf_analysis_make(&runs, &a, &err), SF_OK);
+    const sf_effect *x = &a.effect[0][0], *y = &a.effect[0][1];
+    assert_int_equal(x->used, 5);
+    assert_int_equal(x->of, 6);
+    assert_int_equal(y->used, 9);
+    assert_int_equal(y->of, 10);
+    assert_relative(x->last - x->first, 100, 1e-8);
+    assert_relative(y->high - y->low, 5.0 / 3, 1e-6);
+    sf_analysis_free(&a);
+    sf_runs_free(&runs);
+    sf_plan_free(&plan);
+}
+
 static void draws_that_are_sampled_with_others_have_no_main_effect(void **state) {
     sf_plan plan;
     sf_runs runs;
@@ -805,6 +857,8 @@ int main(void) {
         cmocka_unit_test(the_folder_of_another_plan_is_refused),
         cmocka_unit_test(the_probability_is_over_what_is_uncertain),
         cmocka_unit_test(a_surface_of_very_many_rows_has_every_level),
+        cmocka_unit_test(numbers_that_are_sampled_have_the_effect_of_the_surface),
+        cmocka_unit_test(main_effects_are_over_combinations_that_are_whole),
         cmocka_unit_test(draws_that_are_sampled_with_others_have_no_main_effect),
         cmocka_unit_test(draws_that_are_sampled_count_once_in_the_interval),
         cmocka_unit_test(an_estimate_counts_the_rows_that_are_done_again),

@@ -101,6 +101,9 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
         {"{ key = \"material\"; posterior = \"none\"; }", "there is no draw-001.cfg"},
         {"{ key = \"material\"; files = [\"none.cfg\"]; }", "none.cfg"},
         {"{ key = \"a.b\"; values = [1]; name = \"hic\"; }", "\"hic\" is a column of runs.csv"},
+        {"{ key = \"material\"; values = [\"@foam.cfg\"]; }", "material is given by a file: give files"},
+        {"{ sample = \"saltelli\"; count = 7; of = ( { key = \"a.b\"; low = 0.0; high = 1.0; } ); }",
+         "Sobol' indices need 8 samples"},
         {"{ key = \"output.frame_interval\"; values = [\"1 ms\", \"2 ms\"]; }",
          "output.frame_interval has no effect in a campaign"},
         {"{ key = \"a.b\"; values = [1]; } ); set = ( \"output.fields = [\\\"strain\\\"]\"",
@@ -131,9 +134,9 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
         {"{ key = \"material\"; posterior = \"none\"; draws = 1.5; }",
          "draws is 1.5; it must be a whole number"},
         {"{ key = \"geometry.file\"; values = [\"a.geo\"]; }",
-         "geometry.file is the name of a file: give files, relative to the plan"},
+         "geometry.file is given by a file: give files, relative to the plan"},
         {"{ key = \"material.curve\"; values = [\"/a.csv\", \"b.csv\"]; }",
-         "material.curve is the name of a file"},
+         "material.curve is given by a file"},
         {"", "factors must be a list"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
@@ -169,6 +172,28 @@ static void keys_and_units_that_a_case_does_not_take_are_refused(void **state) {
         sf_sweep_check_inputs(&plan, &hash, &err);
         if (err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].part) || !strstr(err.text, "plan.cfg:2"))
             fail_msg("%zu: \"%s\" expected in: %s", k, cases[k].part, err.text);
+        sf_plan_free(&plan);
+    }
+}
+
+/* An error of `set` has the line of `set`, that of a factor its own. */
+static void what_set_does_wrong_is_told_of_set(void **state) {
+    static const struct {
+        const char *factors, *part;
+    } cases[] = {
+        {"{ key = \"missile.velocity\"; values = [\"4 m/s\"]; } );\nset = ( \"pad.base=glued\", \"missile.mas=4 kg\"",
+         "plan.cfg:3: --set missile.mas="},
+        {"{ key = \"missile.mass\"; values = [\"4 m\"]; } );\nset = ( \"pad.base=glued\"",
+         "plan.cfg:2: --set missile.mass="},
+    };
+    for (size_t k = 0; k < 2; k++) {
+        sf_plan plan;
+        sf_error err = SF_ERROR_INIT;
+        uint64_t hash;
+        sweep_read_plan(*state, cases[k].factors, &plan);
+        assert_int_equal(sf_sweep_check_inputs(&plan, &hash, &err), SF_ERR_INPUT);
+        if (!strstr(err.text, cases[k].part))
+            fail_msg("%s", err.text);
         sf_plan_free(&plan);
     }
 }
@@ -409,6 +434,7 @@ int main(void) {
         cmocka_unit_test(a_material_comes_before_its_keys_and_ranges_hold_both_ends),
         cmocka_unit_test(plans_that_cannot_be_meant_are_refused),
         cmocka_unit_test(keys_and_units_that_a_case_does_not_take_are_refused),
+        cmocka_unit_test(what_set_does_wrong_is_told_of_set),
         cmocka_unit_test(values_that_are_zipped_are_checked_together),
         cmocka_unit_test(the_inputs_are_known_by_their_contents),
         cmocka_unit_test(geometries_of_one_text_in_two_folders_are_refused),

@@ -2,6 +2,7 @@
 #include "campaign/engine.h"
 
 #include "campaign/run_folder.h"
+#include "io/plain_file.h"
 #include "io/process.h"
 #include <errno.h>
 #include <stdlib.h>
@@ -75,11 +76,14 @@ static sf_status check_profile(const char *name, sf_error *err) {
 }
 
 sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err) {
+    if (sf_engine_is_local(engine) && engine->profile)
+        return SF_FAIL(err, SF_ERR_INPUT, "--profile %s: profiles are Snakemake's: add --engine snakemake",
+                       engine->profile);
+    if (sf_engine_is_local(engine) && engine->per_job > 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "--per-job %d: jobs are Snakemake's: add --engine snakemake",
+                       engine->per_job);
     if (sf_engine_is_local(engine))
-        return engine->profile ? SF_FAIL(err, SF_ERR_INPUT,
-                                         "--profile %s: profiles are Snakemake's: add --engine snakemake",
-                                         engine->profile)
-                               : SF_OK;
+        return SF_OK;
     if (strcmp(engine->name, "snakemake") != 0)
         return SF_FAIL(err, SF_ERR_INPUT, "--engine %s: the engines are local and snakemake", engine->name);
     if (!sf_process_is_in_path("snakemake"))
@@ -132,6 +136,18 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
     if (reason != 0)
         return SF_FAIL(err, SF_ERR_IO, "snakemake cannot be run: %s", strerror(reason));
     return sf_process_stopped() ? sf_run_folder_interrupted(err) : SF_OK;
+}
+
+void sf_engine_complaint(const char *log, char *out, size_t size) {
+    static const char begin[] = "sbatch: ";
+    sf_error ignored = SF_ERROR_INIT;
+    char *text = NULL, *line;
+    *out = '\0';
+    sf_plain_read(log, NULL, SF_PLAIN_TEXT, &text, NULL, &ignored);
+    for (char *rest = text; rest && (line = strsep(&rest, "\n"));)
+        if (strncmp(line, begin, strlen(begin)) == 0)
+            snprintf(out, size, " (%.300s)", line);
+    free(text);
 }
 
 bool sf_engine_option(int key, const char *text, sf_runner_engine *engine, sf_error *err) {

@@ -407,7 +407,9 @@ static sf_status simulate_here(batch *b, sf_error *failure, sf_error *err) {
 /* What the engine left: a drop without results and without a sentence was not run to its end. */
 static void look_again(const batch *b, const sf_manifest *m, const char *manifest, int code,
                        sf_error *failure) {
-    char path[SF_RUN_PATH_SIZE];
+    char path[SF_RUN_PATH_SIZE], log[SF_RUN_PATH_SIZE], complaint[320];
+    snprintf(log, sizeof log, "%.*slog.txt", (int)(strrchr(manifest, '/') + 1 - manifest), manifest);
+    sf_engine_complaint(log, complaint, sizeof complaint);
     for (int k = 0, last; k < m->count; k = last) {
         last = sf_manifest_group_end(m, k);
         sf_manifest_outcome_path(manifest, m->run[k].group, path, sizeof path);
@@ -416,11 +418,10 @@ static void look_again(const batch *b, const sf_manifest *m, const char *manifes
             located l;
             if (locate(b->runner, &m->run[j].drop, &l, &failure[j]) == SF_OK &&
                 !sf_run_folder_is_finished(&l.at))
-                SF_FAIL(
-                    &failure[j], SF_ERR_IO,
-                    "snakemake (exit code %d) left the drop in %s undone; %.*slog.txt says why; run the same "
-                    "command again to resume",
-                    code, l.at.path, (int)(strrchr(manifest, '/') + 1 - manifest), manifest);
+                SF_FAIL(&failure[j], SF_ERR_IO,
+                        "snakemake (exit code %d) left the drop in %.300s undone%s; see %.300s; run the same "
+                        "command again to resume",
+                        code, l.at.path, complaint, log);
         }
         sf_folder_remove_file(path);
     }

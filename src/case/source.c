@@ -132,12 +132,12 @@ static sf_status copy_text(text_copy *copy, const char *path, const char *from, 
         snprintf(where, sizeof where, "%s:%d: ", from, line);
     if (depth > INCLUDE_DEPTH)
         return SF_FAIL(err, SF_ERR_INPUT, "%s@include is nested more than %d deep", where, INCLUDE_DEPTH);
-    if (sf_plain_read(path, "case file", LARGEST_TEXT, &text, &size, &inner) != SF_OK)
+    if (sf_plain_read(path, "file", LARGEST_TEXT, &text, &size, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "%s%s", where, inner.text);
     size_t mark = strncmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark */
     copy->bytes += size;                                         /* includes of includes multiply */
     if (copy->bytes > LARGEST_TEXT)
-        SF_FAIL(err, SF_ERR_INPUT, "%sthe case file %s and its includes are larger than %d bytes", where,
+        SF_FAIL(err, SF_ERR_INPUT, "%sthe file %s and its includes are larger than %d bytes", where,
                 path, LARGEST_TEXT);
     else
         copy_lines(copy, text + mark, size - mark, path, depth, err);

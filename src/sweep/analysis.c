@@ -116,6 +116,9 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     }
     if (err->status == SF_OK)
         sf_quadratic_fit(d, offsets, s->rows, x, s->simulated, &s->fit, s->left_out, err);
+    for (int i = 0; i < d && err->status == SF_OK; i++)
+        if (sf_effect_is_by_surface(a->plan, numbers[i]))
+            sf_effect_of_surface(&s->fit, i, s->rows, x, &a->effect[figure][numbers[i]]);
     free(x);
     gsl_rng_free(random);
     return err->status;

@@ -217,10 +217,10 @@ static sf_status read_files(reading *r, const config_setting_t *list, sf_error *
     return err->status;
 }
 
-/* The case would look for it beside itself, not beside the plan. */
-static bool is_relative_file(const sf_factor *f, const config_setting_t *s) {
+/* The case would look for it beside itself, not beside the plan; a group takes a file and nothing else. */
+static bool is_file(const sf_factor *f, const config_setting_t *s) {
     const char *text = config_setting_get_string(s);
-    return text && *text && *text != '/' && sf_case_key_is_file(f->key);
+    return is_group(f->key) || (text && *text && *text != '/' && sf_case_key_is_file(f->key));
 }
 
 static sf_status read_values(reading *r, const config_setting_t *list, sf_error *err) {
@@ -230,10 +230,10 @@ static sf_status read_values(reading *r, const config_setting_t *list, sf_error 
         return err->status;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
-        if (is_relative_file(r->factor, s))
+        if (is_file(r->factor, s))
             return sf_config_refuse(
                 r->config, s, err,
-                "%s is the name of a file: give files, relative to the plan, in place of values",
+                "%s is given by a file: give files, relative to the plan, in place of values",
                 r->factor->key);
         if (words)
             take_word(r, s, k, err);

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-enum { LEAST = 8, RESAMPLES = 1000, FEWER_RESAMPLES = 200, LARGE = 200000 };
+enum { RESAMPLES = 1000, FEWER_RESAMPLES = 200, LARGE = 200000 };
 
 typedef struct sample {
     int d;
@@ -110,7 +110,7 @@ sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index 
         index[i] = (sf_index){NAN, NAN, NAN, NAN, NAN, NAN};
     if (s.place) {
         list_whole(&s);
-        if (s.used >= LEAST && (double)s.used >= SF_INDEX_SHARE * (double)n)
+        if (s.used >= SF_INDEX_LEAST && (double)s.used >= SF_INDEX_SHARE * (double)n)
             evaluate(&s, seed, index, err);
     }
     *used = s.used;

@@ -16,8 +16,24 @@ sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_er
     return sf_case_read(plan->case_path, count, list, NULL, c, err);
 }
 
-/* Enters the key of a row, which is 0 if its case is refused, into the hash. The sentence names the factor.
- */
+/* Does an entry of `set` alone give this sentence? */
+static bool is_of_set(const sf_plan *p, const char *sentence) {
+    bool found = false;
+    for (int k = 0; k < p->set_count && !found; k++) {
+        char text[SF_SWEEP_OVERRIDE_SIZE];
+        const char *const list[] = {text};
+        sf_case c;
+        sf_error err = SF_ERROR_INIT;
+        sf_plan_set(p, k, text);
+        if (sf_case_read(p->case_path, 1, list, NULL, &c, &err) == SF_OK)
+            sf_case_free(&c);
+        found = strcmp(err.text, sentence) == 0;
+    }
+    return found;
+}
+
+/* Enters the key of a row, which is 0 if its case is refused, into the hash. The sentence names the line of
+ * the factor, or of `set`. */
 static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64_t *hash, uint64_t *own,
                        sf_error *err) {
     sf_case c;
@@ -32,7 +48,8 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     *hash = sf_hash_bytes(*hash, own, sizeof *own);
     if (inner.status == SF_OK)
         return SF_OK;
-    return SF_FAIL(err, inner.status, "%s: %.900s", f->where, inner.text);
+    return SF_FAIL(err, inner.status, "%s: %.900s", is_of_set(p, inner.text) ? p->set_where : f->where,
+                   inner.text);
 }
 
 /* Rows that the plan has: what stands beside a value in a zip or a sample belongs to it. All other blocks are

@@ -3,6 +3,7 @@
 
 #include "core/hash.h"
 #include "post/figures.h"
+#include "sweep/indices.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -160,6 +161,10 @@ static sf_status read_sample(const sf_config *config, const config_setting_t *gr
         sf_config_list(config, group, "of", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
         add_members(config, list, true, p, err) != SF_OK)
         return err->status;
+    if ((sf_sampling)method == SF_SAMPLING_SALTELLI && count < SF_INDEX_LEAST)
+        return sf_config_refuse(config, config_setting_get_member(group, "count"), err,
+                                "count: Sobol' indices need %d samples, and some hundreds to tell anything",
+                                SF_INDEX_LEAST);
     b->method = (sf_sampling)method;
     b->samples = (int64_t)count;
     b->seed = (uint64_t)seed;
@@ -230,6 +235,9 @@ static void key_of(const char *set, char *key, size_t size) {
 
 static sf_status read_set(const sf_config *config, sf_plan *p, sf_error *err) {
     const config_setting_t *list = config_lookup(&config->config, "set");
+    int line = list ? (int)config_setting_source_line(list) : 0;
+    const char *file = sf_case_source_find(&config->source, line, &line);
+    snprintf(p->set_where, sizeof p->set_where, "%.480s:%d", file, line);
     SF_TRY(sf_config_overrides(config, "set", SF_RUNNER_OVERRIDES, p->set, &p->set_count, err));
     if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES)
         return sf_config_refuse(config, list, err, "set and the factors change more than %d keys",
@@ -332,7 +340,8 @@ bool sf_factor_is_group(const sf_factor *f) {
 }
 
 /* A file in place of a group is relative to the plan. */
-static void set_override(const sf_plan *p, const char *set, char *text) {
+void sf_plan_set(const sf_plan *p, int k, char *text) {
+    const char *set = p->set[k];
     const char *file = sf_case_override_file(set);
     if (file && *file != '/')
         snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%.*s%s/%s", (int)(file - set), set, p->folder, file);
@@ -348,7 +357,7 @@ int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERR
                 sf_factor_override(&p->factor[f], sf_plan_value(p, f, row), text[count++],
                                    SF_SWEEP_OVERRIDE_SIZE);
         for (int k = 0; groups && k < p->set_count; k++)
-            set_override(p, p->set[k], text[count++]);
+            sf_plan_set(p, k, text[count++]);
     }
     return count;
 }

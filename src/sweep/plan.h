@@ -40,7 +40,8 @@ typedef struct sf_plan {
     char *case_path;  /* owned */
     char *title;      /* owned; NULL: none */
     int set_count;
-    char *set[SF_RUNNER_OVERRIDES]; /* "group.key=value" of every run; owned */
+    char *set[SF_RUNNER_OVERRIDES];       /* "group.key=value" of every run; owned */
+    char set_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of their list, for sentences */
     int factor_count, block_count;
     sf_factor factor[SF_SWEEP_FACTORS];
     int block_of[SF_SWEEP_FACTORS];
@@ -63,6 +64,9 @@ bool sf_factor_is_group(const sf_factor *f);
 
 /* The overrides of a row in the order in which they apply, and their number; text [SF_RUNNER_OVERRIDES]. */
 int sf_plan_overrides(const sf_plan *plan, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE]);
+
+/* Entry k of `set` as an override; text [SF_SWEEP_OVERRIDE_SIZE]. */
+void sf_plan_set(const sf_plan *plan, int k, char *text);
 
 /* A hash of the rows: of keys, units and values. */
 uint64_t sf_plan_hash(const sf_plan *plan);

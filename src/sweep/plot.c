@@ -13,7 +13,8 @@ static const sf_sweep_picture pictures[] = {
     {"factors",
      "Each figure against the factors that are numbers (the first four of them): a point is a run, lines join the means"},
     {"curves", "Deceleration over time of the runs (of more than 200 runs 200, drawn at random)"},
-    {"effects", "Main effects: the range of the means between the values of a factor, the greatest on top"},
+    {"effects",
+     "Main effects, all else equal: the range of the means between the values of a factor, the greatest on top"},
     {"indices", "Sobol' indices, first order and total, with 95 % intervals"},
     {"surface", "Response surface: each run as the surface without the runs of its place predicts it"},
     {"probability",
@@ -200,7 +201,7 @@ static void put_factor_panel(FILE *g, const sf_analysis *a, int figure, bool key
     const sf_sweep_limit *limit = &a->plan->figure[figure];
     put_factor_label(g, "set xlabel", &a->plan->factor[factor]);
     put_label(g, "set ylabel", limit->figure);
-    fputs(key && s->factor >= 0 ? "set key top left\n" : "unset key\n", g);
+    fputs(key && s->factor >= 0 ? "set key outside top center maxrows 3\n" : "unset key\n", g);
     fputs("plot ", g);
     if (!isnan(limit->limit))
         fprintf(g, "%.9g with lines lw 2 dt 2 lc rgb '#cb181d' notitle, \\\n     ", limit->limit);
@@ -222,7 +223,7 @@ static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, sf
             list[columns++] = f;
     if (columns == 0 || figures == 0)
         return SF_OK;
-    FILE *g = sf_gnuplot_begin(output, "factors", columns > 1 ? 1800 : 1300, 620 * figures, err);
+    FILE *g = sf_gnuplot_begin(output, "factors", columns > 1 ? 900 * columns : 1300, 660 * figures, err);
     for (int c = 0; c < columns && g && err->status == SF_OK; c++)
         if (choose_series(a->plan, list[c], &s[c], err) == SF_OK)
             put_factor_data(g, a, c, list[c], &s[c], err);
@@ -395,7 +396,7 @@ static sf_status plot_indices(const sf_staging *output, const sf_analysis *a, sf
     FILE *g = sf_gnuplot_begin(output, "indices", 1600, (240 + 70 * a->plan->factor_count) * figures, err);
     if (!g)
         return err->status;
-    fprintf(g, "set multiplot layout %d,1\nset lmargin 26\nset key top right\n", figures);
+    fprintf(g, "set multiplot layout %d,1\nset lmargin 26\nset key outside top right horizontal\n", figures);
     for (int k = 0; k < figures; k++)
         put_index_panel(g, a, panel[k]);
     fputs("unset multiplot\n", g);
@@ -449,7 +450,7 @@ static int list_chosen(const sf_plan *p, int *block) {
 static void put_level_tics(FILE *g, const char *axis, const sf_plan *p, int block) {
     const sf_block *b = &p->block[block];
     const sf_factor *f = &p->factor[b->first];
-    char text[128];
+    char text[512];
     fprintf(g, "set %stics (", axis);
     for (int64_t k = 0; k < b->rows; k++) {
         if (f->words)
@@ -461,6 +462,10 @@ static void put_level_tics(FILE *g, const char *axis, const sf_plan *p, int bloc
     }
     fprintf(g, "set %srange [-0.5:%g]\nset %slabel ", axis, (double)b->rows - 0.5, axis);
     sf_factor_heading(f, text, sizeof text);
+    size_t used = strlen(text);
+    for (int k = b->first + 1; k < b->first + b->count && used < sizeof text;
+         k++) /* those of a zip go along */
+        used += (size_t)snprintf(text + used, sizeof text - used, ", with %s", p->factor[k].name);
     put_text(g, text);
     fputc('\n', g);
 }

@@ -109,6 +109,9 @@ static void json_effects(sf_json *j, const sf_sweep_report *r, int figure) {
         sf_json_number(j, "high", e->high);
         sf_json_number(j, "at_least_value", e->first);
         sf_json_number(j, "at_greatest_value", e->last);
+        sf_json_bool(j, "by_response_surface", sf_effect_is_by_surface(r->plan, f));
+        sf_json_integer(j, "combinations", e->used);
+        sf_json_integer(j, "all_combinations", e->of);
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -348,11 +351,24 @@ static void note_missing(FILE *page, const sf_sweep_report *r, const char *what)
                      (long long)missing, (long long)r->plan->rows, what);
 }
 
+/* What a main effect stands on. */
+static void put_ground(sf_html_table *t, const sf_plan *p, int factor, const sf_effect *e) {
+    if (sf_effect_is_by_surface(p, factor))
+        sf_html_cell(t, isnan(e->low) ? "no good response surface" : "the response surface");
+    else if (sf_effect_is_scatter(p, factor))
+        sf_html_cell(t, "–");
+    else if (e->of > 0)
+        sf_html_cell(t, "%lld of %lld combinations", (long long)e->used, (long long)e->of);
+    else
+        sf_html_cell(t, "all runs that count");
+}
+
 static void put_effects(FILE *page, const sf_sweep_report *r) {
     bool scatter = false;
     sf_html_heading(page, "Main effects");
     sf_html_table t = sf_html_table_begin(
-        page, "dense", "figure|factor|>lowest mean|>highest mean|>at the least value|>at the greatest value");
+        page, "dense",
+        "figure|factor|>lowest mean|>highest mean|>at the least value|>at the greatest value|over");
     for (int k = 0; k < r->plan->figure_count; k++)
         for (int f = 0; f < r->plan->factor_count; f++) {
             const sf_effect *e = &r->analysis->effect[k][f];
@@ -363,15 +379,18 @@ static void put_effects(FILE *page, const sf_sweep_report *r) {
             sf_html_number(&t, 1, e->high);
             sf_html_number(&t, 1, e->first);
             sf_html_number(&t, 1, e->last);
+            put_ground(&t, r->plan, f, e);
             scatter |= sf_effect_is_scatter(r->plan, f);
         }
     sf_html_table_end(&t);
     sf_html_note(
         page,
-        "Means over all runs whose figures count. More than %d numbers are taken in %d parts; of draws of "
-        "an unknown the means at 5 and 95 %% of them are shown.",
-        SF_EFFECT_LEVELS, SF_EFFECT_BINS);
-    note_missing(page, r, "the means of hard levels are too low, and their bars too short");
+        "All else equal: means over those combinations of the other blocks of the plan of which all runs "
+        "count. More than %d numbers are taken in %d parts; of draws of an unknown the means at 5 and 95 %% of "
+        "them are shown. Numbers that a sample mixes with others: between their least and their greatest "
+        "value by the response surface, if its Q² is %g or more.",
+        SF_EFFECT_LEVELS, SF_EFFECT_BINS, SF_EFFECT_Q2);
+    note_missing(page, r, "an effect there may be far greater than in the combinations that are whole");
     if (scatter)
         sf_html_note(
             page,
@@ -454,8 +473,10 @@ static void put_failures(FILE *page, const sf_sweep_report *r) {
         sf_html_cell(&t, "%s", r->runs->message[row] ? r->runs->message[row] : "");
     }
     sf_html_table_end(&t);
-    sf_html_note(page, "%sThe same command with --retry does the failed ones again.",
-                 a->failed + a->unusable > LISTED ? "The others are in runs.csv. " : "");
+    if (a->failed + a->unusable > LISTED)
+        sf_html_note(page, "The others are in runs.csv.");
+    if (a->failed > 0)
+        sf_html_note(page, "The same command with --retry does the failed ones again.");
 }
 
 sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
