@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 enum { MATERIAL_SIZE = PATH_MAX + 64 };
@@ -404,12 +405,11 @@ static sf_status simulate_here(batch *b, sf_error *failure, sf_error *err) {
     return err->status;
 }
 
-/* What the engine left: a drop without results and without a sentence was not run to its end. */
+/* What the engine left: a drop without results and without a sentence was not run to its end. `complaint`: of
+ * the engine. */
 static void look_again(const batch *b, const sf_manifest *m, const char *manifest, int code,
-                       sf_error *failure) {
-    char path[SF_RUN_PATH_SIZE], log[SF_RUN_PATH_SIZE], complaint[320];
-    snprintf(log, sizeof log, "%.*slog.txt", (int)(strrchr(manifest, '/') + 1 - manifest), manifest);
-    sf_engine_complaint(log, complaint, sizeof complaint);
+                       const char *complaint, sf_error *failure) {
+    char path[SF_RUN_PATH_SIZE];
     for (int k = 0, last; k < m->count; k = last) {
         last = sf_manifest_group_end(m, k);
         sf_manifest_outcome_path(manifest, m->run[k].group, path, sizeof path);
@@ -418,10 +418,11 @@ static void look_again(const batch *b, const sf_manifest *m, const char *manifes
             located l;
             if (locate(b->runner, &m->run[j].drop, &l, &failure[j]) == SF_OK &&
                 !sf_run_folder_is_finished(&l.at))
-                SF_FAIL(&failure[j], SF_ERR_IO,
-                        "snakemake (exit code %d) left the drop in %.300s undone%s; see %.300s; run the same "
-                        "command again to resume",
-                        code, l.at.path, complaint, log);
+                SF_FAIL(
+                    &failure[j], SF_ERR_IO,
+                    "snakemake (exit code %d) left the drop in %.300s undone%s; see %.300s/" SF_MANIFEST_FOLDER
+                    "/log.txt; run the same command again to resume",
+                    code, l.at.path, complaint, b->runner->folder);
         }
         sf_folder_remove_file(path);
     }
@@ -456,8 +457,9 @@ static void tell_groups(void *context) {
  * alone, as few as keep them all at work. */
 static int choose_group_size(const batch *b) {
     const sf_runner_engine *engine = &b->runner->engine;
-    int size = sf_manifest_group_size(b->pending_count, engine->drop_seconds),
-        shared = (b->pending_count + b->runner->threads - 1) / b->runner->threads;
+    int processors = b->runner->threads > 0 ? b->runner->threads : 1,
+        size = sf_manifest_group_size(b->pending_count, engine->drop_seconds),
+        shared = (b->pending_count + processors - 1) / processors;
     if (engine->per_job > 0)
         return engine->per_job;
     return engine->profile || size < shared ? size : shared;
@@ -466,7 +468,8 @@ static int choose_group_size(const batch *b) {
 /* By the engine, group by group. `failure` by the pending ones. */
 static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) {
     const sf_runner *runner = b->runner;
-    char folder[SF_RUN_PATH_SIZE], path[SF_RUN_PATH_SIZE + 32];
+    char folder[SF_RUN_PATH_SIZE], path[SF_RUN_PATH_SIZE + 32], log[SF_RUN_PATH_SIZE + 32], complaint[320];
+    struct stat before = {0}; /* of the log, which goes on */
     sf_manifest m = {0};
     uint64_t *key = sf_alloc(err, (unsigned long)b->count, sizeof *key, "keys");
     int code = 0, size = choose_group_size(b);
@@ -474,6 +477,7 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
         key[k] = b->request[k].key;
     snprintf(folder, sizeof folder, "%s/" SF_MANIFEST_FOLDER, runner->folder);
     snprintf(path, sizeof path, "%s/" SF_MANIFEST_NAME, folder);
+    snprintf(log, sizeof log, "%s/log.txt", folder);
     if (err->status == SF_OK && sf_folder_own(folder, err) == SF_OK &&
         sf_manifest_write(path, runner->folder, b->pending_count, b->pending, b->drop, key, size, err) ==
             SF_OK &&
@@ -485,15 +489,18 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
                 sf_folder_remove_file(outcome);
         }
         if (runner->log) {
-            fprintf(runner->log, "  %d drops in jobs of %d by snakemake; its words are in %s/log.txt\n",
-                    b->pending_count, size, folder);
+            fprintf(runner->log, "  %d drops in jobs of %d by snakemake; its words are in %s\n",
+                    b->pending_count, size, log);
             fflush(runner->log);
         }
         elsewhere watched = {b, &m, path};
         b->start = now();
+        stat(log, &before);
         if (sf_engine_run(&runner->engine, runner->threads, path, runner->log ? tell_groups : NULL, &watched,
-                          &code, err) == SF_OK)
-            look_again(b, &m, path, code, failure);
+                          &code, err) == SF_OK) {
+            sf_engine_complaint(log, (size_t)before.st_size, complaint, sizeof complaint);
+            look_again(b, &m, path, code, complaint, failure);
+        }
     }
     sf_manifest_free(&m);
     free(key);
