@@ -223,7 +223,7 @@ static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, sf
             list[columns++] = f;
     if (columns == 0 || figures == 0)
         return SF_OK;
-    FILE *g = sf_gnuplot_begin(output, "factors", columns > 1 ? 900 * columns : 1300, 660 * figures, err);
+    FILE *g = sf_gnuplot_begin(output, "factors", columns > 1 ? 900 * columns : 1300, 620 * figures, err);
     for (int c = 0; c < columns && g && err->status == SF_OK; c++)
         if (choose_series(a->plan, list[c], &s[c], err) == SF_OK)
             put_factor_data(g, a, c, list[c], &s[c], err);
