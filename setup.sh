@@ -84,7 +84,7 @@ build() {
         { command -v help2man >/dev/null && grep -q '^SOFTFALL_HELP2MAN:.*NOTFOUND' build/CMakeCache.txt; }; then
         cmake --preset default
     fi
-    cmake --build build --parallel "$(nproc)" "$@"
+    cmake --build build --parallel "$(processors)" "$@"
 }
 
 build_programs() {
@@ -114,6 +114,11 @@ make_package() {
     (cd build && cpack -G DEB >cpack.log 2>&1) || fail "cpack failed: $(tail -n 5 build/cpack.log)"
     lintian --allow-root --fail-on error build/softfall_*.deb || fail "lintian finds errors in the package: see above"
     echo "The package is made; to install it, as root: apt-get install $(echo ./build/softfall_*.deb)"
+}
+
+# nproc would take OMP_NUM_THREADS for the number of processors.
+processors() {
+    env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc
 }
 
 run_tests() {
@@ -151,12 +156,12 @@ test)
     install_packages build run show test
     build
     # One test per core and one thread per test; tests of threading set their own number.
-    OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(nproc)"
+    OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(processors)"
     ;;
 slow)
     install_packages build run show test slow cluster slurm
     build
-    run_tests --label-regex slow --parallel "$(nproc)" # those that use every core run alone
+    run_tests --label-regex slow --parallel "$(processors)" # those that use every core run alone
     ;;
 build)
     install_packages build run
