@@ -14,6 +14,7 @@
 static const char HEAD[] = "softfall-manifest 1";
 enum { USUAL = 20, FEW_GROUPS = 200, MOST_FIELDS = 5 + SF_RUNNER_OVERRIDES };
 static const double JOB_SECONDS = 180;
+#define LARGEST (UINT64_C(1) << 32) /* bytes of a manifest: millions of drops */
 
 int sf_manifest_group_size(int count, double seconds) {
     int least = (count + SF_MANIFEST_GROUPS - 1) / SF_MANIFEST_GROUPS,
@@ -110,7 +111,7 @@ static bool take_run(char *line, sf_manifest_run *run) {
 
 sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
     *m = (sf_manifest){0};
-    if (sf_plain_read(path, "manifest", SF_PLAIN_ANY, &m->text, NULL, err) != SF_OK)
+    if (sf_plain_read(path, "manifest", LARGEST, &m->text, NULL, err) != SF_OK)
         return err->status;
     char *rest = m->text, *head = strsep(&rest, "\n");
     m->folder = take_value(&rest, "folder");
