@@ -38,7 +38,7 @@ int sf_manifest_group_size(int count, double seconds);
  * line end. */
 sf_status sf_manifest_write(const char *path, const char *runs, int count, const int *index,
                             const sf_runner_drop *drop, const uint64_t *key, int group_size, sf_error *err);
-/* Release with sf_manifest_free, also on failure. */
+/* Release with sf_manifest_free, also on failure. SF_ERR_INPUT: no manifest, damaged, or more than 4 GB. */
 sf_status sf_manifest_read(const char *path, sf_manifest *manifest, sf_error *err);
 void sf_manifest_free(sf_manifest *manifest);
 

@@ -206,6 +206,7 @@ def finish(process, code, words):
     text = process.communicate(timeout=3600)[0]
     expect(process.returncode == code and words in text, "exit code %d and \"%s\" expected" % (code, words),
            "%d, %s" % (process.returncode, text[-3000:]))
+    return text
 
 
 def find_snakemake(folder):
@@ -287,7 +288,8 @@ def finish_here(slurm, campaign):
     shutil.copytree(campaign.file("out"), campaign.file("copy"))
     begun = campaign.done()
     expect(0 < begun < DROPS, "the copy has drops that are done and drops that are not", begun)
-    finish(campaign.sweep("copy", "--jobs", "2"), 0, "%d runs: %d done, 0 failed, 0 open" % (DROPS, DROPS))
+    text = finish(campaign.sweep("copy", "--jobs", "2"), 0, "%d runs: %d done, 0 failed, 0 open" % (DROPS, DROPS))
+    expect("simulated, 0 were there" not in text, "drops that were done are not simulated again", text[-3000:])
     assert_same(campaign, "copy")
     tell(campaign, "a copy was finished on this machine alone, with the same bits")
 
