@@ -3,7 +3,7 @@
 #ifndef SF_BENCH_MACHINE_H
 #define SF_BENCH_MACHINE_H
 
-#include "core/error.h"
+#include "base/error.h"
 
 /* Triad a = b + s c over arrays far larger than the caches, on the present number of threads: bytes per
  * second, best of several, three arrays counted. */

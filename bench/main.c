@@ -2,10 +2,10 @@
 /* softfall-bench: steps of the 50 mm, 4.5 m/s drop at several spacings, without files, and how far they are
  * from what the machine can do. Writes JSON; docs/performance.md explains it. */
 #include "build_info.h"
-#include "core/program.h"
-#include "io/model_io.h"
+#include "base/program.h"
+#include "model/model_io.h"
 #include "machine.h"
-#include "io/json.h"
+#include "report/json.h"
 #include "pre/build.h"
 #include "pre/mesh/gmsh_session.h"
 #include "solver/step.h"

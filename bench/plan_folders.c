@@ -2,12 +2,12 @@
 /* plan_folders PLAN.cfg DIR FROM: makes the folder of each row of a plan below DIR/runs, as if its drop were
  * done: with the results and figures of one drop, linked from FROM-0 for the first 50,000 rows, FROM-1 for
  * the next, ..., as a file has at most 65,000 names on some file systems. For tools/campaign_rows.sh. */
-#include "campaign/run_folder.h"
-#include "core/program.h"
-#include "core/units.h"
+#include "study/run_folder.h"
+#include "base/program.h"
+#include "base/units.h"
 #include "io/folder.h"
-#include "sweep/drops.h"
-#include "sweep/plan.h"
+#include "study/sweep/drops.h"
+#include "study/sweep/plan.h"
 
 #include <errno.h>
 #include <inttypes.h>

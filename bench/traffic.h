@@ -4,7 +4,7 @@
 #ifndef SF_BENCH_TRAFFIC_H
 #define SF_BENCH_TRAFFIC_H
 
-#include "core/model.h"
+#include "model/model.h"
 #include "solver/operators.h"
 #include "solver/stopwatch.h"
 

@@ -2,7 +2,7 @@
 # Language level, warnings, optimisation and sanitizers, carried by the interface target softfall_options.
 option(SOFTFALL_TESTS "Build the tests" ON)
 option(SOFTFALL_NATIVE "Compile for the processor of this machine alone" OFF)
-option(SOFTFALL_THREADS_ALWAYS "Share small loops among threads too (core/threads.h), for analyses" OFF)
+option(SOFTFALL_THREADS_ALWAYS "Share small loops among threads too (base/threads.h), for analyses" OFF)
 option(SOFTFALL_WERROR "Treat warnings as errors" OFF)
 set(SOFTFALL_SANITIZE "" CACHE STRING "Comma list for -fsanitize=, e.g. address,undefined")
 
@@ -40,7 +40,7 @@ target_compile_options(softfall_options INTERFACE
 if(SOFTFALL_WERROR)
     target_compile_options(softfall_options INTERFACE -Werror)
 endif()
-# Kernels for several processors in one program (core/lanes.h); instrumented and plain builds do without.
+# Kernels for several processors in one program (base/lanes.h); instrumented and plain builds do without.
 if(SOFTFALL_NATIVE)
     target_compile_options(softfall_options INTERFACE -march=native)
 elseif(CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_C_COMPILER_VERSION VERSION_GREATER_EQUAL 12

@@ -4,7 +4,7 @@
 #define SF_TESTS_BODY_FIXTURE_H
 
 #include "pre/mesh/mesh.h"
-#include "solver/contact/missile_surface.h"
+#include "solver/contact/rigid_surface.h"
 
 /* A surface and the model around it that sf_missile_surface_build reads. */
 typedef struct body {

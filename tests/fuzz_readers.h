@@ -4,7 +4,7 @@
 #ifndef SF_TESTS_FUZZ_READERS_H
 #define SF_TESTS_FUZZ_READERS_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stddef.h>
 #include <stdint.h>
 

@@ -7,7 +7,7 @@
 #define SF_TESTS_MODEL_FIXTURE_H
 
 #include "pre/build.h"
-#include "solver/material/foam.h"
+#include "material/foam.h"
 #include "solver/operators.h"
 #include "solver/state.h"
 

@@ -4,7 +4,7 @@
 #ifndef SF_TESTS_POINT_FIXTURE_H
 #define SF_TESTS_POINT_FIXTURE_H
 
-#include "core/foam_card.h"
+#include "material/foam_card.h"
 #include <stdint.h>
 
 enum { POINT_CURVE_ROOM = 8192, POINT_CURVES = 3 };

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post_fixture.h"
 
-#include "core/units.h"
+#include "base/units.h"
 #include "io/h5.h"
 #include "io/provenance.h"
-#include "post/injury.h"
-#include "post/results.h"
+#include "post/figures/injury.h"
+#include "post/results/results.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

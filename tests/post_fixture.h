@@ -10,7 +10,7 @@
 #ifndef SF_TESTS_POST_FIXTURE_H
 #define SF_TESTS_POST_FIXTURE_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stdint.h>
 

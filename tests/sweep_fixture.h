@@ -4,7 +4,7 @@
 #define SF_TESTS_SWEEP_FIXTURE_H
 
 #include "program_fixture.h"
-#include "sweep/plan.h"
+#include "study/sweep/plan.h"
 
 /* Writes plan.cfg with the example as its case and these factors, and reads it; sf_plan_free in any case. */
 sf_status sweep_try_plan(const program_place *p, const char *factors, bool huge, sf_plan *plan,

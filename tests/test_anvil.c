@@ -4,8 +4,8 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "core/mat3.h"
-#include "core/units.h"
+#include "base/mat3.h"
+#include "base/units.h"
 #include "solver/step.h"
 #include <math.h>
 #include <omp.h>

@@ -4,7 +4,7 @@
 #include "program_fixture.h"
 #include "run_fixture.h"
 
-#include "core/units.h"
+#include "base/units.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,9 +2,9 @@
 /* Batches of drops: the manifest, its groups, drops that failed, and the engines. */
 #include "program_fixture.h"
 
-#include "campaign/engine.h"
-#include "campaign/manifest.h"
-#include "campaign/runner.h"
+#include "study/engine.h"
+#include "study/manifest.h"
+#include "study/runner.h"
 #include "io/folder.h"
 #include "io/process.h"
 

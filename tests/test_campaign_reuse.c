@@ -2,8 +2,8 @@
 /* A finished drop is used again only as long as everything that its geometry read is as it was. */
 #include "program_fixture.h"
 
-#include "campaign/run_folder.h"
-#include "campaign/runner.h"
+#include "study/run_folder.h"
+#include "study/runner.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

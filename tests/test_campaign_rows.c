@@ -3,8 +3,8 @@
 #include "model_fixture.h"
 #include "program_fixture.h"
 
-#include "campaign/runner.h"
-#include "core/units.h"
+#include "study/runner.h"
+#include "base/units.h"
 #include "io/plain_file.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: what a good one gives, and the sentence that each fault gets. */
-#include "solver/material/hyperfoam.h"
-#include "core/foam_card.h"
+#include "material/hyperfoam.h"
+#include "material/foam_card.h"
 #include "program_fixture.h"
 
 #include "case/case.h"

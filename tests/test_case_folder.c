@@ -2,7 +2,7 @@
 /* A case in a folder of its own: it holds all that the case needs, and its drop has the same bits. */
 #include "program_fixture.h"
 
-#include "campaign/case_folder.h"
+#include "study/case_folder.h"
 #include "case/case.h"
 #include "model_fixture.h"
 #include <setjmp.h>

@@ -2,9 +2,9 @@
 /* Critical fall height: crossings of laws whose answer is known, the search on such laws, the rig. */
 #include "model_fixture.h"
 
-#include "cfh/report.h"
-#include "cfh/search.h"
-#include "cfh/series.h"
+#include "study/cfh/cfh_report.h"
+#include "study/cfh/search.h"
+#include "study/cfh/series.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -3,10 +3,10 @@
  * softfall-post does it. */
 #include "extreme.h"
 #include "foam_fixture.h"
-#include "post/hic.h"
-#include "surrogate/column.h"
+#include "post/figures/hic.h"
+#include "study/column.h"
 
-#include "core/units.h"
+#include "base/units.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "extreme.h"
-#include "post/compare.h"
-#include "post/reference.h"
+#include "post/figures/compare.h"
+#include "post/figures/reference.h"
 
 #include <math.h>
 #include <setjmp.h>

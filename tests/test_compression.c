@@ -4,9 +4,9 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "core/curve.h"
-#include "core/mat3.h"
-#include "core/motion.h"
+#include "material/curve.h"
+#include "base/mat3.h"
+#include "model/motion.h"
 #include "solver/run/history.h"
 #include "solver/step.h"
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include "solver/contact/contact.h"
 #include "solver/run/frame.h"
 #include "solver/step.h"

@@ -2,9 +2,9 @@
 /* The meaning of the acceleration: the reading of an accelerometer by default, the kinematic acceleration on
  * request; and that the figures of a flat missile, whose contact begins with an impulse, do not depend on the
  * time step. */
-#include "post/verdict.h"
+#include "post/figures/verdict.h"
 
-#include "core/units.h"
+#include "base/units.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "core/curve.h"
+#include "material/curve.h"
 
 #include <math.h>
 #include <setjmp.h>

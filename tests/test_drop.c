@@ -4,8 +4,8 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "core/curve.h"
-#include "core/hash.h"
+#include "material/curve.h"
+#include "base/hash.h"
 #include "solver/ledger.h"
 #include "solver/step.h"
 #include <math.h>

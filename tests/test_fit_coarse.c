@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* coarse_set of softfall-fit drop: the first iterations with a coarser mesh save iterations of the drops, and
  * leave the result theirs. */
-#include "fit/drop/input.h"
-#include "fit/space_mapping.h"
+#include "study/fit/drop/fit_input.h"
+#include "study/fit/space_mapping.h"
 #include "fit_fixture.h"
 
 #include <math.h>

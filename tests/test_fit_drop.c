@@ -2,13 +2,13 @@
 /* Identification from drops: the columns against the foam law and the closed form, space
  * mapping against what it approximates, the input's refusals, and a whole fit on a coarse mesh. */
 #include "extreme.h"
-#include "surrogate/column.h"
-#include "fit/drop/input.h"
-#include "fit/form/gas.h"
-#include "fit/space_mapping.h"
+#include "study/column.h"
+#include "study/fit/drop/fit_input.h"
+#include "study/fit/form/gas.h"
+#include "study/fit/space_mapping.h"
 #include "foam_fixture.h"
 #include "io/folder.h"
-#include "post/hic.h"
+#include "post/figures/hic.h"
 #include "program_fixture.h"
 
 #include <math.h>

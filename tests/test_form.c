@@ -2,9 +2,9 @@
 /* Forms of the loading curve (fit/form): each rises from its modulus to its pole, the card that the solver
  * gets has the stress of the closed form, the medians of the priors are a foam, and values that make no curve
  * are refused. */
-#include "core/curve.h"
-#include "fit/drop/parameters.h"
-#include "fit/form/gas.h"
+#include "material/curve.h"
+#include "study/fit/drop/parameters.h"
+#include "study/fit/form/gas.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,11 +2,11 @@
 /* softfall-fit compression with a form of the loading curve: a foam of known parameters, tested by the
  * solver's law at two rates, is found; the main facts of docs/identification.md about foams of public
  * sources; refusals and files. */
-#include "fit/compression/form_fit.h"
-#include "fit/form/gas.h"
-#include "fit/material_point.h"
+#include "study/fit/compression/form_fit.h"
+#include "study/fit/form/gas.h"
+#include "material/point.h"
 #include "program_fixture.h"
-#include "solver/material/foam.h"
+#include "material/foam.h"
 
 #include <math.h>
 #include <setjmp.h>

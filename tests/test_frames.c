@@ -6,9 +6,9 @@
 
 #include "model_fixture.h"
 
-#include "io/model_io.h"
+#include "model/model_io.h"
 #include "io/seal.h"
-#include "post/results.h"
+#include "post/results/results.h"
 #include "solver/run/run.h"
 #include <hdf5.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include "solver/run/ending.h"
 #include "solver/step.h"
 #include <math.h>

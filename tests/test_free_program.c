@@ -5,10 +5,10 @@
 #include "program_fixture.h"
 #include "run_fixture.h"
 
-#include "core/rotation.h"
-#include "core/units.h"
-#include "io/model_io.h"
-#include "post/figures.h"
+#include "base/rotation.h"
+#include "base/units.h"
+#include "model/model_io.h"
+#include "post/figures/figures.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

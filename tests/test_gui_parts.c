@@ -9,7 +9,7 @@
 #include "gui/checks.h"
 #include "gui/geo_names.h"
 #include "gui/shape.h"
-#include "gui/state.h"
+#include "gui/activity.h"
 #include "gui/watch.h"
 #include "io/child.h"
 #include <errno.h>

@@ -3,8 +3,8 @@
  * unloading with three numbers, of both laws. */
 #include "extreme.h"
 #include "foam_fixture.h"
-#include "solver/material/hyperfoam.h"
-#include "solver/material/lane_math.h"
+#include "material/hyperfoam.h"
+#include "base/lane_math.h"
 
 #include <gsl/gsl_integration.h>
 #include <math.h>

@@ -3,8 +3,8 @@
  * cube of the material, pressed by the solver, against the closed form. */
 #include "case/case.h"
 #include "extreme.h"
-#include "fit/compression/hyperfoam_fit.h"
-#include "post/results.h"
+#include "study/fit/compression/hyperfoam_fit.h"
+#include "post/results/results.h"
 #include "program_fixture.h"
 
 #include <math.h>

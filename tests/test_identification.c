@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit compression: what it refuses, its spline, its model against the solver's law and against its
  * own derivatives, and a fit from the files of tests to a material that softfall-pre reads. */
-#include "solver/material/foam.h"
-#include "fit/compression/fit.h"
-#include "fit/compression/output.h"
-#include "fit/material_point.h"
+#include "material/foam.h"
+#include "study/fit/compression/table_fit.h"
+#include "study/fit/compression/compression_output.h"
+#include "material/point.h"
 #include "case/case.h"
 
 #include <math.h>

@@ -2,13 +2,13 @@
 /* Compression tests and cushion curves as data of softfall-fit drop: a synthetic foam, whose test is that of
  * the solver's law and whose cushion curve is that of a block, from each, from both, and with drops;
  * refusals. */
-#include "cfh/posterior.h"
-#include "fit/drop/average.h"
-#include "fit/drop/input.h"
-#include "fit/material_point.h"
+#include "study/cfh/posterior.h"
+#include "study/fit/drop/average.h"
+#include "study/fit/drop/fit_input.h"
+#include "material/point.h"
 #include "program_fixture.h"
-#include "solver/material/foam.h"
-#include "surrogate/column.h"
+#include "material/foam.h"
+#include "study/column.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>

@@ -3,10 +3,10 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "core/foam_card.h"
+#include "material/foam_card.h"
 #include "point_fixture.h"
 #include "solver/field/domain_stress.h"
-#include "solver/material/hyperfoam.h"
+#include "material/hyperfoam.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A fit writes no material that softfall-pre refuses. */
-#include "campaign/material_file.h"
+#include "study/material_file.h"
 #include "case/case.h"
 #include "model_fixture.h"
 #include "program_fixture.h"

@@ -4,8 +4,8 @@
 #include "model_fixture.h"
 #include "program_fixture.h"
 
-#include "core/model.h"
-#include "mesher/gmsh_adapter.h"
+#include "model/model.h"
+#include "pre/mesher/gmsh_adapter.h"
 #include "pre/mesh/cell_topology.h"
 #include "pre/mesh/gmsh_session.h"
 #include "pre/mesh/mesh.h"

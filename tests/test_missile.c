@@ -2,8 +2,8 @@
 /* The missile alone, with forces applied by hand: free fall, momentum, prescribed motion, symmetry. */
 #include "solver/missile.h"
 
-#include "core/mat3.h"
-#include "core/motion.h"
+#include "base/mat3.h"
+#include "model/motion.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

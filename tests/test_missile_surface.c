@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "extreme.h"
-#include "solver/contact/missile_surface.h"
+#include "solver/contact/rigid_surface.h"
 
 #include <math.h>
 #include <setjmp.h>

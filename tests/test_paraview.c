@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state for ParaView that softfall-post writes, pad_paraview.py: what it knows of a drop, what it shows,
  * the film, and tools/draw_pad.py, which draws with it. What needs ParaView is skipped without it. */
-#include "core/error.h"
+#include "base/error.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 #include <setjmp.h>

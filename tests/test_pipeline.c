@@ -4,9 +4,9 @@
 #include "model_fixture.h"
 #include "program_fixture.h"
 
-#include "core/good_run.h"
+#include "model/good_run.h"
 #include "io/h5.h"
-#include "io/model_io.h"
+#include "model/model_io.h"
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>

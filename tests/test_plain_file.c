@@ -3,7 +3,7 @@
  * register. That every program goes through it: test_hostile_files, tools/gate.py. */
 #include "program_fixture.h"
 
-#include "core/hash.h"
+#include "base/hash.h"
 #include "io/plain_file.h"
 #include <fcntl.h>
 #include <setjmp.h>

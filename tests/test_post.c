@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-post as a user runs it, on synthetic results with a closed-form history. */
-#include "core/units.h"
-#include "post/injury.h"
-#include "post/results.h"
-#include "post/axis.h"
+#include "base/units.h"
+#include "post/figures/injury.h"
+#include "post/results/results.h"
+#include "post/view/axis.h"
 #include "post_fixture.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sampling of densities whose answers are known in closed form. */
-#include "fit/posterior/chains.h"
-#include "fit/posterior/convergence.h"
-#include "fit/posterior/discrepancy.h"
-#include "fit/posterior/evidence.h"
-#include "fit/posterior/leave_one_out.h"
-#include "fit/posterior/weights.h"
+#include "study/fit/posterior/chains.h"
+#include "study/fit/posterior/convergence.h"
+#include "study/fit/posterior/discrepancy.h"
+#include "study/fit/posterior/evidence.h"
+#include "study/fit/posterior/leave_one_out.h"
+#include "study/fit/posterior/weights.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.html and its pictures: what stands in them, and that nothing has to be loaded to read them. */
-#include "io/gnuplot.h"
-#include "io/html.h"
-#include "post/cut.h"
-#include "post/origin.h"
-#include "post/picture.h"
-#include "post/plot.h"
+#include "report/gnuplot.h"
+#include "report/html.h"
+#include "post/view/cut.h"
+#include "post/results/origin.h"
+#include "post/view/picture.h"
+#include "post/view/plot.h"
 #include "post_fixture.h"
 #include "program_fixture.h"
 

@@ -5,13 +5,13 @@
 #include "program_fixture.h"
 #include "run_fixture.h"
 
-#include "campaign/runner.h"
+#include "study/runner.h"
 #include "io/h5.h"
-#include "io/model_io.h"
+#include "model/model_io.h"
 #include "io/provenance.h"
 #include "io/seal.h"
-#include "core/foam_card.h"
-#include "post/results.h"
+#include "material/foam_card.h"
+#include "post/results/results.h"
 #include <hdf5.h>
 #include <math.h>
 #include <setjmp.h>

@@ -5,7 +5,7 @@
 #include "model_fixture.h"
 #include "program_fixture.h"
 
-#include "campaign/runner.h"
+#include "study/runner.h"
 #include "io/process.h"
 #include <setjmp.h>
 #include <signal.h>

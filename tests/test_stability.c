@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bound on the highest frequency against exact eigenvalues of small clouds. */
 #include "extreme.h"
-#include "core/stability.h"
+#include "model/stability.h"
 
 #include <math.h>
 #include <setjmp.h>

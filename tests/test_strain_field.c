@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Local collapse on a lattice of hexahedra: smooth strain of a thin and a thick pad is none, and neither is
  * the edge or corner of a flat missile; a node, a row, a layer and a checkerboard are. */
-#include "post/strain_field.h"
+#include "post/figures/strain_field.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "core/good_run.h"
+#include "model/good_run.h"
 #include "post_check.h"
 
 enum { N = 13, NODES = N * N * N, CELLS = (N - 1) * (N - 1) * (N - 1) };

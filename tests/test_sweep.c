@@ -4,11 +4,11 @@
 #include "program_fixture.h"
 #include "sweep_fixture.h"
 
-#include "sweep/analysis.h"
-#include "sweep/campaign.h"
-#include "sweep/cost.h"
-#include "sweep/drops.h"
-#include "sweep/plot.h"
+#include "study/sweep/analysis.h"
+#include "study/sweep/campaign.h"
+#include "study/sweep/cost.h"
+#include "study/sweep/drops.h"
+#include "study/sweep/sweep_plot.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

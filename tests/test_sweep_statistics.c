@@ -3,7 +3,7 @@
 #include "model_fixture.h"
 #include "post_check.h"
 
-#include "sweep/analysis.h"
+#include "study/sweep/analysis.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "solver/material/hyperfoam.h"
+#include "material/hyperfoam.h"
 #include "solver/step.h"
 #include "solver/time_step.h"
 #include <math.h>

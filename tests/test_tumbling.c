@@ -2,7 +2,7 @@
 /* The missile with six degrees of freedom, alone: tumbling without torque, response to forces, inertia. */
 #include "extreme.h"
 
-#include "core/rotation.h"
+#include "base/rotation.h"
 #include "solver/missile.h"
 #include "solver/rigid.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "core/units.h"
+#include "base/units.h"
 
-#include "core/unit_text.h"
+#include "base/unit_text.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

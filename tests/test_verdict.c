@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The verdict on a run: its rows from figures at and beyond their bounds, and softfall-post as it shows them
  * on synthetic results. */
-#include "post/verdict.h"
-#include "post/results_check.h"
+#include "post/figures/verdict.h"
+#include "post/results/results_check.h"
 #include "post_fixture.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A loop with a race on vectors, as the kernels have them: the thread sanitizer must report it, or its
  * silence about the other tests would mean nothing. */
-#include "core/lanes.h"
+#include "base/lanes.h"
 
 #include <stdio.h>
 

@@ -104,8 +104,7 @@ def circles(edges):
 
 
 def room_of(unit):
-    """solver/material is a room of its own: the laws stand below io and case, which read and write their parameters."""
-    return "solver/material" if unit.startswith("solver/material/") else unit.split("/")[0]
+    return unit.split("/")[0]
 
 
 def rooms(edges):

@@ -35,29 +35,29 @@ ALLOWED = {
     "io/tree": {"list": "is the folder that it is to fill empty?", "remove": "makes, moves and removes its own folder"},
     "io/h5": {"library": "opens what has passed the gate (/proc/self/fd), creates new files only"},
     "io/process": {"open": "/dev/null and the log of another program"},
-    "io/model_io": {"remove": "its own partial file"},
-    "mesher/confine": {"open": "numbers of its own process in /proc, before it is confined"},
-    "mesher/work": {"library": "the process of gmsh, which cannot open files: the gate of softfall-pre does it"},
+    "model/model_io": {"remove": "its own partial file"},
+    "pre/mesher/confine": {"open": "numbers of its own process in /proc, before it is confined"},
+    "pre/mesher/work": {"library": "the process of gmsh, which cannot open files: the gate of softfall-pre does it"},
     "pre/mesh/broker": {"open": "its own sealed copies in memory, anew for each reader"},
     "pre/mesh/memory": {"open": "/proc/meminfo"},
     "pre/mesh/mesher_start": {"open": "/dev/null for that process"},
-    "core/units": {"library": "the unit system of UDUNITS"},
-    "post/xdmf": {"list": "for the data of earlier runs of softfall-post",
+    "base/units": {"library": "the unit system of UDUNITS"},
+    "post/view/xdmf": {"list": "for the data of earlier runs of softfall-post",
                   "remove": "these data, and moves new ones within its own folder"},
     "solver/run/checkpoint": {"remove": "its own partial file"},
     "solver/run/output": {"remove": "its own partial files"},
-    "solver/program/solve": {"remove": "results and checkpoint of an earlier run, with --force"},
-    "new/examples": {"list": "the folder of the examples"},
-    "campaign/run_folder": {"open": "the folder of a drop, to ask whether a run has it locked"},
+    "programs/softfall-solve-solve": {"remove": "results and checkpoint of an earlier run, with --force"},
+    "study/examples": {"list": "the folder of the examples"},
+    "study/run_folder": {"open": "the folder of a drop, to ask whether a run has it locked"},
     "gui/cache": {"remove": "makes the user's folder of caches, which is not softfall's own"},
     "gui/gmsh/geometry": {"library": "the user's own geometry in the user's own window, as in gmsh"},
     "gui/gmsh/window": {"library": "a picture, by the script of a test"},
-    "campaign/material_file": {"remove": "a material that it has just written and that is refused"},
+    "study/material_file": {"remove": "a material that it has just written and that is refused"},
 }
 
 
 # The only units that may call gmsh: the process that is confined, and the user's own window.
-GMSH = ("mesher/", "gui/gmsh/")
+GMSH = ("pre/mesher/", "gui/gmsh/")
 
 
 def plain(symbol):

@@ -5,9 +5,9 @@
 #ifndef SF_VERIFY_COLUMN_H
 #define SF_VERIFY_COLUMN_H
 
-#include "core/error.h"
-#include "core/foam_card.h"
-#include "post/signal.h"
+#include "base/error.h"
+#include "material/foam_card.h"
+#include "post/figures/signal.h"
 
 typedef struct sf_column {
     double height, area; /* m, m2 */

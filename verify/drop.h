@@ -3,7 +3,7 @@
 #ifndef SF_VERIFY_DROP_H
 #define SF_VERIFY_DROP_H
 
-#include "core/error.h"
+#include "base/error.h"
 
 typedef struct sf_drop {
     double a_max_g, a_max_raw_g, hic, hic_t1_ms, hic_t2_ms, v_rebound_m_s, max_indentation_mm,

@@ -4,7 +4,7 @@
 #ifndef SF_VERIFY_FORMULA_H
 #define SF_VERIFY_FORMULA_H
 
-#include "core/foam_card.h"
+#include "material/foam_card.h"
 
 /* Nominal stress (Pa), slope (Pa) and energy (J m-3, by quadrature) at a compressive strain below 1; beyond
  * 80 % the densification law that continues the formula. */

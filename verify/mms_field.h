@@ -5,7 +5,7 @@
 #ifndef SF_VERIFY_MMS_FIELD_H
 #define SF_VERIFY_MMS_FIELD_H
 
-#include "solver/material/foam.h"
+#include "material/foam.h"
 
 typedef struct sf_mms_field {
     double side;         /* m, the cube is [0, side]^3 */

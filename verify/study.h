@@ -8,7 +8,7 @@
 #ifndef SF_VERIFY_STUDY_H
 #define SF_VERIFY_STUDY_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stdio.h>
 

@@ -2,7 +2,7 @@
 /* A pad that rests on the anvil: at rest, thrown, sliding, sticking, rocking, and under the drops of a glued
  * one. */
 #include "extreme.h"
-#include "core/units.h"
+#include "base/units.h"
 #include "drop.h"
 #include "model_fixture.h"
 #include "solver/step.h"

@@ -6,7 +6,7 @@
 
 #include "calculix/ccx.h"
 #include "calculix/indentation.h"
-#include "core/curve.h"
+#include "material/curve.h"
 #include "case/case.h"
 #include <math.h>
 #include <stdlib.h>

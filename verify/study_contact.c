@@ -2,12 +2,12 @@
 /* Contact and base reaction: Hertz's sphere, a plate dropped on a column, friction, the momentum of the pad,
  * and the energy that contact loses. */
 #include "extreme.h"
-#include "core/units.h"
+#include "base/units.h"
 #include "column.h"
 #include "formula.h"
 #include "model_fixture.h"
 #include "order.h"
-#include "core/program.h"
+#include "base/program.h"
 #include "solver/ledger.h"
 #include "solver/step.h"
 #include "study.h"

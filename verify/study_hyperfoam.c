@@ -6,7 +6,7 @@
 
 #include "calculix/ccx.h"
 #include "calculix/indentation.h"
-#include "solver/material/hyperfoam.h"
+#include "material/hyperfoam.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

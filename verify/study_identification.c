@@ -2,9 +2,9 @@
 /* A synthetic laboratory: compression tests made with hidden parameters by the solver's own foam law, with
  * scatter, go through the identification of softfall-fit compression. It must choose the law that made them,
  * and its intervals must hold the truth as often as they say. */
-#include "solver/material/foam.h"
-#include "fit/compression/fit.h"
-#include "fit/material_point.h"
+#include "material/foam.h"
+#include "study/fit/compression/table_fit.h"
+#include "material/point.h"
 #include "study.h"
 
 #include <gsl/gsl_cdf.h>

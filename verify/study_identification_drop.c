@@ -3,12 +3,12 @@
  * noise, identified by space mapping, and the intervals counted. The "simulation" is a stiffer and thinner
  * set of columns than the surrogate, so that the correction has to work; hundreds of drops then cost seconds.
  * The whole chain with three-dimensional drops is in tests/test_fit_drop.c. */
-#include "solver/material/foam.h"
+#include "material/foam.h"
 #include "study.h"
 
-#include "surrogate/column.h"
-#include "fit/drop/parameters.h"
-#include "fit/space_mapping.h"
+#include "study/column.h"
+#include "study/fit/drop/parameters.h"
+#include "study/fit/space_mapping.h"
 #include "point_fixture.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>

@@ -3,7 +3,7 @@
  * value and error bar; and the bounds that the drops must keep. */
 #include "drop.h"
 #include "study.h"
-#include "core/good_run.h"
+#include "model/good_run.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "model_fixture.h"
 #include "study.h"
 
-#include "core/rotation.h"
+#include "base/rotation.h"
 #include "solver/rigid.h"
 #include "solver/run/ending.h"
 #include "solver/step.h"

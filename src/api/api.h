@@ -5,8 +5,8 @@
 
 #include "softfall/softfall.h"
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "io/provenance.h"
 #include <stdio.h>
 

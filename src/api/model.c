@@ -3,7 +3,7 @@
 #include "api/api.h"
 
 #include "build_info.h"
-#include "io/model_io.h"
+#include "model/model_io.h"
 #include <stdlib.h>
 
 const char *softfall_version(void) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Results of a drop: its last step, its history, the fields over its nodes. */
-#include "api/drop.h"
+#include "api/api_drop.h"
 
 #include "solver/run/frame.h"
 #include <math.h>

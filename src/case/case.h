@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The case file: libconfig syntax, every dimensional value a string with its unit ("4.6 kg"), read with
- * core/units.h. Groups geometry, pad, material, missile, kernel, solver, output; docs/case.md lists the keys.
+ * base/units.h. Groups geometry, pad, material, missile, kernel, solver, output; docs/case.md lists the keys.
  */
 #ifndef SF_CASE_CASE_H
 #define SF_CASE_CASE_H
 
-#include "core/drop_kinds.h"
-#include "core/error.h"
-#include "core/model.h"
-#include "core/sink.h"
+#include "model/drop_kinds.h"
+#include "base/error.h"
+#include "model/model.h"
+#include "base/sink.h"
 #include <stdio.h>
 
 enum {

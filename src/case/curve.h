@@ -5,7 +5,7 @@
 #ifndef SF_CASE_CURVE_H
 #define SF_CASE_CURVE_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "io/table_csv.h"
 #include <stdbool.h>
 #include <stdint.h>

@@ -2,14 +2,14 @@
 /* The table of the case file's keys. Internal to src/case.
  *
  * One row per key drives reading, checking, the list of unknown keys, the used-parameters listing, `--keys`
- * and docs/case.md. The rows of a material are those of its law (core/law.h). Defaults are texts in libconfig
+ * and docs/case.md. The rows of a material are those of its law (material/law.h). Defaults are texts in libconfig
  * syntax and pass through the same reader as given values.
  */
 #ifndef SF_CASE_KEYS_H
 #define SF_CASE_KEYS_H
 
 #include "case/case.h"
-#include "core/units.h"
+#include "base/units.h"
 #include <stdbool.h>
 #include <stddef.h>
 

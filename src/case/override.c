@@ -3,7 +3,7 @@
 #include "case/override.h"
 
 #include "case/reader.h"
-#include "case/scan.h"
+#include "case/grammar.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef SF_CASE_OVERRIDE_H
 #define SF_CASE_OVERRIDE_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <libconfig.h>
 
 /* Puts one --set text into the configuration, whose destructor must be free(). */

@@ -2,12 +2,12 @@
 #include "case/parts.h"
 
 #include "case/keys.h"
-#include "case/scan.h"
+#include "case/grammar.h"
 #include "case/settings.h"
 #include "case/source.h"
 #include "io/path.h"
 #include "io/plain_file.h"
-#include "solver/material/law.h"
+#include "material/laws.h"
 #include <libconfig.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 #define SF_CASE_PARTS_H
 
 #include "case/part.h"
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 
 /* Release with sf_case_parts_free, also on failure. */

@@ -2,8 +2,8 @@
 #include "case/print.h"
 
 #include "case/keys.h"
-#include "core/unit_text.h"
-#include "solver/material/law.h"
+#include "base/unit_text.h"
+#include "material/laws.h"
 #include <stdbool.h>
 #include <string.h>
 

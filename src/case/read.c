@@ -4,7 +4,7 @@
 #include "case/case.h"
 
 #include "case/freedom.h"
-#include "case/motion.h"
+#include "case/rules.h"
 #include "case/override.h"
 #include "case/print.h"
 #include "case/reader.h"
@@ -12,9 +12,9 @@
 #include "case/value.h"
 #include "case/values.h"
 
-#include "core/hash.h"
-#include "core/mat3.h"
-#include "solver/material/law.h"
+#include "base/hash.h"
+#include "base/mat3.h"
+#include "material/laws.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,7 +93,7 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
     return u.count > 0 ? refuse_unknown(reader, &u, err) : SF_OK;
 }
 
-/* What stands in the files that a key names is hashed where they are read (campaign/key.c). */
+/* What stands in the files that a key names is hashed where they are read (study/key.c). */
 static bool names_files(const sf_key *key) {
     return key->kind == SF_KEY_PATH || key->kind == SF_KEY_CURVE || key->kind == SF_KEY_CURVES ||
            key->kind == SF_KEY_MOTION;

@@ -7,8 +7,8 @@
 #include "case/case.h"
 #include "case/keys.h"
 #include "case/source.h"
-#include "core/sink.h"
-#include "core/units.h"
+#include "base/sink.h"
+#include "base/units.h"
 #include <libconfig.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #define SF_CASE_SETTINGS_H
 
 #include "case/part.h"
-#include "core/error.h"
+#include "base/error.h"
 #include <stddef.h>
 
 enum { SF_SETTING_PATH_SIZE = 256 };

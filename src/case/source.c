@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/source.h"
 
-#include "case/scan.h"
+#include "case/grammar.h"
 #include "io/plain_file.h"
 #include "io/provenance.h"
 #include <stdbool.h>

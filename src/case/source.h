@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The text of a file in libconfig syntax with its includes put in place, and where each of its lines comes
- * from; looked over by case/scan.h. libconfig's own @include takes no absolute paths beside relative ones,
+ * from; looked over by case/grammar.h. libconfig's own @include takes no absolute paths beside relative ones,
  * and its scanner ends the process on a folder. */
 #ifndef SF_CASE_SOURCE_H
 #define SF_CASE_SOURCE_H
 
-#include "core/error.h"
+#include "base/error.h"
 
 enum { SF_CASE_WHERE_SIZE = 512 /* of a text that says where a setting stands */ };
 

@@ -2,8 +2,8 @@
 /* Reads one value of each kind of sf_key_kind into the case. */
 #include "case/value.h"
 
-#include "case/material.h"
-#include "case/motion.h"
+#include "case/curves.h"
+#include "case/rules.h"
 #include "io/plain_file.h"
 #include <math.h>
 #include <stdarg.h>

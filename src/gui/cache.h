@@ -4,7 +4,7 @@
 #ifndef SF_GUI_CACHE_H
 #define SF_GUI_CACHE_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stddef.h>
 
 /* Makes it if need be. SF_ERR_IO: there is no home folder, or it cannot be made; SF_ERR_INPUT: it is not

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Lines of the table of softfall-pre (pre/report.c), in the order of the tree. */
+/* Lines of the table of softfall-pre (pre/model_report.c), in the order of the tree. */
 static const char *const lines[] = {
     "nodes",
     "cells",

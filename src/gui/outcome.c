@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/outcome.h"
 
-#include "core/units.h"
+#include "base/units.h"
 #include "gui/gmsh/view.h"
 #include "gui/gmsh/window.h"
-#include "post/figures.h"
-#include "post/verdict.h"
+#include "post/figures/figures.h"
+#include "post/figures/verdict.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

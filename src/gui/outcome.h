@@ -3,7 +3,7 @@
 #ifndef SF_GUI_OUTCOME_H
 #define SF_GUI_OUTCOME_H
 
-#include "post/results.h"
+#include "post/results/results.h"
 
 /* Puts them into the branch Results, coloured by pass and fail; returns the sentence of the verdict in
  * `line`. A run that has not ended or never touched has what is known. */

@@ -4,12 +4,12 @@
 #include "gui/cache.h"
 #include "gui/checks.h"
 #include "gui/outcome.h"
-#include "gui/programs.h"
+#include "gui/children.h"
 #include "io/folder.h"
-#include "io/model_io.h"
+#include "model/model_io.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
-#include "post/verdict.h"
+#include "post/figures/verdict.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,11 +3,11 @@
 #ifndef SF_GUI_SESSION_H
 #define SF_GUI_SESSION_H
 
-#include "campaign/run_folder.h"
+#include "study/run_folder.h"
 #include "gui/fields.h"
 #include "gui/gmsh/geometry.h"
 #include "gui/shape.h"
-#include "gui/state.h"
+#include "gui/activity.h"
 #include "gui/watch.h"
 #include "io/child.h"
 

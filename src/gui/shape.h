@@ -3,9 +3,9 @@
 #ifndef SF_GUI_SHAPE_H
 #define SF_GUI_SHAPE_H
 
-#include "core/model.h"
+#include "model/model.h"
 #include "gui/gmsh/view.h"
-#include "post/results.h"
+#include "post/results/results.h"
 
 /* A mesh, borrowed. */
 typedef struct sf_cells {

@@ -4,7 +4,7 @@
 #ifndef SF_IO_CHILD_H
 #define SF_IO_CHILD_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stdio.h>
 #include <sys/types.h>

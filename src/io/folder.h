@@ -4,7 +4,7 @@
 #ifndef SF_IO_FOLDER_H
 #define SF_IO_FOLDER_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stdint.h>
 

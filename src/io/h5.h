@@ -5,7 +5,7 @@
 #ifndef SF_IO_H5_H
 #define SF_IO_H5_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -3,7 +3,7 @@
 #ifndef SF_IO_PATH_H
 #define SF_IO_PATH_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 

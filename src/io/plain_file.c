@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/plain_file.h"
 
-#include "core/hash.h"
+#include "base/hash.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/magic.h>

@@ -13,7 +13,7 @@
 #ifndef SF_IO_PLAIN_FILE_H
 #define SF_IO_PLAIN_FILE_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

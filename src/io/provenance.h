@@ -3,7 +3,7 @@
 #ifndef SF_IO_PROVENANCE_H
 #define SF_IO_PROVENANCE_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "io/h5.h"
 
 enum { SF_FORMAT_VERSION = 6 };

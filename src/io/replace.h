@@ -8,7 +8,7 @@
 #ifndef SF_IO_REPLACE_H
 #define SF_IO_REPLACE_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stdio.h>
 

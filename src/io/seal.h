@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A checksum at the end of a file, behind the part that its own format (HDF5) reads: 8 bytes "SFSEAL01", the
- * length of the file before it (u64) and its hash (u64, core/hash.h), in the machine's byte order. */
+ * length of the file before it (u64) and its hash (u64, base/hash.h), in the machine's byte order. */
 #ifndef SF_IO_SEAL_H
 #define SF_IO_SEAL_H
 
-#include "core/error.h"
+#include "base/error.h"
 
 sf_status sf_seal_add(const char *path, sf_error *err);
 

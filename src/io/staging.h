@@ -6,7 +6,7 @@
 #ifndef SF_IO_STAGING_H
 #define SF_IO_STAGING_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stdio.h>
 

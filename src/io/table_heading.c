@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/table_heading.h"
 
-#include "core/decimal.h"
+#include "base/text.h"
 
 #include <ctype.h>
 #include <math.h>

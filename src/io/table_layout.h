@@ -3,8 +3,8 @@
 #ifndef SF_IO_TABLE_LAYOUT_H
 #define SF_IO_TABLE_LAYOUT_H
 
-#include "core/error.h"
-#include "core/units.h"
+#include "base/error.h"
+#include "base/units.h"
 #include <stdbool.h>
 #include <stdint.h>
 

@@ -5,8 +5,8 @@
 #ifndef SF_PRE_BODIES_H
 #define SF_PRE_BODIES_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 
 typedef struct sf_bodies {
     int64_t count;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/build.h"
 
-#include "core/mat3.h"
-#include "core/motion.h"
-#include "core/stability.h"
-#include "pre/base.h"
-#include "solver/material/law.h"
+#include "base/mat3.h"
+#include "model/motion.h"
+#include "model/stability.h"
+#include "pre/support.h"
+#include "material/laws.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/connectivity.h"
 #include "pre/cloud/domain_store.h"

@@ -4,8 +4,8 @@
 #ifndef SF_PRE_BUILD_H
 #define SF_PRE_BUILD_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "case/case.h"
 #include "pre/cloud/invariants.h"
 #include "pre/mesh/mesh.h"

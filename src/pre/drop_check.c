@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/drop_check.h"
 
-#include "core/good_run.h"
-#include "core/mat3.h"
-#include "core/solid.h"
+#include "model/good_run.h"
+#include "base/mat3.h"
+#include "pre/solid.h"
 #include "pre/mesh/missile_shape.h"
 #include <math.h>
 #include <stdio.h>

@@ -4,9 +4,9 @@
 #ifndef SF_PRE_DROP_CHECK_H
 #define SF_PRE_DROP_CHECK_H
 
-#include "core/error.h"
-#include "core/model.h"
-#include "core/sink.h"
+#include "base/error.h"
+#include "model/model.h"
+#include "base/sink.h"
 #include "case/case.h"
 #include "pre/mesh/mesh.h"
 #include "pre/mesh_error.h"

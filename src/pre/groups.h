@@ -3,7 +3,7 @@
 #ifndef SF_PRE_GROUPS_H
 #define SF_PRE_GROUPS_H
 
-#include "core/model.h"
+#include "model/model.h"
 #include "pre/mesh/mesh.h"
 
 /* The group that the case names under `key`; NULL: SF_ERR_INPUT with the groups that exist. */

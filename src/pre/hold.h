@@ -4,9 +4,9 @@
 #ifndef SF_PRE_HOLD_H
 #define SF_PRE_HOLD_H
 
-#include "core/error.h"
-#include "core/model.h"
-#include "core/sink.h"
+#include "base/error.h"
+#include "model/model.h"
+#include "base/sink.h"
 
 #define SF_HOLD_MOST 0.5 /* of the underside's nodes, held along z: mostly held */
 

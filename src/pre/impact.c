@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/impact.h"
 
-#include "core/symmetry.h"
+#include "model/symmetry.h"
 #include <math.h>
 #include <stdlib.h>
 

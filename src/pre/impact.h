@@ -4,8 +4,8 @@
 #define SF_PRE_IMPACT_H
 
 #include "case/case.h"
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "pre/mesh/mesh.h"
 
 /* The missile's lowest point (m): of its sphere, or of its surface's nodes; where several are lowest the

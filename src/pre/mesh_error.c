@@ -2,7 +2,7 @@
 #include "pre/mesh_error.h"
 
 #include "pre/mesh/missile_shape.h"
-#include "core/symmetry.h"
+#include "model/symmetry.h"
 #include <math.h>
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */

@@ -3,7 +3,7 @@
 #ifndef SF_PRE_MESH_ERROR_H
 #define SF_PRE_MESH_ERROR_H
 
-#include "core/model.h"
+#include "model/model.h"
 
 /* The law: C (h/t)^2 + D (h/w)^2 with the thickness t and the half width w of the contact zone; C and D are
  * calibrated in docs/theory.md, section 11. */

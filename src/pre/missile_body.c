@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/missile_body.h"
 
-#include "core/mat3.h"
-#include "core/solid.h"
+#include "base/mat3.h"
+#include "pre/solid.h"
 #include <string.h>
 
 static const int ROW[6] = {0, 1, 2, 0, 1, 0}, COLUMN[6] = {0, 1, 2, 1, 2, 2};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/ledger.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 
 double sf_ledger_internal(const sf_ledger *l) {
     return l->stored + l->hysteresis + l->viscous + l->stabilisation;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/operators.h"
 
-#include "core/stability.h"
+#include "model/stability.h"
 #include "solver/missile.h"
 #include <stdlib.h>
 #include <string.h>

@@ -3,20 +3,20 @@
 #ifndef SF_SOLVER_OPERATORS_H
 #define SF_SOLVER_OPERATORS_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "solver/constraint/constraint.h"
 #include "solver/contact/anvil.h"
 #include "solver/contact/contact_gram.h"
-#include "solver/material/law.h"
+#include "material/laws.h"
 #include "solver/field/halo.h"
-#include "solver/contact/missile_surface.h"
+#include "solver/contact/rigid_surface.h"
 #include "solver/field/pairs.h"
 
 typedef struct sf_operators {
     int64_t law_count;
     sf_material_law *law; /* [law_count] of the model's materials */
-    double *stability;    /* [n] m kg-1, core/stability.h */
+    double *stability;    /* [n] m kg-1, model/stability.h */
 
     sf_halo halo; /* gather and scatter of groups of domains */
 

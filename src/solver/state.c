@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/state.h"
 
-#include "core/motion.h"
+#include "model/motion.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,11 +5,11 @@
 #ifndef SF_SOLVER_STATE_H
 #define SF_SOLVER_STATE_H
 
-#include "core/error.h"
-#include "core/model.h"
-#include "core/numbers.h"
+#include "base/error.h"
+#include "model/model.h"
+#include "io/numbers.h"
 #include "solver/missile.h"
-#include "solver/material/law.h"
+#include "material/laws.h"
 #include "solver/stopwatch.h"
 #include <stddef.h>
 
@@ -106,7 +106,7 @@ typedef struct sf_state {
     double *f;       /* [n][9] F */
     double *stress;  /* [n][9] J, V P plus the stabilisation's couple */
     double *history; /* [blocks][history_rows][SF_LANES] SI, history variables declared by the laws that the
-                        cards need (solver/material/law.h) */
+                        cards need (material/laws.h) */
     int64_t history_rows;
     double *stiffness; /* [n] Pa */
     double *tangent;   /* [n] Pa, effective: a + 2 eta / dt of the last step */

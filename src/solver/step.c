@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/step.h"
 
-#include "core/lanes.h"
-#include "core/mat3.h"
-#include "core/threads.h"
+#include "base/lanes.h"
+#include "base/mat3.h"
+#include "base/threads.h"
 #include "solver/contact/contact.h"
 #include "solver/field/domain_stress.h"
 #include "solver/field/internal_force.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The time step: a bound that holds in every step (core/stability.h), tightened by the ratio of the true
+/* The time step: a bound that holds in every step (model/stability.h), tightened by the ratio of the true
  * highest frequency to the bound. A warm-started Lanczos iteration measures that ratio when the bound has
  * moved by 10 %, and at least every 40 steps (theory, section "Time step"). Contact and constraints are
  * kinematic and do not limit the step. */

@@ -2,7 +2,7 @@
 /* libFuzzer's entry for the reader named FUZZ_READER (tests/CMakeLists.txt). */
 #include "fuzz_readers.h"
 
-#include "core/units.h"
+#include "base/units.h"
 
 #include <gsl/gsl_errno.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef SF_VERIFY_CCX_H
 #define SF_VERIFY_CCX_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 
 /* True if there is a ccx; its version into `version`. */

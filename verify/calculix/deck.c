@@ -2,7 +2,7 @@
 #include "extreme.h"
 #include "calculix/deck.h"
 
-#include "core/model.h"
+#include "model/model.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -4,7 +4,7 @@
 
 #include "calculix/ccx.h"
 #include "drop.h"
-#include "post/results.h"
+#include "post/results/results.h"
 #include "case/case.h"
 #include "pre/mesh/gmsh_session.h"
 #include <math.h>

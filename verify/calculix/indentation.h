@@ -5,7 +5,7 @@
 
 #include "calculix/deck.h"
 #include "calculix/ogden.h"
-#include "core/error.h"
+#include "base/error.h"
 
 enum { SF_INDENTATION_POINTS = 64, SF_INDENTATION_FRAMES = 64 };
 

@@ -4,7 +4,7 @@
 #ifndef SF_GUI_GMSH_GEOMETRY_H
 #define SF_GUI_GMSH_GEOMETRY_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdint.h>
 
 /* Triangles of a surface, in the geometry's length unit. */

@@ -4,7 +4,7 @@
 #ifndef SF_GUI_GMSH_VIEW_H
 #define SF_GUI_GMSH_VIEW_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdint.h>
 
 /* A body: its nodes and faces. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/gmsh/window.h"
 
-#include "io/json.h"
+#include "report/json.h"
 #include <gmshc.h>
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #ifndef SF_GUI_GMSH_WINDOW_H
 #define SF_GUI_GMSH_WINDOW_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 

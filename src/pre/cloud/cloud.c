@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/cloud.h"
 
-#include "core/hash.h"
+#include "base/hash.h"
 
 #include <math.h>
 #include <stdio.h>

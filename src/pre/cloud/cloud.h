@@ -3,7 +3,7 @@
 #ifndef SF_PRE_CLOUD_CLOUD_H
 #define SF_PRE_CLOUD_CLOUD_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "pre/cloud/dual.h"
 #include "pre/mesh/mesh.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/connectivity.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include "pre/cloud/neighbours.h"
 #include "pre/mesh/cell_topology.h"
 #include <math.h>

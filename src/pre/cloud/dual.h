@@ -6,7 +6,7 @@
 #ifndef SF_PRE_CLOUD_DUAL_H
 #define SF_PRE_CLOUD_DUAL_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "pre/mesh/mesh.h"
 #include <stdint.h>
 

@@ -5,7 +5,7 @@
 #define SF_PRE_CLOUD_GROUP_CHECK_H
 
 #include "case/case.h"
-#include "core/error.h"
+#include "base/error.h"
 #include "pre/cloud/dual.h"
 #include "pre/mesh/mesh.h"
 

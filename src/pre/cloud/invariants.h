@@ -3,7 +3,7 @@
 #ifndef SF_PRE_CLOUD_INVARIANTS_H
 #define SF_PRE_CLOUD_INVARIANTS_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "pre/cloud/domains.h"
 
 typedef struct sf_invariants {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/layers.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include "pre/cloud/surface_area.h"
 #include <math.h>
 #include <stdbool.h>

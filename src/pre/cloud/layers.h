@@ -5,8 +5,8 @@
 #define SF_PRE_CLOUD_LAYERS_H
 
 #include "case/case.h"
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "pre/cloud/dual.h"
 #include "pre/mesh/mesh.h"
 

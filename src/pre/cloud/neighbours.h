@@ -3,7 +3,7 @@
 #ifndef SF_PRE_CLOUD_NEIGHBOURS_H
 #define SF_PRE_CLOUD_NEIGHBOURS_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdint.h>
 
 typedef struct sf_grid {

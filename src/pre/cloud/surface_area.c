@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/surface_area.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include <stdbool.h>
 #include <stdlib.h>
 

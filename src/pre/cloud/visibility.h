@@ -5,7 +5,7 @@
 #ifndef SF_PRE_CLOUD_VISIBILITY_H
 #define SF_PRE_CLOUD_VISIBILITY_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "pre/cloud/dual.h"
 #include "pre/cloud/neighbours.h"
 #include "pre/mesh/mesh.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/broker.h"
 
-#include "core/hash.h"
+#include "base/hash.h"
 #include "io/plain_file.h"
 #include "pre/mesh/mesher_protocol.h"
 #include <errno.h>

@@ -4,7 +4,7 @@
 #ifndef SF_PRE_MESH_BROKER_H
 #define SF_PRE_MESH_BROKER_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/cell_topology.h"
 
-#include "core/model.h"
+#include "model/model.h"
 #include <stddef.h>
 
 static const sf_cell_topology tetrahedron = {

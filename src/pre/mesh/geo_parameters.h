@@ -4,7 +4,7 @@
 #ifndef SF_PRE_MESH_GEO_PARAMETERS_H
 #define SF_PRE_MESH_GEO_PARAMETERS_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "case/case.h"
 #include "pre/mesh/broker.h"
 

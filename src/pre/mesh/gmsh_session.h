@@ -5,9 +5,9 @@
 #ifndef SF_PRE_MESH_GMSH_SESSION_H
 #define SF_PRE_MESH_GMSH_SESSION_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "case/case.h"
-#include "core/sink.h"
+#include "base/sink.h"
 #include "pre/mesh/geometry_files.h"
 #include "pre/mesh/mesh.h"
 #include <stdbool.h>

@@ -4,7 +4,7 @@
 #ifndef SF_PRE_MESH_MESH_H
 #define SF_PRE_MESH_MESH_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stdint.h>
 
 /* A named set of nodes: those of a physical surface group. */

@@ -2,8 +2,8 @@
 /* Is the background mesh fit to carry smoothing domains? */
 #include "pre/mesh/mesh.h"
 
-#include "core/mat3.h"
-#include "core/model.h"
+#include "base/mat3.h"
+#include "model/model.h"
 #include "pre/mesh/cell_topology.h"
 
 #include <math.h>

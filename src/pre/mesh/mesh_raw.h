@@ -4,7 +4,7 @@
 #ifndef SF_PRE_MESH_MESH_RAW_H
 #define SF_PRE_MESH_MESH_RAW_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "pre/mesh/mesh.h"
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/mesh_store.h"
 
-#include "core/hash.h"
+#include "base/hash.h"
 #include "io/plain_file.h"
 #include "io/store.h"
 #include "pre/mesh/geometry_files.h"

@@ -6,7 +6,7 @@
 #define SF_PRE_MESH_MESHER_H
 
 #include "case/case.h"
-#include "core/sink.h"
+#include "base/sink.h"
 #include "pre/mesh/broker.h"
 #include "pre/mesh/mesh_stream.h"
 

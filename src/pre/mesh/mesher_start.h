@@ -3,7 +3,7 @@
 #ifndef SF_PRE_MESH_MESHER_START_H
 #define SF_PRE_MESH_MESHER_START_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include <stddef.h>
 #include <sys/types.h>
 

@@ -2,7 +2,7 @@
 /* The outer surface of the missile's cells, whatever part of it is the group that touches the pad. */
 #include "pre/mesh/mesh_raw.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include "pre/mesh/cell_topology.h"
 #include <stdlib.h>
 #include <string.h>

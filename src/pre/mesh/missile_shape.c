@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/missile_shape.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>
 #include <stdbool.h>

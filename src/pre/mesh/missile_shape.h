@@ -3,8 +3,8 @@
 #ifndef SF_PRE_MESH_MISSILE_SHAPE_H
 #define SF_PRE_MESH_MISSILE_SHAPE_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "pre/mesh/mesh.h"
 
 /* Least-squares sphere through the surface's nodes. `*deviation` is the largest distance of a node from it

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/surface_orient.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include <stdbool.h>
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #ifndef SF_PRE_MESH_SURFACE_ORIENT_H
 #define SF_PRE_MESH_SURFACE_ORIENT_H
 
-#include "core/error.h"
+#include "base/error.h"
 #include "pre/mesh/mesh.h"
 
 /* Parts (triangles joined by edges) without cells behind them are turned as one: a closed part outwards, an

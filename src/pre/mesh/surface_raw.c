@@ -2,7 +2,7 @@
 /* The missile's surface from raw faces: triangles, and which side of them is outside. */
 #include "pre/mesh/mesh_raw.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include "pre/mesh/cell_topology.h"
 
 #include <stdlib.h>

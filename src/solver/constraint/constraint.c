@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint/constraint.h"
 
-#include "core/threads.h"
+#include "base/threads.h"
 
 #include <math.h>
 #include <stdlib.h>

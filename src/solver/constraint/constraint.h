@@ -7,8 +7,8 @@
 #ifndef SF_SOLVER_CONSTRAINT_CONSTRAINT_H
 #define SF_SOLVER_CONSTRAINT_CONSTRAINT_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "solver/constraint/ldl.h"
 
 /* What a row of G holds. */

@@ -7,8 +7,8 @@
 #ifndef SF_SOLVER_CONSTRAINT_LDL_H
 #define SF_SOLVER_CONSTRAINT_LDL_H
 
-#include "core/error.h"
-#include "core/lanes.h"
+#include "base/error.h"
+#include "base/lanes.h"
 #include <stdbool.h>
 #include <stdint.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/anvil.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/contact.h"
 
-#include "core/mat3.h"
-#include "core/threads.h"
+#include "base/mat3.h"
+#include "base/threads.h"
 #include <string.h>
 
 enum { MAX_SWEEPS = 500 };

@@ -5,8 +5,8 @@
 #ifndef SF_SOLVER_CONTACT_CONTACT_GRAM_H
 #define SF_SOLVER_CONTACT_CONTACT_GRAM_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "solver/contact/contact_rows.h"
 
 typedef struct sf_contact_gram {

@@ -7,8 +7,8 @@
 #ifndef SF_SOLVER_CONTACT_CONTACT_ROWS_H
 #define SF_SOLVER_CONTACT_CONTACT_ROWS_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 
 typedef struct sf_contact_rows {
     int64_t *ptr;  /* [points + 1] */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/field/domain_stress.h"
 
-#include "core/stability.h"
+#include "model/stability.h"
 #include "solver/time_step.h"
 #include <math.h>
 #include <string.h>
@@ -111,7 +111,7 @@ typedef struct lane_weights {
     double volume[SF_LANES], stability[SF_LANES];
 } lane_weights;
 
-/* Bounds of the time step (core/stability.h) and effective tangents. */
+/* Bounds of the time step (model/stability.h) and effective tangents. */
 static void bound_steps(const lane_weights *w, double tightness, double dt_old, const sf_law_batch *b,
                         double tangent[SF_LANES], lane_sums *sum) {
     double inverse = dt_old > 0 ? 2 / dt_old : 0;

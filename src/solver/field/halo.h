@@ -7,9 +7,9 @@
 #ifndef SF_SOLVER_FIELD_HALO_H
 #define SF_SOLVER_FIELD_HALO_H
 
-#include "core/error.h"
-#include "core/lanes.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "base/lanes.h"
+#include "model/model.h"
 
 enum {
     SF_HALO_WORK = 8,     /* doubles per node that every pass may use */

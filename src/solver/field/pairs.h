@@ -5,8 +5,8 @@
 #ifndef SF_SOLVER_FIELD_PAIRS_H
 #define SF_SOLVER_FIELD_PAIRS_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 
 /* Pairs of node i are those behind the pairs of node i - 1 in its group. */
 typedef struct sf_pairs {

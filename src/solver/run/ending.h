@@ -3,8 +3,8 @@
 #ifndef SF_SOLVER_RUN_ENDING_H
 #define SF_SOLVER_RUN_ENDING_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "solver/state.h"
 
 /* The missile has left the pad for good, and the run shall end then. A driven missile may come back. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/frame.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include "solver/field/domain_stress.h"
 #include "solver/field/stabilisation.h"
 #include <math.h>

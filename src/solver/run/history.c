@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/history.h"
 
-#include "core/mat3.h"
+#include "base/mat3.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static double area_in_contact(const sf_model *m, const sf_state *s) {
     return area;
 }
 
-/* The value of each column of core/history.h. m: the model; s: the state after sf_step_evaluate; whole:
+/* The value of each column of model/columns.h. m: the model; s: the state after sf_step_evaluate; whole:
  * modelled parts that make the whole. */
 #define VALUE(name, value)                                                                                   \
     static double name##_now(const sf_model *m, const sf_state *s, double whole) {                           \

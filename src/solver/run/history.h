@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rows of a run's history (core/history.h): one per time step, kept in memory and written to /history as
+/* The rows of a run's history (model/columns.h): one per time step, kept in memory and written to /history as
  * a whole, scaled to the whole pad. */
 #ifndef SF_SOLVER_RUN_HISTORY_H
 #define SF_SOLVER_RUN_HISTORY_H
 
-#include "core/error.h"
-#include "core/history.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/columns.h"
+#include "model/model.h"
 #include "io/h5.h"
 #include "solver/state.h"
 

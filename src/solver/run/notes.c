@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/notes.h"
 
-#include "core/curve.h"
-#include "solver/material/foam.h"
+#include "material/curve.h"
+#include "material/foam.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

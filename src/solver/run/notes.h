@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the user of a run's figures should know of it, beside the checks of core/good_run.h: for the terminal,
+/* What the user of a run's figures should know of it, beside the checks of model/good_run.h: for the terminal,
  * and for /summary/notes in results.h5. */
 #ifndef SF_SOLVER_RUN_NOTES_H
 #define SF_SOLVER_RUN_NOTES_H
 
-#include "core/sink.h"
+#include "base/sink.h"
 #include "solver/run/recorder.h"
 
 /* Tells the sink; `state` is that of the last step. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/output.h"
 
-#include "core/history.h"
+#include "model/columns.h"
 #include "io/folder.h"
 #include "io/seal.h"
 #include "solver/run/frame.h"

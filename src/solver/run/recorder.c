@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/recorder.h"
 
-#include "core/mat3.h"
-#include "io/members.h"
+#include "base/mat3.h"
+#include "io/h5_members.h"
 #include <stddef.h>
 #include <string.h>
 

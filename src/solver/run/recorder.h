@@ -9,7 +9,7 @@
 /* The numbers of a recorder in a checkpoint, beside the history; a list as in state.h. */
 /* clang-format off */
 #define SF_RECORDER_NUMBERS(X)                                                                                         \
-    X(double, peak_value, , "1", "largest lasting acceleration (core/history.h), m s-2; driven: contact force, N")     \
+    X(double, peak_value, , "1", "largest lasting acceleration (model/columns.h), m s-2; driven: contact force, N")     \
     X(double, peak_time, , "s", "of it")                                                                               \
     X(double, peak_kept, , "1", "the peak_value that the fields written last follow")                                  \
     X(int64_t, frames, , "1", "due so far")                                                                            \

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/results_file.h"
 
-#include "core/symmetry.h"
+#include "model/symmetry.h"
 #include "solver/missile.h"
 #include <math.h>
 #include <stdio.h>

@@ -3,8 +3,8 @@
 #ifndef SF_SOLVER_RUN_RESULTS_FILE_H
 #define SF_SOLVER_RUN_RESULTS_FILE_H
 
-#include "core/error.h"
-#include "core/model.h"
+#include "base/error.h"
+#include "model/model.h"
 #include "io/h5.h"
 #include "io/provenance.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/run.h"
 
-#include "core/units.h"
+#include "base/units.h"
 #include "solver/run/ending.h"
 #include "solver/run/notes.h"
 #include "solver/step.h"

@@ -4,9 +4,9 @@
 #ifndef SF_SOLVER_RUN_RUN_H
 #define SF_SOLVER_RUN_RUN_H
 
-#include "core/error.h"
-#include "core/model.h"
-#include "core/sink.h"
+#include "base/error.h"
+#include "model/model.h"
+#include "base/sink.h"
 #include "solver/run/checkpoint.h"
 #include "solver/operators.h"
 #include "solver/run/output.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/state_io.h"
 
-#include "io/members.h"
+#include "io/h5_members.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

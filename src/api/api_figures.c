@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The figures of a drop or of a results file, by the one function that softfall-post calls. */
+#include "api/api_drop.h"
+
+#include "post/figures/figures.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ONE(...) +1
+struct softfall_figures {
+    int count;
+    softfall_quantity figure[SF_FIGURES(ONE)];
+    double value[SF_FIGURES(ONE)];
+};
+
+static sf_status check_filter(double filter, sf_error *err) {
+    if (filter == 60 || filter == 180 || filter == 600 || filter == 1000)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT, "filter: %g; the channel frequency classes are 60, 180, 600 and 1000",
+                   filter);
+}
+
+/* Does sf_figures hold it as a number? */
+static bool is_offered(const sf_figure *figure) {
+    return !figure->fact && figure->type != SF_FIGURE_TEXT;
+}
+
+static double value_of(const sf_figure *figure, const sf_figures *f) {
+    const char *place = (const char *)f + figure->offset;
+    switch (figure->type) {
+    case SF_FIGURE_DOUBLE:
+        return *(const double *)place * figure->factor;
+    case SF_FIGURE_INTEGER:
+        return (double)*(const int64_t *)place;
+    case SF_FIGURE_BOOL:
+        return *(const bool *)place;
+    case SF_FIGURE_TEXT:
+        break;
+    }
+    return NAN;
+}
+
+static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    sf_figures f = {0};
+    if (check_filter(filter, err) != SF_OK || sf_figures_compute(results, filter, &f, err) != SF_OK)
+        return err->status;
+    softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
+    for (size_t k = 0; made && k < count; k++)
+        if (is_offered(&list[k])) {
+            made->figure[made->count] = (softfall_quantity){list[k].key, "", list[k].meaning, 1};
+            made->value[made->count++] = value_of(&list[k], &f);
+        }
+    sf_figures_free(&f);
+    return err->status;
+}
+
+/* The drop as its results file would show it; the arrays stay the drop's. */
+static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
+    const sf_model *m = &d->model;
+    *r = (sf_results){.node_count = m->node_count,
+                      .volume = m->volume,
+                      .symmetry_factor = m->symmetry_factor,
+                      .thickness = m->thickness,
+                      .informed_strain = sf_model_informed_strain(m),
+                      .expected_mesh_error = m->expected_mesh_error > 0 ? m->expected_mesh_error : NAN,
+                      .slit_fraction = m->slit_fraction,
+                      .anvil_depth = m->anvil.depth,
+                      .density = sf_model_density(m),
+                      .impact_x = m->missile.impact_known ? m->missile.impact[0] : NAN,
+                      .impact_y = m->missile.impact_known ? m->missile.impact[1] : NAN,
+                      .missile_mass = m->missile.mass,
+                      .missile_speed = m->missile.speed,
+                      .gravity_along = sf_missile_free_fall(m),
+                      .kinematic = m->run.kinematic != 0,
+                      .driven = sf_missile_is_driven(m),
+                      .history = d->recorder.history};
+    if (r->history.rows < 3)
+        return SF_FAIL(err, SF_ERR_INPUT, "the drop has %lld steps: figures need 3 at least",
+                       (long long)r->history.rows);
+    return SF_OK;
+}
+
+softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, softfall_figures **out,
+                                      softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_results r;
+    *out = NULL;
+    if (view(drop, &r, &err) == SF_OK)
+        compute(&r, filter, out, &err);
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_results_figures(const char *path, double filter, softfall_figures **out,
+                                         softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_results r = {0};
+    *out = NULL;
+    if (sf_results_open(path, &r, &err) == SF_OK)
+        compute(&r, filter, out, &err);
+    sf_results_close(&r);
+    return softfall_return(&err, error);
+}
+
+void softfall_figures_free(softfall_figures *figures) {
+    free(figures);
+}
+
+const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count) {
+    *count = figures->count;
+    return figures->figure;
+}
+
+double softfall_figure(const softfall_figures *figures, const char *key) {
+    for (int k = 0; k < figures->count; k++)
+        if (strcmp(figures->figure[k].name, key) == 0)
+            return figures->value[k];
+    return NAN;
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/error.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+void sf_error_clean(char *sentence) {
+    for (char *c = sentence; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 127)
+            *c = ' ';
+}
+
+sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format,
+                       ...) {
+    if (err->status != SF_OK)
+        return err->status;
+    err->status = status;
+    err->where = where;
+    err->line = line;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(err->text, sizeof err->text, format, args);
+    va_end(args);
+    sf_error_clean(err->text);
+    return status;
+}
+
+/* Large blocks are advised to use large pages: a step reads them from end to end, and address translation of
+ * small pages costs a few percent of it. */
+static void *allocate(unsigned long bytes) {
+    static const unsigned long large = 2UL << 20;
+    void *block = NULL;
+    if (posix_memalign(&block, bytes < large ? 64 : large, bytes) != 0)
+        return NULL;
+    if (bytes >= large)
+        madvise(block, bytes, MADV_HUGEPAGE); /* advice: nothing depends on it */
+    return block;
+}
+
+void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what) {
+    if (size != 0 && count > (SIZE_MAX - 64) / size) {
+        SF_FAIL(err, SF_ERR_MEMORY, "%s: %lu items of %lu bytes exceed the address space", what, count, size);
+        return NULL;
+    }
+    unsigned long bytes = (count * size + 63) / 64 * 64;
+    void *block = allocate(bytes ? bytes : 64);
+    if (!block) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %s (%.1f MB)", what, (double)bytes / 1e6);
+        return NULL;
+    }
+    memset(block, 0, bytes ? bytes : 64);
+    return block;
+}

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The keys material.curve and material.curves: compression curves into the card. */
+#include "case/curves.h"
+
+#include "case/curve.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_CURVES = 64 };
+
+/* Appends a curve to the card's lists. */
+static sf_status add_curve(sf_law_curves *card, double rate, const sf_case_curve *curve, sf_error *err) {
+    size_t curves = (size_t)card->curve_count, points = (size_t)card->curve_points,
+           more = (size_t)curve->count;
+    double *rates = sf_alloc(err, curves + 1, sizeof *rates, "curve rates");
+    int64_t *ptr = sf_alloc(err, curves + 2, sizeof *ptr, "curve list");
+    double *strain = sf_alloc(err, points + more, sizeof *strain, "curve strains");
+    double *stress = sf_alloc(err, points + more, sizeof *stress, "curve stresses");
+    if (!rates || !ptr || !strain || !stress) {
+        free(rates);
+        free(ptr);
+        free(strain);
+        free(stress);
+        return err->status;
+    }
+    if (curves > 0) {
+        memcpy(rates, card->curve_rate, curves * sizeof *rates);
+        memcpy(ptr, card->curve_ptr, (curves + 1) * sizeof *ptr);
+        memcpy(strain, card->curve_strain, points * sizeof *strain);
+        memcpy(stress, card->curve_stress, points * sizeof *stress);
+        free(card->curve_rate);
+        free(card->curve_ptr);
+        free(card->curve_strain);
+        free(card->curve_stress);
+    }
+    memcpy(strain + points, curve->strain, more * sizeof *strain);
+    memcpy(stress + points, curve->stress, more * sizeof *stress);
+    rates[curves] = rate;
+    ptr[curves + 1] = (int64_t)(points + more);
+    card->curve_rate = rates;
+    card->curve_ptr = ptr;
+    card->curve_strain = strain;
+    card->curve_stress = stress;
+    card->curve_count++;
+    card->curve_points += curve->count;
+    return SF_OK;
+}
+
+static const double STEEPEST = 1e12; /* Pa, as the bound on a modulus */
+
+/* Stiffer than any solid: 1e300 MPa, or two points at one place. */
+static sf_status check_slopes(const char *path, const sf_case_curve *curve, sf_error *err) {
+    for (int64_t k = 1; k < curve->count; k++) {
+        double slope = (curve->stress[k] - curve->stress[k - 1]) / (curve->strain[k] - curve->strain[k - 1]);
+        if (!(slope <= STEEPEST))
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s: from the strain %g to %g the stress rises from %g to %g Pa, with a modulus of "
+                "%.3g Pa; at most %g Pa are possible",
+                path, curve->strain[k - 1], curve->strain[k], curve->stress[k - 1], curve->stress[k], slope,
+                STEEPEST);
+    }
+    return SF_OK;
+}
+
+static sf_status read_file(sf_case_reader *reader, const config_setting_t *setting, double rate,
+                           sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const char *text = config_setting_get_string(setting);
+    if (!text || !*text)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: the name of a curve's CSV file is expected",
+                       sf_case_where(reader, setting, where), reader->material_group);
+    char *path = sf_case_resolve(reader, setting, text, err);
+    if (!path)
+        return err->status;
+    sf_case_curve curve = {0};
+    sf_error inner = SF_ERROR_INIT;
+    sf_status status = sf_case_curve_read(path, &curve, &inner);
+    if (status == SF_OK)
+        status = check_slopes(path, &curve, &inner);
+    if (status != SF_OK) {
+        SF_FAIL(err, status, "%s (named at %s)", inner.text, sf_case_where(reader, setting, where));
+    } else {
+        if (curve.understood[0])
+            sf_sink_tell(reader->sink, SF_NOTE, "curve %s: %s", path, curve.understood);
+        if (curve.extended)
+            sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
+                         path, curve.strain[1]);
+        status = add_curve(sf_material_curves(reader->material), rate, &curve, err);
+    }
+    sf_case_curve_free(&curve);
+    free(path);
+    return status;
+}
+
+/* One { rate = "..."; file = "..."; } of material.curves. */
+static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_law_curves *card = sf_material_curves(reader->material);
+    const config_setting_t *rate =
+        config_setting_is_group(entry) ? config_setting_get_member(entry, "rate") : NULL;
+    const config_setting_t *file =
+        config_setting_is_group(entry) ? config_setting_get_member(entry, "file") : NULL;
+    if (!rate || !file || config_setting_length(entry) != 2)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: %s.curves: each entry must be { rate = \"0.0017 1/s\"; file = \"name.csv\"; }",
+                       sf_case_where(reader, entry, where), reader->material_group);
+    const char *text = config_setting_get_string(rate);
+    sf_error inner = SF_ERROR_INIT;
+    double value = 0.0;
+    if (!text)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: the rate must be a text such as \"0.0017 1/s\"",
+                       sf_case_where(reader, rate, where), reader->material_group);
+    if (sf_units_parse(reader->units, text, SF_RATE, &value, &inner) != SF_OK)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %s", sf_case_where(reader, rate, where),
+                       reader->material_group, inner.text);
+    double last = card->curve_count > 0 ? card->curve_rate[card->curve_count - 1] : 0.0;
+    if (!(value > last))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: %s.curves: the rate %g s-1 is not above %g s-1 before it; rates must be "
+                       "positive and ascend",
+                       sf_case_where(reader, rate, where), reader->material_group, value, last);
+    return read_file(reader, file, value, err);
+}
+
+static void describe(const sf_law_curves *card, char *detail, size_t size) {
+    snprintf(detail, size, "%lld point%s, strain to %g", (long long)card->curve_points,
+             card->curve_points == 1 ? "" : "s", card->curve_strain[card->curve_points - 1]);
+}
+
+sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
+                              size_t size, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    if (sf_material_curves(reader->material)->curve_count > 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has both curve and curves; only one of them may be given",
+                       sf_case_where(reader, setting, where), reader->material_group);
+    if (strcmp(config_setting_name(setting), "curve") == 0) {
+        if (read_file(reader, setting, 0.0, err) != SF_OK)
+            return err->status;
+    } else {
+        if (!config_setting_is_list(setting) || config_setting_length(setting) == 0)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s: %s.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
+                sf_case_where(reader, setting, where), reader->material_group);
+        if (config_setting_length(setting) > MOST_CURVES)
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %d curves; at most %d are read",
+                           sf_case_where(reader, setting, where), reader->material_group,
+                           config_setting_length(setting), MOST_CURVES);
+        for (int i = 0; i < config_setting_length(setting); i++)
+            if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), err) != SF_OK)
+                return err->status;
+    }
+    describe(sf_material_curves(reader->material), detail, size);
+    return SF_OK;
+}

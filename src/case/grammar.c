@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "case/grammar.h"
+
+#include "base/text.h"
+#include <ctype.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_WORDS = 20000, DEEPEST = 32, LONGEST = 4096 /* characters of a string */ };
+
+static const char DIGITS[] = "0123456789", HEXADECIMAL[] = "0123456789abcdefABCDEF";
+
+/* The line being read. */
+typedef struct cursor {
+    sf_case_scan *scan;
+    const char *at, *end;
+    sf_error *err;
+} cursor;
+
+/* Records "path:line: sentence", of a line 0 "path: sentence". */
+#define REFUSE(c, ...) refuse((c)->scan, (c)->scan->line, (c)->err, __LINE__, __VA_ARGS__)
+
+__attribute__((format(printf, 5, 6))) static sf_status
+refuse(const sf_case_scan *scan, int line, sf_error *err, int source_line, const char *format, ...) {
+    char sentence[400], number[16] = "";
+    va_list args;
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    if (line > 0)
+        snprintf(number, sizeof number, ":%d", line);
+    return sf_error_set(err, SF_ERR_INPUT, __FILE__, source_line, "%s%s: %s", scan->path, number, sentence);
+}
+
+static bool begins(const cursor *c, const char *with) {
+    size_t length = strlen(with);
+    return (size_t)(c->end - c->at) >= length && memcmp(c->at, with, length) == 0;
+}
+
+static size_t blanks(const cursor *c) {
+    size_t count = 0;
+    while (c->at + count < c->end && (c->at[count] == ' ' || c->at[count] == '\t'))
+        count++;
+    return count;
+}
+
+/* ---- words ---- */
+
+static bool is_word(char c) {
+    return isalnum((unsigned char)c) || (c != '\0' && strchr("_.+-*", c));
+}
+
+/* [+-] digits or 0x digits, and L or LL. */
+static bool is_whole(const char *word) {
+    const char *at = word + (*word == '+' || *word == '-');
+    bool hexadecimal = at[0] == '0' && (at[1] == 'x' || at[1] == 'X');
+    at += hexadecimal ? 2 : 0;
+    size_t digits = strspn(at, hexadecimal ? HEXADECIMAL : DIGITS);
+    size_t suffix = strspn(at + digits, "L");
+    return digits > 0 && suffix <= 2 && at[digits + suffix] == '\0';
+}
+
+/* A whole number that is cut: without an L to 32 bits, with one to 64. */
+static bool is_wide(const char *word) {
+    char *end;
+    errno = 0;
+    long long value = strtoll(word, &end, word[0] == '0' && (word[1] == 'x' || word[1] == 'X') ? 16 : 10);
+    return errno == ERANGE || (*end == '\0' && (value < INT_MIN || value > INT_MAX));
+}
+
+static sf_status read_word(cursor *c) {
+    char word[64];
+    const char *from = c->at;
+    double value;
+    while (c->at < c->end && is_word(*c->at))
+        c->at++;
+    int length = snprintf(word, sizeof word, "%.*s", (int)(c->at - from), from);
+    if (isalpha((unsigned char)*word) || *word == '*' || *word == '_')
+        return SF_OK;
+    const char *rest = sf_decimal_read(word, &value);
+    if (length >= (int)sizeof word || (!is_whole(word) && (!rest || *rest)))
+        return REFUSE(c, "\"%.63s\" is not a number", word);
+    if (is_whole(word) && is_wide(word))
+        return REFUSE(c, "%s is too large for a whole number: write it with a decimal point, or with an L",
+                      word);
+    return SF_OK;
+}
+
+/* ---- strings and comments ---- */
+
+static bool is_hexadecimal(char c) {
+    return c != '\0' && strchr(HEXADECIMAL, c);
+}
+
+/* Of \a, \b and \v libconfig 1.5 keeps the backslash, and newer ones do not. */
+static sf_status read_escape(cursor *c) {
+    char next = c->at + 1 < c->end ? c->at[1] : '\0';
+    bool code = next == 'x' && c->end - c->at > 3 && is_hexadecimal(c->at[2]) && is_hexadecimal(c->at[3]);
+    if (code ? c->at[2] == '0' && c->at[3] == '0' : next == '\0' || !strchr("fnrt\\\"", next))
+        return REFUSE(c, "\\%.*s in a text is no character (a backslash is written \\\\)", code ? 3 : 1,
+                      next ? c->at + 1 : "");
+    c->at += code ? 4 : 2;
+    return SF_OK;
+}
+
+static sf_status read_string(cursor *c) {
+    const char *from = c->at++;
+    while (c->at < c->end && *c->at != '"') {
+        if (*c->at != '\\')
+            c->at++;
+        else if (read_escape(c) != SF_OK)
+            return c->err->status;
+    }
+    if (c->at == c->end)
+        return REFUSE(c, "the text that begins with %.*s is not closed with \" on its line",
+                      (int)(c->end - from < 24 ? c->end - from : 24), from);
+    if (++c->at - from > LONGEST)
+        return REFUSE(c, "a text is longer than %d characters", LONGEST);
+    return SF_OK;
+}
+
+/* Within a comment from here on; moves past its end if that is on the line. */
+static void pass_comment(cursor *c) {
+    while (c->at < c->end && !begins(c, "*/"))
+        c->at++;
+    if (c->at < c->end) {
+        c->at += 2;
+        c->scan->open = false;
+    }
+}
+
+/* ---- a line ---- */
+
+static sf_status count_word(cursor *c) {
+    if (++c->scan->words > MOST_WORDS)
+        return REFUSE(c, "more than %d names and values: nobody writes such a file", MOST_WORDS);
+    return SF_OK;
+}
+
+static sf_status read_bracket(cursor *c) {
+    c->scan->depth += strchr("{([", *c->at++) ? 1 : -1;
+    if (c->scan->depth > DEEPEST)
+        return REFUSE(c, "brackets are nested more than %d deep", DEEPEST);
+    return SF_OK;
+}
+
+static sf_status read_item(cursor *c) {
+    if (begins(c, "#") || begins(c, "//")) {
+        c->scan->comments++;
+        c->at = c->end;
+    } else if (begins(c, "/*")) {
+        c->scan->comments++;
+        c->scan->open = true;
+        c->scan->open_line = c->scan->line;
+        c->at += 2;
+        pass_comment(c);
+    } else if (*c->at == '"' || is_word(*c->at)) {
+        SF_TRY(count_word(c));
+        return *c->at == '"' ? read_string(c) : read_word(c);
+    } else if (strchr("{([])}", *c->at)) {
+        return read_bracket(c);
+    } else if (*c->at == '@') {
+        return REFUSE(c, "%s", "what begins with @ is not @include \"FILE\" at the beginning of a line");
+    } else {
+        c->at++;
+    }
+    return SF_OK;
+}
+
+/* `@include "name"`, and a comment at most behind it. */
+static sf_status read_include(cursor *c, sf_case_slice *include) {
+    c->at += 8;
+    c->at += blanks(c);
+    const char *name = c->at + 1;
+    if (!begins(c, "\""))
+        return REFUSE(c, "%s", "@include: the name of a file in quotes is missing");
+    for (c->at++; c->at < c->end && *c->at != '"'; c->at++)
+        ;
+    if (c->at == c->end)
+        return REFUSE(c, "%s", "@include: the name of the file is not closed with \"");
+    *include = (sf_case_slice){name, (size_t)(c->at - name)};
+    c->at++;
+    c->at += blanks(c);
+    if (c->at < c->end && !begins(c, "#") && !begins(c, "//"))
+        return REFUSE(c, "\"%.*s\" follows @include on its line: write it in the next line",
+                      (int)(c->end - c->at < 40 ? c->end - c->at : 40), c->at);
+    c->at = c->end;
+    return include->length > 0 ? SF_OK : REFUSE(c, "%s", "@include: the name of the file is empty");
+}
+
+sf_status sf_case_scan_line(sf_case_scan *scan, const char *line, size_t length, sf_case_slice *include,
+                            sf_error *err) {
+    bool dos = length > 0 && line[length - 1] == '\r';
+    cursor c = {scan, line, line + length - dos, err};
+    *include = (sf_case_slice){0};
+    if (memchr(line, '\0', length))
+        return REFUSE(&c, "%s", "a zero byte: this is not a text file");
+    if (memchr(line, '\r', length - dos))
+        return REFUSE(&c, "%s",
+                      "a line end of another kind (a carriage return alone): save the file with usual ones");
+    if (scan->open) {
+        pass_comment(&c);
+    } else {
+        c.at += blanks(&c);
+        if (begins(&c, "@include"))
+            return read_include(&c, include);
+    }
+    while (c.at < c.end && err->status == SF_OK)
+        read_item(&c);
+    return err->status;
+}
+
+sf_status sf_case_scan_end(const sf_case_scan *scan, sf_error *err) {
+    if (scan->open)
+        return refuse(scan, scan->open_line, err, __LINE__,
+                      "the comment that begins here is not closed with */");
+    return SF_OK;
+}
+
+sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err) {
+    sf_case_scan scan = {.path = name};
+    sf_case_slice include;
+    SF_TRY(sf_case_scan_line(&scan, text, strlen(text), &include, err));
+    SF_TRY(sf_case_scan_end(&scan, err));
+    if (scan.comments > 0)
+        return refuse(&scan, 0, err, __LINE__, "the value holds a comment");
+    return SF_OK;
+}

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "material/card.h"
+
+#include "base/hash.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+sf_status sf_material_create(const sf_law *law, sf_material *material, sf_error *err) {
+    *material = (sf_material){.law = law, .card = sf_alloc(err, 1, law->card_size, "material card")};
+    return err->status;
+}
+
+void sf_law_curves_free(sf_law_curves *curves) {
+    free(curves->curve_rate);
+    free(curves->curve_ptr);
+    free(curves->curve_strain);
+    free(curves->curve_stress);
+    *curves = (sf_law_curves){0};
+}
+
+void sf_material_free(sf_material *material) {
+    sf_law_curves *curves = material->card ? sf_material_curves(material) : NULL;
+    if (curves)
+        sf_law_curves_free(curves);
+    free(material->card);
+    *material = (sf_material){0};
+}
+
+sf_law_curves *sf_material_curves(const sf_material *material) {
+    size_t offset = material->law->curves;
+    return offset == SIZE_MAX ? NULL : (sf_law_curves *)((char *)material->card + offset);
+}
+
+static double member(const sf_material *material, size_t offset) {
+    return *(const double *)((const char *)material->card + offset);
+}
+
+double sf_material_density(const sf_material *material) {
+    return member(material, material->law->density);
+}
+
+double sf_material_informed(const sf_material *material) {
+    return material->law->informed_strain(material->card);
+}
+
+double sf_material_rest_modulus(const sf_material *material) {
+    return material->law->rest_modulus(material->card);
+}
+
+double sf_material_length(const sf_material *material, double spacing) {
+    double fixed = material->law->length == SIZE_MAX ? 0 : member(material, material->law->length);
+    return fixed > 0 ? fixed : spacing;
+}
+
+bool sf_parameter_acts(const sf_parameter *p, const void *card) {
+    return !p->acts || p->acts(card);
+}
+
+/* ---- checks ---- */
+
+static sf_status check_parameter(const sf_material *m, const sf_parameter *p, int64_t index, sf_error *err) {
+    if (p->kind != SF_PARAMETER_NUMBER && p->kind != SF_PARAMETER_QUANTITY)
+        return SF_OK;
+    double value = member(m, p->offset), high = p->high * (1 + 1e-12); /* converted with a rounding */
+    bool idle = !sf_parameter_acts(p, m->card) && value == 0;
+    bool word = p->kind == SF_PARAMETER_QUANTITY && p->words && value == p->word_value;
+    if (word || idle || (value <= high && (p->low_open ? value > p->low : value >= p->low)))
+        return SF_OK;
+    const char *unit = p->kind == SF_PARAMETER_QUANTITY ? sf_quantity_unit(p->quantity) : "";
+    return SF_FAIL(err, SF_ERR_MODEL, "material %lld (%s): %s is %g, outside %g to %g%s%s", (long long)index,
+                   m->law->name, p->key, value, p->low, p->high, *unit ? " " : "", unit);
+}
+
+static bool all_finite(const double *value, int64_t count) {
+    for (int64_t k = 0; k < count; k++)
+        if (!isfinite(value[k]))
+            return false;
+    return true;
+}
+
+static sf_status check_curves(const sf_law_curves *c, sf_error *err) {
+    if (c->curve_count < 1 || c->curve_ptr[0] != 0 || c->curve_ptr[c->curve_count] != c->curve_points)
+        return SF_FAIL(err, SF_ERR_MODEL, "the material has no usable compression curve");
+    if (!all_finite(c->curve_rate, c->curve_count) || !all_finite(c->curve_strain, c->curve_points) ||
+        !all_finite(c->curve_stress, c->curve_points))
+        return SF_FAIL(err, SF_ERR_MODEL, "a compression curve holds a NaN or infinity");
+    for (int64_t k = 0; k < c->curve_count; k++) {
+        int64_t first = c->curve_ptr[k], last = c->curve_ptr[k + 1];
+        if (first < 0 || last < first || last > c->curve_points || last - first < 4)
+            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld has fewer than 4 points", (long long)k);
+        if (k > 0 && c->curve_rate[k] <= c->curve_rate[k - 1])
+            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld: rates must ascend", (long long)k);
+        if (c->curve_strain[first] != 0 || c->curve_stress[first] != 0)
+            return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not start at (0, 0)",
+                           (long long)k);
+        for (int64_t i = first + 1; i < last; i++)
+            if (c->curve_strain[i] <= c->curve_strain[i - 1] || c->curve_stress[i] < c->curve_stress[i - 1] ||
+                c->curve_strain[i] >= 1)
+                return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not rise at strain %g",
+                               (long long)k, c->curve_strain[i]);
+    }
+    return SF_OK;
+}
+
+sf_status sf_material_check(const sf_material *m, int64_t index, sf_error *err) {
+    if (!m->law || !m->card)
+        return SF_FAIL(err, SF_ERR_MODEL, "material %lld has no law", (long long)index);
+    for (int k = 0; k < m->law->parameter_count; k++)
+        if (check_parameter(m, &m->law->parameter[k], index, err) != SF_OK)
+            return err->status;
+    const sf_law_curves *curves = sf_material_curves(m);
+    if (curves && check_curves(curves, err) != SF_OK)
+        return err->status;
+    return m->law->check ? m->law->check(m->card, err) : SF_OK;
+}
+
+uint64_t sf_material_hash(uint64_t hash, const sf_material *m) {
+    hash = sf_hash(hash, m->name, strlen(m->name));
+    hash = sf_hash(hash, m->law->name, strlen(m->law->name));
+    for (int k = 0; k < m->law->parameter_count; k++)
+        if (m->law->parameter[k].kind <= SF_PARAMETER_CHOICE) /* 8 bytes each */
+            hash = sf_hash(hash, (const char *)m->card + m->law->parameter[k].offset, 8);
+    const sf_law_curves *c = sf_material_curves(m);
+    if (!c || c->curve_count == 0)
+        return hash;
+    hash = sf_hash(hash, c->curve_rate, (size_t)c->curve_count * sizeof *c->curve_rate);
+    hash = sf_hash(hash, c->curve_ptr, (size_t)(c->curve_count + 1) * sizeof *c->curve_ptr);
+    hash = sf_hash(hash, c->curve_strain, (size_t)c->curve_points * sizeof *c->curve_strain);
+    return sf_hash(hash, c->curve_stress, (size_t)c->curve_points * sizeof *c->curve_stress);
+}

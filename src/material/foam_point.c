@@ -1,0 +1,355 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "material/foam_point.h"
+
+#include "material/foam_tangent.h"
+#include "base/lane_math.h"
+#include <string.h>
+
+enum { XX, YY, ZZ, XY, YZ, XZ };
+static const int SYM[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
+
+sf_foam_options sf_foam_options_build(const sf_foam_shared *card) {
+    sf_foam_options o = {
+        .density = card->density,
+        .hu = card->hysteresis_hu,
+        .shape = card->hysteresis_shape,
+        .damp = card->damp,
+        .maxwell = card->maxwell_modulus,
+        .maxwell_rate = card->maxwell_rate,
+        .kelvin = card->kelvin_viscosity,
+        .rate_factor = card->rate_factor,
+        .rate_reference = card->rate_reference,
+        .filter_time = card->rate_filter_time,
+    };
+    sf_unloading_build(card->hysteresis_hu, card->hysteresis_shape, card->hysteresis_alpha, &o.unloading);
+    return o;
+}
+
+/* C = Ft F as (xx, yy, zz, xy, yz, xz). */
+static void right_cauchy_green(double f[9][SF_LANES], double c[6][SF_LANES]) {
+    static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+    for (int k = 0; k < 6; k++) {
+        int i = pair[k][0], j = pair[k][1];
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            c[k][l] = f[i][l] * f[j][l] + f[3 + i][l] * f[3 + j][l] + f[6 + i][l] * f[6 + j][l];
+    }
+}
+
+/* a = J F^-T, row-major; returns J in b->jacobian. */
+static void cofactor(sf_law_batch *b, double a[9][SF_LANES]) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                a[3 * i + j][l] =
+                    b->f[3 * i1 + j1][l] * b->f[3 * i2 + j2][l] - b->f[3 * i1 + j2][l] * b->f[3 * i2 + j1][l];
+        }
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        b->jacobian[l] = b->f[0][l] * a[0][l] + b->f[1][l] * a[1][l] + b->f[2][l] * a[2][l];
+}
+
+/* out = sum of value[i] N_i N_i^T, N_i the columns of v. */
+static void compose(const double value[3][SF_LANES], double v[9][SF_LANES], double out[6][SF_LANES]) {
+    for (int i = 0; i < 3; i++)
+        for (int j = i; j < 3; j++) {
+            double *restrict sum = out[SYM[i][j]];
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                sum[l] = value[0][l] * v[3 * i][l] * v[3 * j][l] +
+                         value[1][l] * v[3 * i + 1][l] * v[3 * j + 1][l] +
+                         value[2][l] * v[3 * i + 2][l] * v[3 * j + 2][l];
+        }
+}
+
+/* Viscosity of DAMP (theory eq. 21), Pa s. */
+static void damp_viscosity(const sf_foam_options *foam, const sf_law_batch *b, double eta[SF_LANES]) {
+    double damp = foam->damp, density = foam->density;
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        eta[l] = damp * b->length[l] * sqrt(density * b->stiffness[l]);
+}
+
+static void green_rates(double v[9][SF_LANES], double rate_of_e[6][SF_LANES], double out[3][SF_LANES]) {
+    memset(out, 0, 3 * sizeof out[0]);
+    for (int i = 0; i < 3; i++)
+        for (int p = 0; p < 3; p++)
+            for (int q = 0; q < 3; q++) {
+                const double *left = v[3 * p + i], *rate = rate_of_e[SYM[p][q]], *right = v[3 * q + i];
+#pragma omp simd
+                for (int l = 0; l < SF_LANES; l++)
+                    out[i][l] += left[l] * rate[l] * right[l];
+            }
+}
+
+SF_KERNEL void sf_foam_point_filter(const sf_foam_options *foam, double dt, sf_law_batch *b,
+                                    const sf_foam_rate *rate) {
+    double *restrict filtered = b->history[SF_FOAM_RATE], weight = -expm1(-dt / foam->filter_time);
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double shortest = b->stretch[0][l], green = rate->green[0][l];
+        for (int i = 1; i < 3; i++) {
+            bool shorter = b->stretch[i][l] < shortest;
+            green = shorter ? rate->green[i][l] : green;
+            shortest = shorter ? b->stretch[i][l] : shortest;
+        }
+        filtered[l] += weight * (sf_larger(-green / shortest, 0) - filtered[l]);
+    }
+}
+
+/* The rate factor: loading stresses times 1 + c log10(rate / reference). Its tangent is that of loading times
+ * the same, and what a change of the filtered rate does to all three. */
+static SF_KERNEL void rate_factor(const sf_foam_options *foam, bool compression, double dt, sf_law_batch *b,
+                                  const sf_foam_loading *law, sf_foam_rate *rate) {
+    double decade = foam->rate_factor / M_LN10, reference = foam->rate_reference, time = foam->filter_time;
+    double gain[SF_LANES], sum[SF_LANES] = {0};
+    sf_foam_point_filter(foam, dt, b, rate);
+    const double *restrict now = b->history[SF_FOAM_RATE];
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        gain[l] = decade * sf_lane_log(sf_larger(now[l] / reference, 1));
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double t = law->t[i][l], acting = (compression & (t > 0)) ? 0 : t;
+            rate->part[i][l] += gain[l] * acting / b->stretch[i][l];
+            sum[l] += acting * acting;
+        }
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double rise = decade / (sf_larger(now[l], reference) * time) * sqrt(sum[l]);
+        rate->factor[l] += gain[l];
+        rate->extra[l] += gain[l] > 0 ? rise : 0;
+    }
+}
+
+/* The overstress of the rate, and its work: by the mean of its values at both ends of the step. */
+static void rate_stress(const sf_foam_options *foam, const sf_foam_kind *kind, double dt, sf_law_batch *b,
+                        const sf_foam_loading *law, double rate_of_e[6][SF_LANES], sf_foam_rate *rate) {
+    double added[3][SF_LANES], tensor[6][SF_LANES];
+    memcpy(added, rate->part, sizeof added);
+    if (kind->overstress)
+        kind->overstress(kind->numbers, dt, b, law, rate);
+    else
+        rate_factor(foam, kind->compression, dt, b, law, rate);
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            added[i][l] = rate->part[i][l] - added[i][l];
+    compose(added, rate->v, tensor);
+    for (int k = 0; k < 6; k++) {
+        double *restrict held = b->history[SF_FOAM_OVERSTRESS + k], half = (k < 3 ? 0.5 : 1) * dt;
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            b->work[l] += half * (held[l] + tensor[k][l]) * rate_of_e[k][l];
+            held[l] = tensor[k][l];
+        }
+    }
+}
+
+/* The bounds of a step that ends where the curve is steeper than where it begins. No direction shortens
+ * faster than by the norm of the rate, which, unlike the rates of the directions, is certain where stretches
+ * are equal. */
+static void look_ahead(const sf_foam_kind *kind, double dt, const sf_law_batch *b,
+                       double rate_of_e[6][SF_LANES], sf_foam_loading *law) {
+    double next[3][SF_LANES];
+    int dense = 0;
+    for (int i = 0; i < 3; i++)
+        for (int l = 0; l < SF_LANES; l++)
+            dense |= b->stretch[i][l] < kind->dense;
+    if (!dense)
+        return;
+    for (int l = 0; l < SF_LANES; l++) {
+        double square = 0;
+        for (int k = 0; k < 6; k++)
+            square += (k < 3 ? 1 : 2) * rate_of_e[k][l] * rate_of_e[k][l];
+        for (int i = 0; i < 3; i++)
+            next[i][l] = b->stretch[i][l] - dt * sqrt(square) / b->stretch[i][l];
+    }
+    kind->ahead(kind->numbers, next, law->steepest);
+}
+
+/* A of the power iteration, of the bounds so far. */
+static void directional(double dt, double v[9][SF_LANES], sf_law_batch *b) {
+    double inverse = dt > 0 ? 2 / dt : 0, effective[3][SF_LANES];
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            effective[i][l] = b->direction_tangent[i][l] + inverse * b->direction_viscosity[i][l];
+    compose(effective, v, b->directional);
+}
+
+/* Elastic part of every lane: second Piola-Kirchhoff stress into s [6][lane], with energies and bounds; `eta`
+ * is the viscosity of DAMP. */
+static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind, double dt, sf_law_batch *b,
+                           double c[6][SF_LANES], double rate_of_e[6][SF_LANES], double s[6][SF_LANES],
+                           double eta[SF_LANES]) {
+    double eigen[6][SF_LANES], softening[SF_LANES], rest = kind->rest;
+    sf_foam_rate rate;
+    sf_foam_loading law;
+    memcpy(eigen, c, sizeof eigen);
+    sf_foam_eigen(eigen, rate.v);
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            b->stretch[i][l] = sqrt(eigen[i][l]);
+    kind->loading(kind->numbers, b->stretch, &law);
+    if (kind->ahead && dt > 0)
+        look_ahead(kind, dt, b, rate_of_e, &law);
+    memcpy(b->energy, law.energy, sizeof b->energy);
+    sf_unloading_lanes(&foam->unloading, b->energy, b->history[SF_FOAM_PEAK], b->factor, softening, b->stored,
+                       b->lost);
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            rate.part[i][l] = b->factor[l] * law.t[i][l] / b->stretch[i][l];
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        b->stiffness[l] =
+            sf_larger(law.slope[0][l], sf_larger(law.slope[1][l], sf_larger(law.slope[2][l], rest)));
+        b->work[l] = rate.extra[l] = 0;
+        rate.factor[l] = b->factor[l];
+    }
+    if ((kind->overstress || foam->rate_factor > 0) && dt > 0) {
+        green_rates(rate.v, rate_of_e, rate.green);
+        rate_stress(foam, kind, dt, b, &law, rate_of_e, &rate);
+    }
+    compose(rate.part, rate.v, s);
+    damp_viscosity(foam, b, eta);
+    sf_foam_tangent_elastic(&(sf_foam_principal){b->stretch, law.t, law.steepest, rate.factor, softening},
+                            foam->maxwell, b->direction_tangent);
+    sf_foam_tangent_viscous(b->stretch, foam->kelvin, eta, b->direction_viscosity);
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            b->direction_tangent[i][l] += rate.extra[l];
+    if (b->directions)
+        directional(dt, rate.v, b);
+}
+
+/* Maxwell branch and Kelvin viscosity on the Green strain, added to s, and their work; closes the bounds. The
+ * Maxwell stress is integrated exactly for a constant rate over the step. */
+static void viscous_stress(const sf_foam_options *foam, double dt, sf_law_batch *b,
+                           double rate_of_e[6][SF_LANES], double s[6][SF_LANES]) {
+    double decay = exp(-foam->maxwell_rate * dt);
+    double gain =
+        foam->maxwell > 0 ? foam->maxwell / foam->maxwell_rate * -expm1(-foam->maxwell_rate * dt) : 0;
+    double norm[SF_LANES] = {0}, work[SF_LANES] = {0};
+    for (int k = 0; k < 6; k++) {
+        double *restrict m = b->history[SF_FOAM_MAXWELL + k], *restrict out = s[k],
+                         *restrict rate = rate_of_e[k];
+        double twice = k < 3 ? 1 : 2;
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double old = m[l], kelvin = foam->kelvin * rate[l];
+            m[l] = decay * old + gain * rate[l];
+            out[l] += m[l] + kelvin;
+            work[l] += twice * (0.5 * (old + m[l]) + kelvin) * rate[l] * dt;
+            norm[l] += twice * (m[l] + kelvin) * (m[l] + kelvin);
+        }
+        if (b->directions) { /* dF S: exactly of the directional kind */
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                b->directional[k][l] += m[l] + foam->kelvin * rate[l];
+        }
+    }
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double geometric = sqrt(norm[l]);
+        b->work[l] += work[l];
+        b->tangent[l] = b->viscosity[l] = 0;
+        for (int i = 0; i < 3; i++) {
+            b->direction_tangent[i][l] += geometric;
+            b->tangent[l] = sf_larger(b->direction_tangent[i][l], b->tangent[l]);
+            b->viscosity[l] = sf_larger(b->direction_viscosity[i][l], b->viscosity[l]);
+        }
+    }
+}
+
+/* DAMP: sigma = DAMP rho c L D with everything current (theory eq. 21), added to p, and its work. */
+static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF_LANES], sf_law_batch *b) {
+    double inverse = 1 / dt, rate[9][SF_LANES], jd[9][SF_LANES];
+    for (int k = 0; k < 9; k++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++)
+            rate[k][l] = (b->f[k][l] - b->f_old[k][l]) * inverse;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j <= i; j++)
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++) {
+                double ij = 0, ji = 0;
+                for (int k = 0; k < 3; k++) {
+                    ij += rate[3 * i + k][l] * a[3 * j + k][l];
+                    ji += rate[3 * j + k][l] * a[3 * i + k][l];
+                }
+                jd[3 * i + j][l] = jd[3 * j + i][l] = 0.5 * (ij + ji);
+            }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++) {
+                double value = eta[l] * (jd[3 * i][l] * a[j][l] + jd[3 * i + 1][l] * a[3 + j][l] +
+                                         jd[3 * i + 2][l] * a[6 + j][l]);
+                b->p[3 * i + j][l] += value;
+                b->work[l] += value * rate[3 * i + j][l] * dt;
+            }
+}
+
+SF_KERNEL void sf_foam_point_update(const sf_foam_options *foam, const sf_foam_kind *kind, double dt,
+                                    sf_law_batch *b) {
+    double c[6][SF_LANES], old[6][SF_LANES], rate_of_e[6][SF_LANES] = {{0}}, s[6][SF_LANES], a[9][SF_LANES],
+                                             eta[SF_LANES];
+    right_cauchy_green(b->f, c);
+    if (dt > 0) {
+        right_cauchy_green(b->f_old, old);
+        double half = 0.5 / dt;
+        for (int k = 0; k < 6; k++)
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                rate_of_e[k][l] = half * (c[k][l] - old[k][l]);
+    }
+    cofactor(b, a);
+    elastic_stress(foam, kind, dt, b, c, rate_of_e, s, eta);
+    viscous_stress(foam, dt, b, rate_of_e, s);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+#pragma omp simd
+            for (int l = 0; l < SF_LANES; l++)
+                b->p[3 * i + j][l] = b->f[3 * i][l] * s[SYM[0][j]][l] + b->f[3 * i + 1][l] * s[SYM[1][j]][l] +
+                                     b->f[3 * i + 2][l] * s[SYM[2][j]][l];
+    if (foam->damp > 0 && dt > 0)
+        damping_stress(dt, eta, a, b);
+}
+
+double sf_foam_axial_factor(const sf_foam_options *foam, double energy, sf_uniaxial *point) {
+    double *peak = &point->history[SF_FOAM_PEAK];
+    const sf_unloading *u = &foam->unloading;
+    if (energy < *peak)
+        return sf_unloading_factor(u->hu, u->shape, u->alpha, energy / *peak);
+    *peak = energy;
+    return 1;
+}
+
+double sf_foam_axial_filter(const sf_foam_options *foam, double dt, double green_rate, double stretch,
+                            sf_uniaxial *point) {
+    double *rate = &point->history[SF_FOAM_RATE], fastest = fmax(0, -green_rate / stretch);
+    *rate += -expm1(-dt / foam->filter_time) * (fastest - *rate);
+    return *rate;
+}
+
+double sf_foam_axial_gain(const sf_foam_options *foam, double dt, double green_rate, double stretch,
+                          sf_uniaxial *point) {
+    if (!(foam->rate_factor > 0))
+        return 0;
+    double rate = sf_foam_axial_filter(foam, dt, green_rate, stretch, point);
+    return foam->rate_factor * fmax(0, log10(rate / foam->rate_reference));
+}
+
+double sf_foam_axial_viscous(const sf_foam_options *foam, double dt, double green_rate, sf_uniaxial *point) {
+    double *maxwell = &point->history[SF_FOAM_MAXWELL];
+    if (foam->maxwell > 0)
+        *maxwell = sf_foam_maxwell(foam->maxwell, foam->maxwell_rate, dt, green_rate, *maxwell);
+    return *maxwell + foam->kelvin * green_rate;
+}

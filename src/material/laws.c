@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "material/laws.h"
+
+#include <string.h>
+
+#define SF_LAW(name) extern const sf_law name;
+#include "material/laws.def"
+#undef SF_LAW
+
+static const sf_law *const laws[] = {
+#define SF_LAW(name) &name,
+#include "material/laws.def"
+#undef SF_LAW
+};
+enum { LAWS = sizeof laws / sizeof laws[0] };
+
+const sf_law *sf_law_get(int number) {
+    return number >= 0 && number < LAWS ? laws[number] : NULL;
+}
+
+const sf_law *sf_law_find(const char *name) {
+    for (int k = 0; k < LAWS; k++)
+        if (strcmp(laws[k]->name, name) == 0)
+            return laws[k];
+    return NULL;
+}
+
+static void place_history(const sf_material *m, sf_material_law *out) {
+    for (int k = 0; k < m->law->history_count; k++) {
+        const sf_history_variable *v = &m->law->history[k];
+        int end = v->first + v->components;
+        out->row_end = end > out->row_end ? end : out->row_end;
+        for (int c = 0; c < v->components && (!v->needed || v->needed(m->card)); c++)
+            out->row[out->rows++] = v->first + c;
+    }
+}
+
+sf_status sf_material_law_build(const sf_material *m, sf_material_law *out, sf_error *err) {
+    *out = (sf_material_law){.law = m->law, .length = sf_material_length(m, 0)};
+    place_history(m, out);
+    if (m->law->build(m->card, &out->numbers, err) != SF_OK)
+        *out = (sf_material_law){0};
+    return err->status;
+}
+
+void sf_material_law_free(sf_material_law *law) {
+    if (law->numbers)
+        law->law->release(law->numbers);
+    *law = (sf_material_law){0};
+}
+
+int sf_material_history_rows(const sf_material *m) {
+    sf_material_law place = {0};
+    place_history(m, &place);
+    return place.rows;
+}
+
+void sf_material_load_history(const sf_material_law *law, const double *from, sf_law_batch *batch) {
+    int next = 0;
+    for (int k = 0; k < law->row_end; k++) {
+        bool kept = next < law->rows && law->row[next] == k;
+        if (kept)
+            memcpy(batch->history[k], &from[SF_LANES * next++], sizeof batch->history[k]);
+        else
+            memset(batch->history[k], 0, sizeof batch->history[k]);
+    }
+}
+
+void sf_material_store_history(const sf_material_law *law, const sf_law_batch *batch, double *to) {
+    for (int k = 0; k < law->rows; k++)
+        memcpy(&to[SF_LANES * k], batch->history[law->row[k]], sizeof batch->history[0]);
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The checks of a good run: a value of each beyond its first bound is a remark on the run's figures, beyond
+ * the second they are not to be used. This list is the only one of them; the verdict of softfall-post
+ * (post/figures/verdict.h), what warns, the studies and the table in docs/formats.md follow it. */
+#ifndef SF_CORE_GOOD_RUN_H
+#define SF_CORE_GOOD_RUN_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
+
+/* X(name, bound of a remark, bound of use (INFINITY: none), shown as, title, value: as figures of
+ * summary.json, why it matters). The magnitude of a value is compared; a value that a run does not define is
+ * not judged. */
+/* clang-format off */
+#define SF_GOOD_RUN(X)                                                                                                 \
+    X(ending, 0, 1, SF_AS_NUMBER, "end of the run",                                                                    \
+      "`status`, `touched`: 0 `finished` or `rebound`, 1 interrupted or no end, 2 failed or never touched",            \
+      "figures of a part of the drop are not those of the drop")                                                       \
+    X(ended_in_contact, 0, 0.4, SF_AS_PERCENT, "deceleration left at the end",                                         \
+      "deceleration in the last row / `a_max_g`; 0 if `rebounded`",                                                    \
+      "the peak or a part of the HIC window may lie after the end")                                                    \
+    X(energy_error, 0.01, 0.05, SF_AS_PERCENT, "energy error", "`energy_error`",                                       \
+      "energy that appears or disappears falsifies the deceleration")                                                  \
+    X(stabilisation, 0.05, 0.15, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
+      "the stabilisation stiffens the pad")                                                                            \
+    X(contact, 0.01, 0.05, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
+      "contact consumes energy that the foam should take")                                                             \
+    X(filter, 0.03, 0.25, SF_AS_PERCENT, "raw peak against the filtered one", "`a_max_raw_g` / `a_max_g` - 1; not of a `step_artefact`",                                          \
+      "the filter makes the peak, or single steps do")                                                                 \
+    X(step_artefact, 0, INFINITY, SF_AS_NUMBER, "raw peak of one or two time steps",                                   \
+      "1 if `a_max_raw_rows` < 3, else 0",                                                                             \
+      "the raw peak grows as the time step shrinks and means nothing; the filtered figures do not depend on it")       \
+    X(coarse, 0.01, INFINITY, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
+      "-`local_strain_excess`, at least 0",                                                                            \
+      "the mesh is too coarse to show the strain below the missile")                                                   \
+    X(local_collapse, 0.1, 0.3, SF_AS_NUMBER, "strain of a node above its neighbours", "`local_collapse`",                \
+      "single nodes collapse or carry the missile alone: the foam is unstable or the mesh too coarse")                  \
+    X(mesh, 0.03, 0.25, SF_AS_PERCENT, "expected error of a_max from the mesh",                                          \
+      "`/model/expected_mesh_error` of results.h5", "the spacing under the missile is too coarse for its pad")         \
+    X(slit, 0, INFINITY, SF_AS_PERCENT, "nodes at a slit, hole or gap narrower than their supports",                     \
+      "`/model/slit_fraction` of results.h5", "the faces of the slit pass through each other where it closes")          \
+    X(informed, 0.01, 0.5, SF_AS_PERCENT, "energy of the foam beyond the strains that its data inform",                \
+      "`energy_beyond_data`", "there the material's curve is extrapolated, and with it the peak")                       \
+    X(anvil, 0.9, 0.95, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \
+      "the missile reaches the anvil; its stiffness is not in the model")                                              \
+    X(below_anvil, 0.01, 0.2, SF_AS_PERCENT, "foam below the anvil", "`below_anvil_mm` / `thickness_mm`", \
+      "the anvil acts on the surfaces of `pad.fixed` only: other foam passes through it and is too soft") \
+    X(notes, 0, INFINITY, SF_AS_NUMBER, "notes of the programs", "number of `notes` that do not only repeat `ending`",                                  \
+      "a program warned of the run or left something out")
+/* clang-format on */
+
+#define SF_GOOD_RUN_LIMIT(name, ...) double name;
+typedef struct sf_good_run {
+    SF_GOOD_RUN(SF_GOOD_RUN_LIMIT)
+} sf_good_run;
+#undef SF_GOOD_RUN_LIMIT
+
+/* The bounds of a remark; static storage. */
+const sf_good_run *sf_good_run_limits(void);
+
+/* A line of the list. */
+typedef struct sf_good_run_rule {
+    const char *key, *title;
+    double remark, refuse; /* the bounds; refuse INFINITY: none */
+    bool percent;
+    const char *figures, *why;
+} sf_good_run_rule;
+
+#define SF_GOOD_RUN_INDEX(name, ...) SF_CHECK_##name,
+enum { SF_GOOD_RUN(SF_GOOD_RUN_INDEX) SF_CHECKS };
+#undef SF_GOOD_RUN_INDEX
+
+/* Line k of the list, 0 <= k < SF_CHECKS; static storage. */
+const sf_good_run_rule *sf_good_run_rule_get(int k);
+
+#endif

@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "model/model.h"
+
+#include "base/mat3.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ARRAY(member, type, rows, extra, columns, path, units, text)                                         \
+    { offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text, false }
+#define SCALAR(member, type, path, units, text)                                                              \
+    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, false }
+/* Fields that models of older versions may lack. */
+#define OPTIONAL_ARRAY(member, type, rows, path, units, text)                                                \
+    { offsetof(sf_model, member), type, offsetof(sf_model, rows), 0, 1, path, units, text, true }
+#define OPTIONAL_SCALAR(member, type, path, units, text)                                                     \
+    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true }
+#define F64 SF_MODEL_F64
+#define I32 SF_MODEL_I32
+#define I64 SF_MODEL_I64
+#define U8 SF_MODEL_U8
+
+static const sf_model_field fields[] = {
+    SCALAR(node_count, I64, "/cloud/count", "1", "number of nodes"),
+    ARRAY(position, F64, node_count, 0, 3, "/cloud/position", "m", "reference position X"),
+    ARRAY(volume, F64, node_count, 0, 1, "/cloud/volume", "m3", "volume of the smoothing domain"),
+    ARRAY(mass, F64, node_count, 0, 1, "/cloud/mass", "kg", "lumped mass"),
+    ARRAY(spacing, F64, node_count, 0, 1, "/cloud/spacing", "m", "nodal spacing h"),
+    ARRAY(support, F64, node_count, 0, 1, "/cloud/support", "m", "kernel radius R"),
+    ARRAY(node_material, U8, node_count, 0, 1, "/cloud/material", "1", "number of the material, ascending"),
+    SCALAR(domain_nnz, I64, "/domain/count", "1", "number of (domain, node) pairs"),
+    ARRAY(domain_ptr, I64, node_count, 1, 1, "/domain/ptr", "1", "row starts of the smoothed gradient"),
+    ARRAY(domain_node, I32, domain_nnz, 0, 1, "/domain/node", "1", "node J of each entry"),
+    ARRAY(domain_b, F64, domain_nnz, 0, 3, "/domain/b", "m-1",
+          "smoothed gradient of the shape function of J"),
+    SCALAR(phi_nnz, I64, "/shape/count", "1", "number of (node, node) pairs"),
+    ARRAY(phi_ptr, I64, node_count, 1, 1, "/shape/ptr", "1",
+          "row starts of the shape functions at the nodes"),
+    ARRAY(phi_node, I32, phi_nnz, 0, 1, "/shape/node", "1", "node J of each entry"),
+    ARRAY(phi_value, F64, phi_nnz, 0, 1, "/shape/value", "1", "shape function of J at node I"),
+    SCALAR(edge_nnz, I64, "/edge/count", "1", "number of directed edges"),
+    ARRAY(edge_ptr, I64, node_count, 1, 1, "/edge/ptr", "1", "row starts of the edge adjacency"),
+    ARRAY(edge_node, I32, edge_nnz, 0, 1, "/edge/node", "1", "node at the other end"),
+    SCALAR(cell_count, I64, "/mesh/cell_count", "1", "number of background cells"),
+    SCALAR(cell_nnz, I64, "/mesh/vertex_count", "1", "number of cell vertices"),
+    ARRAY(cell_type, U8, cell_count, 0, 1, "/mesh/cell_type", "1", "XDMF topology code"),
+    ARRAY(cell_ptr, I64, cell_count, 1, 1, "/mesh/cell_ptr", "1", "start of each cell in cell_node"),
+    ARRAY(cell_node, I32, cell_nnz, 0, 1, "/mesh/cell_node", "1", "vertices in VTK order"),
+    SCALAR(fixed_count, I64, "/fixed/count", "1", "number of constrained nodes"),
+    ARRAY(fixed_node, I32, fixed_count, 0, 1, "/fixed/node", "1", "constrained node"),
+    ARRAY(fixed_mask, U8, fixed_count, 0, 1, "/fixed/mask", "1", "held components: bit 0 x, 1 y, 2 z"),
+    ARRAY(fixed_base, U8, fixed_count, 0, 1, "/fixed/base", "1",
+          "1: part of the base, 0: symmetry plane only"),
+    SCALAR(contact_count, I64, "/contact/count", "1", "number of contact points"),
+    ARRAY(contact_node, I32, contact_count, 0, 1, "/contact/node", "1", "node that the missile may touch"),
+    ARRAY(contact_area, F64, contact_count, 0, 1, "/contact/area", "m2",
+          "area of the surface that belongs to it"),
+    OPTIONAL_SCALAR(tie_count, I64, "/tie/count", "1", "number of ties between layers"),
+    OPTIONAL_ARRAY(tie_node, I32, tie_count, "/tie/node", "1", "tied node"),
+    OPTIONAL_ARRAY(tie_other, I32, tie_count, "/tie/other", "1", "node of another layer at the same place"),
+    OPTIONAL_ARRAY(tie_mask, U8, tie_count, "/tie/mask", "1", "tied components: bit 0 x, 1 y, 2 z"),
+    OPTIONAL_SCALAR(rest_count, I64, "/anvil/count", "1", "nodes that rest on the anvil, 0: the pad is held"),
+    OPTIONAL_ARRAY(rest_node, I32, rest_count, "/anvil/node", "1", "node that rests on the anvil"),
+    OPTIONAL_ARRAY(rest_load, F64, rest_count, "/anvil/load", "N",
+                   "its part of the weight of the modelled part"),
+    OPTIONAL_SCALAR(anvil.depth, F64, "/anvil/depth", "m",
+                    "of the anvil below the undeformed pad's top, 0: there is none"),
+    OPTIONAL_SCALAR(anvil.friction, F64, "/anvil/friction", "1", "Coulomb coefficient against a resting pad"),
+    SCALAR(surface_node_count, I64, "/missile/surface_node_count", "1", "nodes of the missile's surface"),
+    SCALAR(surface_triangle_count, I64, "/missile/surface_triangle_count", "1", "triangles of it"),
+    ARRAY(surface_position, F64, surface_node_count, 0, 3, "/missile/surface_position", "m",
+          "position at t = 0"),
+    ARRAY(surface_triangle, I32, surface_triangle_count, 0, 3, "/missile/surface_triangle", "1",
+          "outward triangles"),
+    OPTIONAL_SCALAR(motion_count, I64, "/missile/motion_count", "1",
+                    "points of the prescribed motion, 0: none"),
+    OPTIONAL_ARRAY(motion_time, F64, motion_count, "/missile/motion_time", "s",
+                   "times of the prescribed motion"),
+    OPTIONAL_ARRAY(motion_displacement, F64, motion_count, "/missile/motion_displacement", "m",
+                   "displacement along the direction at these times"),
+    SCALAR(frame_time_count, I64, "/run/frame_time_count", "1", "number of further frames"),
+    ARRAY(frame_time, F64, frame_time_count, 0, 1, "/run/frame_time", "s", "times of further frames"),
+    SCALAR(symmetry_factor, I64, "/model/symmetry_factor", "1", "modelled parts that make the whole"),
+    SCALAR(thickness, F64, "/model/thickness", "m", "pad thickness"),
+    OPTIONAL_SCALAR(expected_mesh_error, F64, "/model/expected_mesh_error", "1",
+                    "expected relative error of a_max from the spacing, 0: not estimated"),
+    OPTIONAL_SCALAR(slit_fraction, F64, "/model/slit_fraction", "1",
+                    "part of the nodes that lie at a slit, hole or gap narrower than their supports"),
+    SCALAR(material_count, I64, "/material/count", "1", "number of materials"),
+    SCALAR(missile.mass, F64, "/missile/mass", "kg", "mass of the whole missile"),
+    SCALAR(missile.speed, F64, "/missile/speed", "m s-1", "speed at t = 0"),
+    SCALAR(missile.direction[0], F64, "/missile/direction_x", "1", "direction of motion, x"),
+    SCALAR(missile.direction[1], F64, "/missile/direction_y", "1", "direction of motion, y"),
+    SCALAR(missile.direction[2], F64, "/missile/direction_z", "1", "direction of motion, z"),
+    SCALAR(missile.friction, F64, "/missile/friction", "1", "Coulomb coefficient"),
+    SCALAR(missile.gravity, F64, "/missile/gravity", "m s-2", "along -z"),
+    SCALAR(missile.gap, F64, "/missile/gap", "m", "distance from the pad at t = 0"),
+    SCALAR(missile.clearance, F64, "/missile/clearance", "m",
+           "height of its lowest point above the undeformed pad's top at t = 0"),
+    OPTIONAL_SCALAR(missile.impact_known, I64, "/missile/impact_known", "1",
+                    "1: the next two are the impact point"),
+    OPTIONAL_SCALAR(missile.impact[0], F64, "/missile/impact_x", "m",
+                    "where the missile's lowest point arrives at the pad's top, x"),
+    OPTIONAL_SCALAR(missile.impact[1], F64, "/missile/impact_y", "m", "the same, y"),
+    SCALAR(missile.shape, I64, "/missile/shape", "1", "0 exact sphere cap, 1 triangulated surface"),
+    SCALAR(missile.sphere_centre[0], F64, "/missile/sphere_centre_x", "m", "centre at t = 0, x"),
+    SCALAR(missile.sphere_centre[1], F64, "/missile/sphere_centre_y", "m", "centre at t = 0, y"),
+    SCALAR(missile.sphere_centre[2], F64, "/missile/sphere_centre_z", "m", "centre at t = 0, z"),
+    SCALAR(missile.sphere_radius, F64, "/missile/sphere_radius", "m", "radius"),
+    SCALAR(missile.sphere_cap_cosine, F64, "/missile/sphere_cap_cosine", "1", "cosine that bounds the cap"),
+    OPTIONAL_SCALAR(missile.freedom, I64, "/missile/freedom", "1", "0 guided along its direction, 1 free"),
+    OPTIONAL_SCALAR(missile.centre[0], F64, "/missile/centre_x", "m",
+                    "centre of mass at t = 0, x; of a free missile"),
+    OPTIONAL_SCALAR(missile.centre[1], F64, "/missile/centre_y", "m", "centre of mass at t = 0, y"),
+    OPTIONAL_SCALAR(missile.centre[2], F64, "/missile/centre_z", "m", "centre of mass at t = 0, z"),
+    OPTIONAL_SCALAR(missile.inertia[0], F64, "/missile/inertia_xx", "kg m2",
+                    "tensor of inertia about the centre of mass"),
+    OPTIONAL_SCALAR(missile.inertia[1], F64, "/missile/inertia_yy", "kg m2", "tensor of inertia"),
+    OPTIONAL_SCALAR(missile.inertia[2], F64, "/missile/inertia_zz", "kg m2", "tensor of inertia"),
+    OPTIONAL_SCALAR(missile.inertia[3], F64, "/missile/inertia_xy", "kg m2",
+                    "tensor of inertia, - integral of x y dm"),
+    OPTIONAL_SCALAR(missile.inertia[4], F64, "/missile/inertia_yz", "kg m2",
+                    "tensor of inertia, - integral of y z dm"),
+    OPTIONAL_SCALAR(missile.inertia[5], F64, "/missile/inertia_xz", "kg m2",
+                    "tensor of inertia, - integral of x z dm"),
+    OPTIONAL_SCALAR(missile.angular_velocity[0], F64, "/missile/angular_velocity_x", "rad s-1",
+                    "at t = 0, x"),
+    OPTIONAL_SCALAR(missile.angular_velocity[1], F64, "/missile/angular_velocity_y", "rad s-1",
+                    "at t = 0, y"),
+    OPTIONAL_SCALAR(missile.angular_velocity[2], F64, "/missile/angular_velocity_z", "rad s-1",
+                    "at t = 0, z"),
+    SCALAR(run.end_time, F64, "/run/end_time", "s", "end of the simulated time"),
+    SCALAR(run.step_safety, F64, "/run/step_safety", "1", "fraction of the stability limit"),
+    SCALAR(run.step_limit, F64, "/run/step_limit", "s", "largest time step"),
+    SCALAR(run.stabilisation, F64, "/run/stabilisation", "1", "stabilisation coefficient"),
+    SCALAR(run.energy_limit, F64, "/run/energy_limit", "1", "energy error that stops the run"),
+    SCALAR(run.frame_interval, F64, "/run/frame_interval", "s", "time between frames"),
+    SCALAR(run.output_fields, I64, "/run/output_fields", "1", "bits of the fields in a frame"),
+    SCALAR(run.stop_after_rebound, I64, "/run/stop_after_rebound", "1", "1: end when the missile has left"),
+    SCALAR(run.kinematic, I64, "/run/kinematic", "1",
+           "figures of 0: the specific force, as an accelerometer reads it; 1: the kinematic acceleration"),
+};
+
+const sf_model_field *sf_model_fields(size_t *count) {
+    *count = sizeof fields / sizeof fields[0];
+    return fields;
+}
+
+double sf_model_whole(const sf_model *model) {
+    return (double)model->symmetry_factor;
+}
+
+bool sf_missile_is_driven(const sf_model *model) {
+    return model->motion_count > 0;
+}
+
+bool sf_missile_turns(const sf_model *model) {
+    return model->missile.freedom == SF_MISSILE_FREE;
+}
+
+bool sf_missile_inertia_is_possible(const double inertia[6], double principal[3]) {
+    static const double SLACK = 1e-9; /* a thin plate's moments are equal to the sum */
+    const double negative[6] = {-inertia[0], -inertia[1], -inertia[2], -inertia[3], -inertia[4], -inertia[5]};
+    principal[2] = sf_sym3_largest(inertia);
+    principal[0] = -sf_sym3_largest(negative);
+    principal[1] = inertia[0] + inertia[1] + inertia[2] - principal[0] - principal[2];
+    return principal[0] > 1e-9 * principal[2] && principal[2] <= (1 + SLACK) * (principal[0] + principal[1]);
+}
+
+double sf_missile_card_depth(const sf_missile_card *card, double displacement) {
+    return -card->direction[2] * displacement - card->clearance;
+}
+
+bool sf_missile_card_is_vertical(const sf_missile_card *card) {
+    return card->direction[2] <= -1 + 1e-9;
+}
+
+double sf_model_informed_strain(const sf_model *model) {
+    double least = INFINITY;
+    for (int64_t k = 0; k < model->material_count; k++)
+        least = fmin(least, sf_material_informed(&model->material[k]));
+    return least;
+}
+
+double sf_model_density(const sf_model *model) {
+    double mass = 0, volume = 0;
+    if (model->material_count == 1)
+        return sf_material_density(&model->material[0]);
+    for (int64_t i = 0; i < model->node_count; i++) {
+        mass += model->mass[i];
+        volume += model->volume[i];
+    }
+    return mass / volume;
+}
+
+sf_status sf_model_take_materials(sf_model *model, sf_material *material, int count, sf_error *err) {
+    if (!model->node_material)
+        model->node_material = sf_alloc(err, (unsigned long)model->node_count, 1, "materials of the nodes");
+    model->material = sf_alloc(err, (unsigned long)count, sizeof *model->material, "materials");
+    if (err->status != SF_OK)
+        return err->status;
+    model->material_count = count;
+    memcpy(model->material, material, (size_t)count * sizeof *material);
+    memset(material, 0, (size_t)count * sizeof *material);
+    return SF_OK;
+}
+
+void sf_model_free(sf_model *model) {
+    for (int64_t k = 0; model->material && k < model->material_count; k++)
+        sf_material_free(&model->material[k]);
+    free(model->material);
+    for (size_t k = 0; k < sizeof fields / sizeof fields[0]; k++)
+        if (fields[k].rows_offset != SIZE_MAX)
+            free(*(void **)((char *)model + fields[k].offset));
+    memset(model, 0, sizeof *model);
+}
+
+void sf_model_drop_mesh(sf_model *model) {
+    free(model->cell_type);
+    free(model->cell_ptr);
+    free(model->cell_node);
+    model->cell_type = NULL;
+    model->cell_ptr = NULL;
+    model->cell_node = NULL;
+    model->cell_count = model->cell_nnz = 0;
+}
+
+void sf_model_drop_domain_nodes(sf_model *model) {
+    free(model->domain_node);
+    free(model->support);
+    model->domain_node = NULL;
+    model->support = NULL;
+}
+
+void sf_model_drop_edges(sf_model *model) {
+    free(model->edge_ptr);
+    free(model->edge_node);
+    model->edge_ptr = NULL;
+    model->edge_node = NULL;
+}

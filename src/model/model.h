@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* sf_model: everything about a drop that does not change while it is solved. softfall-pre builds it, model.h5
+ * stores it, softfall-solve reads it and never writes to it.
+ *
+ * Units are SI throughout. Frame: the geometry's Cartesian axes, the pad's top surface facing +z. Reference
+ * configuration = the mesh as read. Arrays are row-major with the shape given in brackets, from sf_alloc,
+ * owned by the model. Lists are CSR: the entries of row i are [ptr[i], ptr[i+1]). Nodes are the particles of
+ * the cloud. */
+#ifndef SF_CORE_MODEL_H
+#define SF_CORE_MODEL_H
+
+#include "base/error.h"
+#include "model/frame_field.h"
+#include "material/card.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    SF_FIX_X = 1, /* bits of fix_mask: which components of u_h are held at zero */
+    SF_FIX_Y = 2,
+    SF_FIX_Z = 4,
+};
+
+/* Cell types: values are XDMF's topology codes, so that they can be written as they are. */
+enum { SF_CELL_TETRAHEDRON = 6, SF_CELL_PYRAMID = 7, SF_CELL_PRISM = 8, SF_CELL_HEXAHEDRON = 9 };
+
+enum {
+    SF_SHAPE_SPHERE = 0,
+    SF_SHAPE_SURFACE = 1
+}; /* contact with an exact sphere cap, or with the triangles */
+
+/* Degrees of freedom of a missile that is not driven: along its direction, or six. */
+enum { SF_MISSILE_GUIDED = 0, SF_MISSILE_FREE = 1 };
+
+enum { SF_MATERIAL_MAX = 256 };
+/* Frames at equal intervals in one run. */
+enum { SF_MOST_FRAMES = 100000 };
+#define SF_SMALLEST_STEP 1e-9 /* of the end time: a run whose stable step falls below it stops */
+
+typedef struct sf_missile_card {
+    double mass;             /* kg, of the whole missile, whatever the symmetry; 0 with a prescribed motion */
+    double speed;            /* m s-1, at first contact; 0 with a prescribed motion */
+    double direction[3];     /* -, unit vector of motion at t = 0; of a guided missile for good */
+    double friction;         /* -, Coulomb coefficient against the pad */
+    double gravity;          /* m s-2, acts along -z on the missile; 0 with a prescribed motion */
+    double gap;              /* m, distance still to travel along `direction` at t = 0 */
+    double clearance;        /* m, height of its lowest point above the top of the undeformed pad, its highest
+                                point, at t = 0; negative over a hole */
+    int64_t impact_known;    /* 1: the next line holds; models of older versions do not say */
+    double impact[2];        /* m, x and y of the impact point (pre/impact.h) */
+    int64_t shape;           /* SF_SHAPE_* */
+    double sphere_centre[3]; /* m, at t = 0 (SF_SHAPE_SPHERE) */
+    double sphere_radius;    /* m */
+    double sphere_cap_cosine; /* -, smallest cosine between `direction` and a point of the cap, seen from the
+                                 centre */
+    int64_t freedom;          /* SF_MISSILE_GUIDED or SF_MISSILE_FREE; 0 in all that follows if guided */
+    double centre[3];         /* m, centre of mass at t = 0 */
+    double inertia[6]; /* kg m2, about it, of the whole missile; (xx, yy, zz, xy, yz, xz) of the tensor,
+                          base/mat3.h, in the geometry's axes at t = 0 */
+    double angular_velocity[3]; /* rad s-1, at t = 0 */
+} sf_missile_card;
+
+typedef struct sf_anvil_card {
+    double
+        depth; /* m, of the anvil's plane below the top of the undeformed pad, its highest point; 0: none */
+    double friction; /* -, Coulomb coefficient against a resting pad */
+} sf_anvil_card;
+
+typedef struct sf_run_options {
+    double end_time;            /* s */
+    double step_safety;         /* -, fraction of the stability limit */
+    double step_limit;          /* s, largest time step: keeps the history at 50 kHz or more */
+    double stabilisation;       /* -, coefficient of the stabilisation stiffness */
+    double energy_limit;        /* -, |E/E0 - 1| at which the run stops */
+    double frame_interval;      /* s, between frames; frames also at 0 and at the end */
+    int64_t output_fields;      /* SF_FIELD_* bits */
+    int64_t stop_after_rebound; /* 1: end when the missile has left the pad upwards */
+    int64_t kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
+} sf_run_options;
+
+typedef struct sf_model {
+    /* Cloud: nodes of the background mesh, those of a material together, in a locality-preserving order. */
+    int64_t node_count;
+    double *position;       /* [node_count][3] m, X */
+    double *volume;         /* [node_count] m3, V of the smoothing domain */
+    double *mass;           /* [node_count] kg, rho V */
+    double *spacing;        /* [node_count] m, h */
+    double *support;        /* [node_count] m, R */
+    uint8_t *node_material; /* [node_count] index in `material`, ascending */
+
+    /* Smoothed gradient: B_J^I for the nodes J that the domain of node I sees (theory eq. 4). Rows hold node
+     * I itself, and are sorted by node. */
+    int64_t domain_nnz;
+    int64_t *domain_ptr;  /* [node_count + 1] */
+    int32_t *domain_node; /* [domain_nnz] J */
+    double *domain_b;     /* [domain_nnz][3] m-1 */
+
+    /* Shape functions at the nodes: phi_J(X_I), rows sorted by node. */
+    int64_t phi_nnz;
+    int64_t *phi_ptr;  /* [node_count + 1] */
+    int32_t *phi_node; /* [phi_nnz] */
+    double *phi_value; /* [phi_nnz] - */
+
+    /* Edges of the background mesh as a symmetric adjacency, rows sorted by node: stabilisation pairs. */
+    int64_t edge_nnz;
+    int64_t *edge_ptr;  /* [node_count + 1] */
+    int32_t *edge_node; /* [edge_nnz] */
+
+    /* Background mesh, for pictures and integrals over the pad. */
+    int64_t cell_count;
+    int64_t cell_nnz;
+    uint8_t *cell_type; /* [cell_count] SF_CELL_* */
+    int64_t *cell_ptr;  /* [cell_count + 1] */
+    int32_t *cell_node; /* [cell_nnz] gmsh/VTK vertex order */
+
+    /* Essential boundary conditions and contact candidates. */
+    int64_t fixed_count;
+    int32_t *fixed_node; /* [fixed_count] ascending */
+    uint8_t *fixed_mask; /* [fixed_count] SF_FIX_* bits */
+    uint8_t *fixed_base; /* [fixed_count] 1 = carries the base reaction, 0 = symmetry plane only */
+    int64_t contact_count;
+    int32_t *contact_node; /* [contact_count] ascending */
+    double *contact_area;  /* [contact_count] m2, of the undeformed surface that belongs to the node */
+
+    /* Ties between the layers of the pad: two nodes at one place, of two clouds, with the same components of
+     * u_h. No tie follows from the others and from what is held. */
+    int64_t tie_count;
+    int32_t *tie_node;  /* [tie_count] ascending */
+    int32_t *tie_other; /* [tie_count] the node tied to it, of a later layer */
+    uint8_t *tie_mask;  /* [tie_count] SF_FIX_* bits: the components that are tied */
+
+    /* The underside of a resting pad, which the anvil can only press; none of a pad that is held. At t = 0
+     * the pad has settled: rest_load carries its weight. */
+    int64_t rest_count;
+    int32_t *rest_node; /* [rest_count] ascending, on one plane z = constant */
+    double *rest_load;  /* [rest_count] N, of the anvil on the pad at t = 0; their sum is the pad's weight */
+
+    /* The missile's surface at t = 0, triangles turned outwards. */
+    int64_t surface_node_count;
+    int64_t surface_triangle_count;
+    double *surface_position;  /* [surface_node_count][3] m */
+    int32_t *surface_triangle; /* [surface_triangle_count][3] */
+
+    /* Prescribed motion of the missile along its direction, piecewise linear (model/motion.h): both columns
+     * begin with 0, the times ascend to run.end_time or beyond. */
+    int64_t motion_count;        /* 0 = the missile is free; else 2 or more */
+    double *motion_time;         /* [motion_count] s */
+    double *motion_displacement; /* [motion_count] m */
+
+    /* Times of further frames, beside run.frame_interval. */
+    int64_t frame_time_count;
+    double *frame_time; /* [frame_time_count] s, ascending */
+
+    int64_t symmetry_factor;    /* 1, 2 or 4: how many times the modelled part makes the whole */
+    double thickness;           /* m, of the pad along z */
+    double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; 0 = not estimated */
+    double slit_fraction;       /* of the nodes: those at a slit, hole or gap narrower than their supports */
+    int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */
+    sf_material *material;      /* [material_count] owned */
+    sf_missile_card missile;
+    sf_anvil_card anvil;
+    sf_run_options run;
+} sf_model;
+
+/* Modelled parts that make the whole pad and missile: what a force, an energy, a mass or an area of the
+ * modelled part is multiplied by for that of the whole, and divided by for the way back. A power of two:
+ * exact. */
+double sf_model_whole(const sf_model *model);
+
+/* The points that can touch: those of the contact group, which the missile may press, and after them those of
+ * a resting pad's underside on the anvil. A node may be in both lists. */
+static inline int64_t sf_model_points(const sf_model *model) {
+    return model->contact_count + model->rest_count;
+}
+static inline bool sf_model_point_rests(const sf_model *model, int64_t point) {
+    return point >= model->contact_count;
+}
+static inline int64_t sf_model_point_node(const sf_model *model, int64_t point) {
+    return point < model->contact_count ? model->contact_node[point]
+                                        : model->rest_node[point - model->contact_count];
+}
+
+/* Has the missile a prescribed motion (model/motion.h)? Else the drop decides. */
+bool sf_missile_is_driven(const sf_model *model);
+/* Has it six degrees of freedom? */
+bool sf_missile_turns(const sf_model *model);
+/* Can a body have this tensor of inertia: are its principal moments positive, and none larger than the sum of
+ * the other two? `principal` [3] (kg m2), ascending. */
+bool sf_missile_inertia_is_possible(const double inertia[6], double principal[3]);
+/* The indentation, in this one place: depth (m) of the missile's lowest point below the plane of the
+ * undeformed pad's top, from which the thickness is measured, after the missile's displacement (m) along its
+ * direction; negative above the plane. */
+double sf_missile_card_depth(const sf_missile_card *card, double displacement);
+/* Does the missile move straight down? */
+bool sf_missile_card_is_vertical(const sf_missile_card *card);
+
+/* The material of a node; borrowed. */
+static inline const sf_material *sf_model_material(const sf_model *model, int64_t node) {
+    return &model->material[model->node_material[node]];
+}
+
+/* Least, over the materials, of the strain up to which their data inform (sf_material_informed); INFINITY:
+ * they do not say. */
+double sf_model_informed_strain(const sf_model *model);
+/* Mean density of the undeformed pad, kg m-3. */
+double sf_model_density(const sf_model *model);
+
+/* Moves `count` materials into the list. node_material is allocated and, if there is one material only, stays
+ * zero; node_count is known. */
+sf_status sf_model_take_materials(sf_model *model, sf_material *material, int count, sf_error *err);
+
+/* Releases every array and zeroes the model. Safe on a zeroed model. */
+void sf_model_free(sf_model *model);
+
+/* Releases the background mesh: the solver no longer needs it once it is in the results. */
+void sf_model_drop_mesh(sf_model *model);
+
+/* The hash of every field, with the mesh, in hex digits: are two models the same, is a file as it was
+ * written? */
+enum { SF_MODEL_HASH_SIZE = 17 };
+void sf_model_hash(const sf_model *model, char text[SF_MODEL_HASH_SIZE]);
+
+/* Releases domain_node and support: the solver's groups have local numbers for the nodes of their domains. */
+void sf_model_drop_domain_nodes(sf_model *model);
+
+/* Releases the edges, once the solver has made its pairs. */
+void sf_model_drop_edges(sf_model *model);
+
+/* True if sizes, index ranges, finiteness, CSR monotonicity and the physical bounds of the cards hold;
+ * otherwise records SF_ERR_MODEL with the first violation. Everything that reads a model.h5 calls it. */
+sf_status sf_model_check(const sf_model *model, sf_error *err);
+
+/* One array or scalar of the model, but for its materials. The table drives reading, writing, checking and
+ * release. */
+typedef enum sf_model_type { SF_MODEL_F64, SF_MODEL_I32, SF_MODEL_I64, SF_MODEL_U8 } sf_model_type;
+typedef struct sf_model_field {
+    size_t offset;      /* of the member in sf_model: a pointer (arrays) or the value itself (scalars) */
+    sf_model_type type; /* of one item; scalars are F64 or I64 */
+    size_t rows_offset; /* of the int64_t member that counts the rows; SIZE_MAX for a scalar */
+    int rows_extra;     /* 1 for CSR pointers */
+    int columns;        /* 1 or more */
+    const char *path;   /* in model.h5 */
+    const char *units;
+    const char *description;
+    bool optional; /* a file may lack it: 0, or no rows */
+} sf_model_field;
+
+/* The table, and its length. Counts come before the arrays that need them. */
+const sf_model_field *sf_model_fields(size_t *count);
+
+#endif

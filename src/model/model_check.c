@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "model/model.h"
+#include "model/motion.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
+static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr,
+                           const int32_t *index, int64_t limit, bool ascending, sf_error *err) {
+    if (ptr[0] != 0 || ptr[rows] != nnz)
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: row starts run from %lld to %lld, not from 0 to %lld", name,
+                       (long long)ptr[0], (long long)ptr[rows], (long long)nnz);
+    for (int64_t i = 0; i < rows; i++)
+        if (ptr[i + 1] < ptr[i] || ptr[i + 1] > nnz)
+            return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld ends before it starts", name, (long long)i);
+    for (int64_t i = 0; i < rows; i++)
+        for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
+            if (index[k] < 0 || index[k] >= limit)
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld refers to node %d, of 0 to %lld", name,
+                               (long long)i, index[k], (long long)limit - 1);
+            if (ascending && k > ptr[i] && index[k] <= index[k - 1])
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld is not in ascending order", name,
+                               (long long)i);
+        }
+    return SF_OK;
+}
+
+static sf_status check_set(const char *name, int64_t count, const int32_t *node, int64_t limit,
+                           sf_error *err) {
+    for (int64_t k = 0; k < count; k++)
+        if (node[k] < 0 || node[k] >= limit || (k > 0 && node[k] <= node[k - 1]))
+            return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld (node %d) is out of range or out of order",
+                           name, (long long)k, node[k]);
+    return SF_OK;
+}
+
+static sf_status check_finite(const sf_model *model, sf_error *err) {
+    size_t count;
+    const sf_model_field *field = sf_model_fields(&count);
+    for (size_t k = 0; k < count; k++) {
+        if (field[k].type != SF_MODEL_F64)
+            continue;
+        const char *base = (const char *)model;
+        bool scalar = field[k].rows_offset == SIZE_MAX;
+        int64_t rows = scalar ? 1 : *(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra;
+        const double *data =
+            scalar ? (const double *)(base + field[k].offset) : *(double *const *)(base + field[k].offset);
+        for (int64_t i = 0; i < rows * field[k].columns; i++)
+            if (!isfinite(data[i]))
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld is not a finite number", field[k].path,
+                               (long long)i);
+    }
+    return SF_OK;
+}
+
+static sf_status check_bound(const char *name, double value, double low, double high, sf_error *err) {
+    if (!(value >= low && value <= high))
+        return SF_FAIL(err, SF_ERR_MODEL, "%s is %g, outside %g to %g", name, value, low, high);
+    return SF_OK;
+}
+
+static sf_status check_materials(const sf_model *m, sf_error *err) {
+    if (m->material_count < 1 || m->material_count > SF_MATERIAL_MAX)
+        return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld materials; 1 to %d are possible",
+                       (long long)m->material_count, SF_MATERIAL_MAX);
+    for (int64_t k = 0; k < m->material_count; k++)
+        if (sf_material_check(&m->material[k], k, err) != SF_OK)
+            return err->status;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        if (m->node_material[i] >= m->material_count)
+            return SF_FAIL(err, SF_ERR_MODEL, "node %lld is of material %d, of 0 to %lld", (long long)i,
+                           m->node_material[i], (long long)m->material_count - 1);
+        if (i > 0 && m->node_material[i] < m->node_material[i - 1])
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "node %lld is of material %d, after one of %d: they must ascend", (long long)i,
+                           m->node_material[i], m->node_material[i - 1]);
+    }
+    return SF_OK;
+}
+
+static sf_status check_motion(const sf_model *m, sf_error *err) {
+    int64_t last = m->motion_count - 1;
+    if (m->motion_count == 0)
+        return SF_OK;
+    if (m->motion_count < 2 || m->motion_time[0] != 0 || m->motion_displacement[0] != 0)
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the missile's motion has %lld points; it needs 2, the first (0, 0)",
+                       (long long)m->motion_count);
+    for (int64_t k = 1; k <= last; k++)
+        if (!(m->motion_time[k] > m->motion_time[k - 1]))
+            return SF_FAIL(err, SF_ERR_MODEL, "the missile's motion: the times do not ascend at %g s",
+                           m->motion_time[k]);
+    if (!(m->run.end_time <= m->motion_time[last] * (1 + SF_MOTION_SLACK)))
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the end time %g s lies beyond the missile's motion, which ends at %g s",
+                       m->run.end_time, m->motion_time[last]);
+    return check_bound("largest speed of the missile's motion (m/s)", sf_motion_measure(m).speed, 1e-9,
+                       SF_MOTION_MAX_SPEED, err);
+}
+
+static sf_status check_freedom(const sf_model *m, sf_error *err) {
+    const sf_missile_card *card = &m->missile;
+    double p[3];
+    if (card->freedom == SF_MISSILE_GUIDED)
+        return SF_OK;
+    if (sf_missile_is_driven(m) || m->symmetry_factor != 1)
+        return SF_FAIL(err, SF_ERR_MODEL, "a free missile cannot be driven, nor be 1/%lld of the whole",
+                       (long long)m->symmetry_factor);
+    if (!sf_missile_inertia_is_possible(card->inertia, p))
+        return SF_FAIL(
+            err, SF_ERR_MODEL,
+            "the missile's inertia has the principal moments %g, %g and %g kg m2: no body has them", p[0],
+            p[1], p[2]);
+    for (int c = 0; c < 3; c++)
+        if (check_bound("place of the missile's centre (m)", card->centre[c], -2e3, 2e3, err) != SF_OK ||
+            check_bound("angular velocity of the missile (rad/s)", card->angular_velocity[c], -1e3, 1e3,
+                        err) != SF_OK)
+            return err->status;
+    return SF_OK;
+}
+
+static sf_status check_cards(const sf_model *m, sf_error *err) {
+    bool driven = sf_missile_is_driven(m);
+    const struct {
+        const char *name;
+        double value, low, high;
+    } bound[] = {
+        {"missile mass (kg)", m->missile.mass, driven ? 0 : 1e-9, driven ? 0 : 1e9},
+        {"missile speed (m/s)", m->missile.speed, driven ? 0 : 1e-9, driven ? 0 : 200},
+        {"missile friction", m->missile.friction, 0, 10},
+        {"missile gravity (m/s2)", m->missile.gravity, 0, driven ? 0 : 1e4},
+        {"missile gap (m)", m->missile.gap, 0, 1e3},
+        {"missile clearance (m)", m->missile.clearance, -1e3, 1e3},
+        {"knowledge of the impact point", (double)m->missile.impact_known, 0, 1},
+        {"missile shape", (double)m->missile.shape, 0, 1},
+        {"missile freedom", (double)m->missile.freedom, 0, 1},
+        {"missile sphere radius (m)", m->missile.sphere_radius, m->missile.shape ? 0 : 1e-9, 1e3},
+        {"missile sphere cap cosine", m->missile.sphere_cap_cosine, -1 - 1e-9, 1 + 1e-9},
+        {"anvil depth (m)", m->anvil.depth, 0, 1e3},
+        {"anvil friction", m->anvil.friction, 0, 10},
+        {"symmetry factor", (double)m->symmetry_factor, 1, 4},
+        {"pad thickness (m)", m->thickness, 1e-6, 1e3},
+        {"expected mesh error", m->expected_mesh_error, 0, 1e6},
+        {"slit fraction", m->slit_fraction, 0, 1},
+        {"end time (s)", m->run.end_time, 1e-9, 1e3},
+        {"step safety", m->run.step_safety, 1e-3, 1},
+        {"step limit (s)", m->run.step_limit, 1e-12, 1e3},
+        {"stabilisation coefficient", m->run.stabilisation, 0, 10},
+        {"energy limit", m->run.energy_limit, 1e-9, 1e9},
+        {"frame interval (s)", m->run.frame_interval, 1e-9, 1e3},
+        {"number of frames", m->run.end_time / m->run.frame_interval, 0, SF_MOST_FRAMES},
+    };
+    for (size_t k = 0; k < sizeof bound / sizeof bound[0]; k++)
+        if (check_bound(bound[k].name, bound[k].value, bound[k].low, bound[k].high, err) != SF_OK)
+            return err->status;
+    if (m->symmetry_factor == 3)
+        return SF_FAIL(err, SF_ERR_MODEL, "the symmetry factor is 3; 1, 2 and 4 are possible");
+    double length = 0;
+    for (int c = 0; c < 3; c++)
+        length += m->missile.direction[c] * m->missile.direction[c];
+    if (fabs(length - 1) > 1e-9)
+        return SF_FAIL(err, SF_ERR_MODEL, "missile direction has length %g, expected 1", sqrt(length));
+    if (check_motion(m, err) != SF_OK || check_freedom(m, err) != SF_OK)
+        return err->status;
+    return check_materials(m, err);
+}
+
+static sf_status check_mesh(const sf_model *m, sf_error *err) {
+    if (check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count,
+                  false, err) != SF_OK)
+        return err->status;
+    for (int64_t c = 0; c < m->cell_count; c++) {
+        static const int vertices[] = {
+            [SF_CELL_TETRAHEDRON] = 4, [SF_CELL_PYRAMID] = 5, [SF_CELL_PRISM] = 6, [SF_CELL_HEXAHEDRON] = 8};
+        uint8_t type = m->cell_type[c];
+        if (type < SF_CELL_TETRAHEDRON || type > SF_CELL_HEXAHEDRON ||
+            m->cell_ptr[c + 1] - m->cell_ptr[c] != vertices[type])
+            return SF_FAIL(err, SF_ERR_MODEL, "background cell %lld has type %d and %lld vertices",
+                           (long long)c, type, (long long)(m->cell_ptr[c + 1] - m->cell_ptr[c]));
+    }
+    for (int64_t k = 0; k < 3 * m->surface_triangle_count; k++)
+        if (m->surface_triangle[k] < 0 || m->surface_triangle[k] >= m->surface_node_count)
+            return SF_FAIL(err, SF_ERR_MODEL, "missile triangle %lld refers to node %d, of 0 to %lld",
+                           (long long)k / 3, m->surface_triangle[k], (long long)m->surface_node_count - 1);
+    return SF_OK;
+}
+
+static sf_status check_areas(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->contact_count; k++)
+        if (!(m->contact_area[k] >= 0))
+            return SF_FAIL(err, SF_ERR_MODEL, "the area of contact point %lld is %g m2", (long long)k,
+                           m->contact_area[k]);
+    return SF_OK;
+}
+
+static sf_status check_loads(const sf_model *m, sf_error *err) {
+    double sum = 0;
+    for (int64_t k = 0; k < m->rest_count; k++) {
+        if (!(m->rest_load[k] >= 0))
+            return SF_FAIL(err, SF_ERR_MODEL, "the anvil's load on resting node %lld is %g N", (long long)k,
+                           m->rest_load[k]);
+        sum += m->rest_load[k];
+    }
+    if (m->rest_count > 0 && !(sum > 0))
+        return SF_FAIL(err, SF_ERR_MODEL, "the pad rests on the anvil without weight");
+    return SF_OK;
+}
+
+static sf_status check_nodes(const sf_model *m, sf_error *err) {
+    for (int64_t i = 0; i < m->node_count; i++)
+        if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0 && m->support[i] > 0))
+            return SF_FAIL(
+                err, SF_ERR_MODEL,
+                "node %lld has volume %g m3, mass %g kg, spacing %g m, support %g m: all must be > 0",
+                (long long)i, m->volume[i], m->mass[i], m->spacing[i], m->support[i]);
+    return SF_OK;
+}
+
+/* Is `node` in row i of the edges, which ascends? */
+static bool has_edge(const sf_model *m, int64_t i, int64_t node) {
+    int64_t low = m->edge_ptr[i], high = m->edge_ptr[i + 1];
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        if (m->edge_node[middle] < node)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < m->edge_ptr[i + 1] && m->edge_node[low] == node;
+}
+
+/* Edges join two nodes that are apart, and both know it. */
+static sf_status check_edges(const sf_model *m, sf_error *err) {
+    for (int64_t i = 0; i < m->node_count; i++)
+        for (int64_t k = m->edge_ptr[i]; k < m->edge_ptr[i + 1]; k++) {
+            int64_t j = m->edge_node[k];
+            double square = 0;
+            for (int c = 0; c < 3; c++)
+                square += pow(m->position[3 * j + c] - m->position[3 * i + c], 2);
+            if (!(square > 0))
+                return SF_FAIL(err, SF_ERR_MODEL, "edge from node %lld to node %lld has no length",
+                               (long long)i, (long long)j);
+            if (!has_edge(m, j, i))
+                return SF_FAIL(err, SF_ERR_MODEL, "node %lld has an edge to node %lld, which has none back",
+                               (long long)i, (long long)j);
+        }
+    return SF_OK;
+}
+
+static sf_status check_constraints(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->fixed_count; k++)
+        if (m->fixed_mask[k] < 1 || m->fixed_mask[k] > (SF_FIX_X | SF_FIX_Y | SF_FIX_Z) ||
+            m->fixed_base[k] > 1)
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "constrained node %d has mask %d (1 to 7 are possible) and base %d (0 or 1)",
+                           m->fixed_node[k], m->fixed_mask[k], m->fixed_base[k]);
+    return SF_OK;
+}
+
+/* A tie joins two nodes at one place, the first of an earlier layer. */
+static sf_status check_ties(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->tie_count; k++) {
+        int64_t a = m->tie_node[k], b = m->tie_other[k];
+        if (a < 0 || b <= a || b >= m->node_count || (k > 0 && a < m->tie_node[k - 1]) ||
+            m->tie_mask[k] < 1 || m->tie_mask[k] > (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
+            return SF_FAIL(err, SF_ERR_MODEL, "tie %lld joins the nodes %lld and %lld of %lld with mask %d",
+                           (long long)k, (long long)a, (long long)b, (long long)m->node_count,
+                           m->tie_mask[k]);
+        if (memcmp(&m->position[3 * a], &m->position[3 * b], 3 * sizeof *m->position) != 0)
+            return SF_FAIL(err, SF_ERR_MODEL, "tie %lld joins the nodes %lld and %lld, which are apart",
+                           (long long)k, (long long)a, (long long)b);
+    }
+    return SF_OK;
+}
+
+static sf_status check_frame_times(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->frame_time_count; k++)
+        if (m->frame_time[k] < 0 || (k > 0 && m->frame_time[k] < m->frame_time[k - 1]))
+            return SF_FAIL(err, SF_ERR_MODEL, "frame time %g s is negative or not in ascending order",
+                           m->frame_time[k]);
+    return SF_OK;
+}
+
+sf_status sf_model_check(const sf_model *m, sf_error *err) {
+    if (m->node_count < 1 || m->node_count > INT32_MAX)
+        return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld nodes", (long long)m->node_count);
+    if (m->contact_count < 1 || m->surface_triangle_count < 1)
+        return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
+    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK)
+        return err->status;
+    if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
+        return err->status;
+    if (check_csr("smoothing domains", m->node_count, m->domain_nnz, m->domain_ptr, m->domain_node,
+                  m->node_count, true, err) != SF_OK ||
+        check_csr("shape functions", m->node_count, m->phi_nnz, m->phi_ptr, m->phi_node, m->node_count, true,
+                  err) != SF_OK ||
+        check_csr("edges", m->node_count, m->edge_nnz, m->edge_ptr, m->edge_node, m->node_count, true, err) !=
+            SF_OK ||
+        check_edges(m, err) != SF_OK ||
+        check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
+        check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK ||
+        check_set("resting nodes", m->rest_count, m->rest_node, m->node_count, err) != SF_OK ||
+        check_loads(m, err) != SF_OK || check_areas(m, err) != SF_OK || check_constraints(m, err) != SF_OK ||
+        check_ties(m, err) != SF_OK)
+        return err->status;
+    return check_mesh(m, err);
+}

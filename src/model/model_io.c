@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "model/model_io.h"
+
+#include "io/replace.h"
+#include "material/laws.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static sf_h5_type h5_type(sf_model_type type) {
+    switch (type) {
+    case SF_MODEL_I32:
+        return SF_H5_I32;
+    case SF_MODEL_I64:
+        return SF_H5_I64;
+    case SF_MODEL_U8:
+        return SF_H5_U8;
+    default:
+        return SF_H5_F64;
+    }
+}
+
+static sf_status write_fields(sf_h5 *h5, const sf_model *model, sf_error *err) {
+    size_t count;
+    const sf_model_field *field = sf_model_fields(&count);
+    const char *base = (const char *)model;
+    for (size_t k = 0; k < count && err->status == SF_OK; k++) {
+        sf_h5_info info = {field[k].path, field[k].units, field[k].description};
+        const char *member = base + field[k].offset;
+        if (field[k].rows_offset == SIZE_MAX) {
+            sf_h5_write(h5, &info, h5_type(field[k].type), 0, NULL, member, err);
+            continue;
+        }
+        int64_t dims[2] = {*(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra,
+                           field[k].columns};
+        sf_h5_write(h5, &info, h5_type(field[k].type), field[k].columns > 1 ? 2 : 1, dims,
+                    *(void *const *)member, err);
+    }
+    return err->status;
+}
+
+/* ---- materials ---- */
+
+enum { PATH_SIZE = 128 };
+
+/* Of parameter `p`: of the key E /material/0/E, of densification.limit /material/0/densification_limit. */
+static void name_parameter(int64_t index, const sf_parameter *p, char path[PATH_SIZE]) {
+    const char *group = strchr(p->group, '.');
+    snprintf(path, PATH_SIZE, "/material/%lld/%s%s%s", (long long)index, group ? group + 1 : "",
+             group ? "_" : "", p->key);
+}
+
+/* The arrays of curves, in the order of sf_law_curves; the counts come first. */
+typedef struct curve_field {
+    const char *name, *units, *description;
+    sf_h5_type type;
+    size_t offset, rows_offset; /* rows SIZE_MAX: a scalar */
+    int rows_extra;
+} curve_field;
+#define CURVE(member, type, rows, extra, units, text)                                                        \
+    { #member, units, text, type, offsetof(sf_law_curves, member), rows, extra }
+static const curve_field curve_fields[] = {
+    CURVE(curve_count, SF_H5_I64, SIZE_MAX, 0, "1", "number of compression curves"),
+    CURVE(curve_points, SF_H5_I64, SIZE_MAX, 0, "1", "number of points of all curves"),
+    CURVE(curve_rate, SF_H5_F64, offsetof(sf_law_curves, curve_count), 0, "s-1", "strain rate of each curve"),
+    CURVE(curve_ptr, SF_H5_I64, offsetof(sf_law_curves, curve_count), 1, "1", "start of each curve"),
+    CURVE(curve_strain, SF_H5_F64, offsetof(sf_law_curves, curve_points), 0, "1", "engineering strain"),
+    CURVE(curve_stress, SF_H5_F64, offsetof(sf_law_curves, curve_points), 0, "Pa", "engineering stress"),
+};
+enum { CURVE_FIELDS = sizeof curve_fields / sizeof curve_fields[0] };
+
+static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, sf_error *err) {
+    char path[PATH_SIZE];
+    const sf_law_curves *curves = sf_material_curves(m);
+    snprintf(path, sizeof path, "/material/%lld/law", (long long)index);
+    sf_h5_write_text(h5, &(sf_h5_info){path, "1", "law of the material"}, m->law->name, err);
+    snprintf(path, sizeof path, "/material/%lld/name", (long long)index);
+    if (*m->name && err->status == SF_OK)
+        sf_h5_write_text(h5, &(sf_h5_info){path, "1", "layer of the material"}, m->name, err);
+    for (int k = 0; k < m->law->parameter_count && err->status == SF_OK; k++) {
+        const sf_parameter *p = &m->law->parameter[k];
+        if (p->kind > SF_PARAMETER_CHOICE)
+            continue;
+        name_parameter(index, p, path);
+        sf_h5_info info = {path, p->kind == SF_PARAMETER_QUANTITY ? sf_quantity_unit(p->quantity) : "1",
+                           p->meaning};
+        sf_h5_write(h5, &info, p->kind == SF_PARAMETER_CHOICE ? SF_H5_I64 : SF_H5_F64, 0, NULL,
+                    (const char *)m->card + p->offset, err);
+    }
+    for (int k = 0; k < CURVE_FIELDS && curves && err->status == SF_OK; k++) {
+        const curve_field *f = &curve_fields[k];
+        const char *base = (const char *)curves;
+        bool scalar = f->rows_offset == SIZE_MAX;
+        int64_t rows = scalar ? 0 : *(const int64_t *)(base + f->rows_offset) + f->rows_extra;
+        snprintf(path, sizeof path, "/material/%lld/%s", (long long)index, f->name);
+        sf_h5_write(h5, &(sf_h5_info){path, f->units, f->description}, f->type, !scalar, &rows,
+                    scalar ? base + f->offset : *(const void *const *)(base + f->offset), err);
+    }
+    return err->status;
+}
+
+static sf_status read_scalar(const sf_h5 *h5, const char *path, sf_h5_type type, void *to, sf_error *err) {
+    void *data = NULL;
+    if (sf_h5_read(h5, path, type, 0, NULL, &data, err) != SF_OK)
+        return err->status;
+    memcpy(to, data, 8);
+    free(data);
+    return SF_OK;
+}
+
+static sf_status read_curves(const sf_h5 *h5, sf_law_curves *curves, int64_t index, sf_error *err) {
+    char path[PATH_SIZE], *base = (char *)curves;
+    for (int k = 0; k < CURVE_FIELDS && err->status == SF_OK; k++) {
+        const curve_field *f = &curve_fields[k];
+        snprintf(path, sizeof path, "/material/%lld/%s", (long long)index, f->name);
+        if (f->rows_offset == SIZE_MAX) {
+            read_scalar(h5, path, f->type, base + f->offset, err);
+            continue;
+        }
+        int64_t rows = *(const int64_t *)(base + f->rows_offset);
+        void *data = NULL;
+        if (rows < 0 || rows > INT64_MAX / 2)
+            return SF_FAIL(err, SF_ERR_MODEL, "%s: its count %lld is not between 0 and %lld", path,
+                           (long long)rows, (long long)(INT64_MAX / 2));
+        rows += f->rows_extra;
+        sf_h5_read(h5, path, f->type, 1, &rows, &data, err);
+        *(void **)(base + f->offset) = data;
+    }
+    return err->status;
+}
+
+/* The name of a layer; "" if there is none. */
+static sf_status read_material_name(const sf_h5 *h5, int64_t index, char name[SF_MATERIAL_NAME_SIZE],
+                                    sf_error *err) {
+    char path[PATH_SIZE], *text = NULL;
+    snprintf(path, sizeof path, "/material/%lld/name", (long long)index);
+    if (!sf_h5_exists(h5, path))
+        return SF_OK;
+    if (sf_h5_read_text(h5, path, &text, err) == SF_OK &&
+        snprintf(name, SF_MATERIAL_NAME_SIZE, "%s", text) >= SF_MATERIAL_NAME_SIZE)
+        SF_FAIL(err, SF_ERR_MODEL, "%s is longer than %d characters", path, SF_MATERIAL_NAME_SIZE - 1);
+    free(text);
+    return err->status;
+}
+
+static sf_status read_material(const sf_h5 *h5, sf_material *m, int64_t index, sf_error *err) {
+    char path[PATH_SIZE], *name = NULL;
+    snprintf(path, sizeof path, "/material/%lld/law", (long long)index);
+    if (sf_h5_read_text(h5, path, &name, err) != SF_OK)
+        return err->status;
+    const sf_law *law = sf_law_find(name);
+    if (!law)
+        SF_FAIL(err, SF_ERR_MODEL, "%s: \"%.80s\" is not a law that this program has", path, name);
+    free(name);
+    if (!law || sf_material_create(law, m, err) != SF_OK ||
+        read_material_name(h5, index, m->name, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < law->parameter_count && err->status == SF_OK; k++) {
+        const sf_parameter *p = &law->parameter[k];
+        if (p->kind > SF_PARAMETER_CHOICE)
+            continue;
+        name_parameter(index, p, path);
+        read_scalar(h5, path, p->kind == SF_PARAMETER_CHOICE ? SF_H5_I64 : SF_H5_F64,
+                    (char *)m->card + p->offset, err);
+    }
+    sf_law_curves *curves = sf_material_curves(m);
+    return curves && err->status == SF_OK ? read_curves(h5, curves, index, err) : err->status;
+}
+
+static sf_status read_materials(const sf_h5 *h5, sf_model *model, sf_error *err) {
+    int64_t count = model->material_count;
+    if (count < 1 || count > SF_MATERIAL_MAX)
+        return SF_FAIL(err, SF_ERR_MODEL, "/material/count: %lld is not between 1 and %d", (long long)count,
+                       SF_MATERIAL_MAX);
+    model->material = sf_alloc(err, (unsigned long)count, sizeof *model->material, "materials");
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++)
+        read_material(h5, &model->material[k], k, err);
+    return err->status;
+}
+
+/* ---- the hash of the content ---- */
+
+static void write_content_hash(sf_h5 *h5, const sf_model *model, sf_error *err) {
+    char hash[SF_MODEL_HASH_SIZE];
+    sf_model_hash(model, hash);
+    sf_h5_set_attribute(h5, "/", "content_hash", hash, err);
+}
+
+/* A flipped bit may give another valid model: only the hash tells. */
+static sf_status check_content_hash(const sf_h5 *h5, const sf_model *model, sf_error *err) {
+    char stored[64], hash[SF_MODEL_HASH_SIZE];
+    if (sf_h5_get_attribute(h5, "/", "content_hash", stored, sizeof stored, err) != SF_OK)
+        return err->status;
+    sf_model_hash(model, hash);
+    if (strcmp(stored, hash) != 0)
+        return SF_FAIL(err, SF_ERR_MODEL, "is damaged or was changed: the hash of its content is %s, not %s",
+                       hash, stored);
+    return SF_OK;
+}
+
+sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance,
+                         sf_error *err) {
+    char partial[SF_PATH_SIZE];
+    sf_h5 *h5 = NULL;
+    if (sf_replace_begin(path, partial, err) != SF_OK || sf_h5_create(partial, &h5, err) != SF_OK)
+        return err->status;
+    if (sf_provenance_write(h5, "softfall-model", provenance, err) == SF_OK)
+        write_fields(h5, model, err);
+    for (int64_t k = 0; k < model->material_count && err->status == SF_OK; k++)
+        write_material(h5, &model->material[k], k, err);
+    if (err->status == SF_OK)
+        write_content_hash(h5, model, err);
+    sf_h5_close(&h5, err);
+    if (err->status == SF_OK)
+        return sf_replace_commit(partial, path, err);
+    unlink(partial);
+    return err->status;
+}
+
+static sf_status read_field(const sf_h5 *h5, const sf_model_field *field, sf_model *model, sf_error *err) {
+    char *base = (char *)model;
+    void *data = NULL;
+    bool absent = field->optional && !sf_h5_exists(h5, field->path);
+    if (field->rows_offset == SIZE_MAX) {
+        if (absent)
+            return SF_OK;
+        return read_scalar(h5, field->path, h5_type(field->type), base + field->offset, err);
+    }
+    int64_t rows = *(const int64_t *)(base + field->rows_offset);
+    if (rows < 0 || rows > INT64_MAX / 2)
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: its count %lld is not between 0 and %lld", field->path,
+                       (long long)rows, (long long)(INT64_MAX / 2));
+    if (absent && rows == 0)
+        return SF_OK;
+    int64_t dims[2] = {rows + field->rows_extra, field->columns};
+    sf_status status =
+        sf_h5_read(h5, field->path, h5_type(field->type), field->columns > 1 ? 2 : 1, dims, &data, err);
+    *(void **)(base + field->offset) = data;
+    return status;
+}
+
+sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_error *err) {
+    sf_h5 *h5 = NULL;
+    sf_error inner = SF_ERROR_INIT;
+    size_t count;
+    const sf_model_field *field = sf_model_fields(&count);
+    memset(model, 0, sizeof *model);
+    if (sf_h5_open(path, &h5, err) != SF_OK)
+        return err->status;
+    sf_status status = sf_provenance_check(h5, path, "softfall-model", &inner);
+    for (size_t k = 0; k < count && status == SF_OK; k++)
+        status = read_field(h5, &field[k], model, &inner);
+    if (status == SF_OK)
+        status = read_materials(h5, model, &inner);
+    if (status == SF_OK)
+        status = sf_model_check(model, &inner);
+    if (status == SF_OK)
+        status = check_content_hash(h5, model, &inner);
+    if (status != SF_OK) {
+        SF_FAIL(err, inner.status, inner.status == SF_ERR_MODEL ? "%.200s: %.800s" : "%.0s%.800s", path,
+                inner.text);
+        sf_model_free(model);
+    }
+    if (status == SF_OK && file)
+        *file = h5;
+    else
+        sf_h5_close(&h5, &inner);
+    return status;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The guaranteed bound on the highest frequency of the cloud (theory, section "Time step").
+ *
+ * Every smoothing domain L is given a share theta_IL m_I of its nodes' masses, with sum_L theta_IL = 1. Then
+ * the largest eigenvalue of the whole, omega^2, is at most max_L a_L c_L, where a_L bounds the tangent of the
+ * domain (Pa) and c_L = V_L * largest eigenvalue of sum_J B_J B_J^T / (theta_JL m_J). The bound costs one
+ * pass over the domains a step, holds for any field of tangents, and with damping eta_L (Pa s) gives the time
+ * step from c_L (a_L dt^2 + 2 eta_L dt) <= 4. */
+#ifndef SF_CORE_STABILITY_H
+#define SF_CORE_STABILITY_H
+
+#include "base/error.h"
+#include "model/model.h"
+#include <math.h>
+
+/* Fills c [node_count], m kg-1, with shares theta_IL proportional to V_L |B_I^L|. */
+sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err);
+
+/* 4 / (largest stable step of a domain with c (m/kg), a (Pa), eta (Pa s)); s-1. From the positive root of c a
+ * dt^2 + 2 c eta dt - 4 = 0, without cancellation. */
+static inline double sf_stability_slowness(double c, double a, double eta) {
+    double damping = c * eta;
+    return damping + sqrt(damping * damping + 4 * c * a);
+}
+
+/* Largest stable step itself; s. */
+static inline double sf_stability_step(double c, double a, double eta) {
+    return 4 / sf_stability_slowness(c, a, eta);
+}
+
+#endif

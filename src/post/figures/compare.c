@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/figures/compare.h"
+
+#include "base/text.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_REGIONS = 100, MOST_SAMPLES = 1000000 /* of one region */ };
+
+/* One number in ms at *text, moved behind it. */
+static int parse_ms(const char **text, double *seconds) {
+    double value = 0;
+    const char *end = sf_decimal_read(*text, &value);
+    if (!end || !isfinite(value))
+        return 0;
+    *seconds = value * 1e-3;
+    *text = end;
+    return 1;
+}
+
+static int parse_region(const char **text, const char *separators, sf_region *region) {
+    if (!parse_ms(text, &region->begin) || **text == '\0' || !strchr(separators, **text))
+        return 0;
+    ++*text;
+    return parse_ms(text, &region->end) && region->end > region->begin;
+}
+
+sf_status sf_region_parse(const char *text, sf_region *region, sf_error *err) {
+    const char *rest = text;
+    if (!parse_region(&rest, ",-", region) || *rest != '\0')
+        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" is not a window: write two times in ms, e.g. 10.5,25",
+                       text);
+    return SF_OK;
+}
+
+sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count, sf_error *err) {
+    unsigned long most = 1;
+    *count = 0;
+    for (const char *c = text; *c; c++)
+        most += *c == ',';
+    if (most > MOST_REGIONS)
+        return SF_FAIL(err, SF_ERR_INPUT, "%lu regions; at most %d are compared", most, MOST_REGIONS);
+    *regions = sf_alloc(err, most, sizeof **regions, "the regions");
+    if (!*regions)
+        return err->status;
+    const char *rest = text;
+    while (parse_region(&rest, "-", &(*regions)[*count])) {
+        ++*count;
+        if (*rest == '\0')
+            return SF_OK;
+        if (*rest++ != ',')
+            break;
+    }
+    free(*regions);
+    *regions = NULL;
+    *count = 0;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "\"%s\" is not a list of regions: write ascending times in ms, e.g. 0-10,10-16,16-30",
+                   text);
+}
+
+/* Last instant before point `peak` at which the curve rises through `level`; its first point if it is never
+ * below. */
+static double last_rise(const sf_series *curve, int64_t peak, double level, double *value) {
+    for (int64_t i = peak; i > 0; i--) {
+        double a1 = curve->value[i - 1], a2 = curve->value[i];
+        if (a1 <= level) {
+            *value = level;
+            return curve->time[i - 1] + (curve->time[i] - curve->time[i - 1]) * (level - a1) / (a2 - a1);
+        }
+    }
+    *value = curve->value[0];
+    return curve->time[0];
+}
+
+sf_status sf_contact_instant(const sf_series *curve, const char *name, double *instant, sf_error *err) {
+    int64_t peak = 0;
+    for (int64_t i = 1; i < curve->count; i++)
+        if (curve->value[i] > curve->value[peak])
+            peak = i;
+    double a_max = curve->value[peak], low = 0, high = 0;
+    if (!(a_max > 0))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s has no positive acceleration (largest value %g g): positive means that the "
+                       "missile is slowed down",
+                       name, a_max);
+    double t_low = last_rise(curve, peak, 0.02 * a_max, &low);
+    double t_high = last_rise(curve, peak, 0.10 * a_max, &high);
+    if (!(t_high > t_low) || !(high > low))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s begins at %g g, above 10 %% of its peak %g g: its contact cannot be found, give --shift",
+            name, curve->value[0], a_max);
+    *instant = t_low - low * (t_high - t_low) / (high - low);
+    return SF_OK;
+}
+
+static double peak_of(const sf_series *curve) {
+    double peak = curve->value[0];
+    for (int64_t i = 1; i < curve->count; i++)
+        peak = fmax(peak, curve->value[i]);
+    return peak;
+}
+
+static const double SLACK = 1e-5; /* s, of ends: one sample of a filtered curve */
+
+/* A region must lie within the measured curve, and meet the model's, which must not break off in contact. */
+static sf_status check_region(const sf_series *measured, const sf_series *model, bool left, double shift,
+                              sf_region region, sf_error *err) {
+    double begin = measured->time[0], end = measured->time[measured->count - 1];
+    double model_begin = model->time[0] - shift, model_end = model->time[model->count - 1] - shift;
+    if (!(region.end > region.begin) || region.begin < begin - SLACK || region.end > end + SLACK)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "the region %g to %g ms does not lie within the measured curve (%g to %g ms)",
+                       region.begin * 1e3, region.end * 1e3, begin * 1e3, end * 1e3);
+    if (region.end <= model_begin || region.begin >= model_end)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the region %g to %g ms lies outside the model's curve (%g to %g ms of the measured time)",
+            region.begin * 1e3, region.end * 1e3, model_begin * 1e3, model_end * 1e3);
+    if (!left && region.end > model_end + SLACK)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the region %g to %g ms goes beyond the model's curve, which ends in contact at %g ms of the "
+            "measured time: compare a shorter one (--window), or continue the run (softfall-solve "
+            "--restart --end-time)",
+            region.begin * 1e3, region.end * 1e3, model_end * 1e3);
+    return SF_OK;
+}
+
+/* The model at `time`; `flight` in the free flight before and after its curve, of which `*beyond` counts. */
+static double model_at(const sf_series *model, double time, double flight, int64_t *beyond) {
+    if (time >= model->time[0] - SLACK && time <= model->time[model->count - 1] + SLACK)
+        return sf_series_at(model, time);
+    ++*beyond;
+    return flight;
+}
+
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double flight,
+                         double shift, sf_region region, double interval, sf_fit *fit, sf_error *err) {
+    *fit =
+        (sf_fit){.region = region, .first = NAN, .last = NAN, .interval = interval, .r2 = NAN, .rmse_g = NAN};
+    if (check_region(measured, model, left, shift, region, err) != SF_OK)
+        return err->status;
+    double sum = 0, squares = 0, residual = 0, origin = 0, slack = 1e-9;
+    double intervals = floor((region.end - region.begin) / interval + slack);
+    if (!(intervals < MOST_SAMPLES))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the region %g to %g ms would be sampled %.3g times, every %g ms; at most %d are possible",
+            region.begin * 1e3, region.end * 1e3, intervals, interval * 1e3, MOST_SAMPLES);
+    int64_t samples = (int64_t)intervals + 1;
+    for (int64_t k = 0; k < samples; k++) {
+        double time = region.begin + (double)k * interval;
+        double a = sf_series_at(measured, time);
+        double difference = a - model_at(model, time + shift, flight, &fit->flight);
+        if (fit->count++ == 0) {
+            fit->first = time;
+            origin = a; /* keeps the sum of squares free of cancellation */
+        }
+        fit->last = time;
+        sum += a - origin;
+        squares += (a - origin) * (a - origin);
+        residual += difference * difference;
+    }
+    double total = squares - sum * sum / (double)fit->count;
+    if (fit->count < 2)
+        return SF_OK;
+    fit->rmse_g = sqrt(residual / (double)fit->count);
+    if (total > 1e-12 * squares)
+        fit->r2 = 1 - residual / total;
+    return SF_OK;
+}
+
+static sf_status fit_all(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
+                         sf_error *err) {
+    const double intervals[2] = {0.25e-3, 0.50e-3};
+    sf_region window = options->window;
+    if (isnan(window.begin))
+        window = (sf_region){c->injury.hic.t1, c->injury.hic.t2};
+    c->fits =
+        sf_alloc(err, 2 * (unsigned long)(options->region_count + 1), sizeof *c->fits, "the comparison");
+    if (!c->fits)
+        return err->status;
+    for (int64_t k = -1; k < options->region_count; k++) {
+        sf_region region = k < 0 ? window : options->regions[k];
+        for (int j = 0; j < 2; j++)
+            if (sf_compare_fit(&c->measured, model, options->left, options->flight, c->shift, region,
+                               intervals[j], &c->fits[c->fit_count++], err))
+                return err->status;
+    }
+    return SF_OK;
+}
+
+/* The measured curve, as it is compared. */
+static sf_status read_measured(const sf_compare_options *options, sf_comparison *c, sf_error *err) {
+    sf_reference reference;
+    if (sf_reference_read(&options->reference, &reference, err) != SF_OK)
+        return err->status;
+    c->measured = reference.curve;
+    c->raw = reference.raw;
+    c->cfc = options->reference.cfc;
+    c->inverted = options->reference.invert;
+    memcpy(c->understood, reference.understood, sizeof c->understood);
+    return sf_injury_evaluate(&c->measured, &c->injury, err);
+}
+
+sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
+                         sf_error *err) {
+    double measured_contact = 0, model_contact = 0;
+    const char *path = options->reference.path;
+    *c = (sf_comparison){.shift = options->shift, .shift_given = !isnan(options->shift)};
+    if (read_measured(options, c, err) != SF_OK)
+        goto done;
+    if (!(c->injury.a_max_g > 0)) {
+        SF_FAIL(err, SF_ERR_INPUT,
+                "%s has no positive acceleration: positive means that the missile is slowed down", path);
+        goto done;
+    }
+    if (!c->shift_given) {
+        if (sf_contact_instant(&c->measured, path, &measured_contact, err) != SF_OK ||
+            sf_contact_instant(model, "the computed curve", &model_contact, err) != SF_OK)
+            goto done;
+        c->shift = model_contact - measured_contact;
+    }
+    c->peak_error = peak_of(model) / c->injury.a_max_g - 1;
+    fit_all(options, model, c, err);
+done:
+    if (err->status != SF_OK)
+        sf_comparison_free(c);
+    return err->status;
+}
+
+void sf_comparison_free(sf_comparison *comparison) {
+    sf_series_free(&comparison->measured);
+    sf_series_free(&comparison->raw);
+    free(comparison->fits);
+    *comparison = (sf_comparison){0};
+}

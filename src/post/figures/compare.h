@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Model against measurement (Penta et al., Appl. Sci. 2018, 8(7), 1174, Table 2): over a region of the
+ * measured curve, sampled every 0.25 and every 0.50 ms,
+ *
+ *     R2 = 1 - sum (a_i - m_i)^2 / sum (a_i - mean a)^2,   RMSE = sqrt(sum (a_i - m_i)^2 / n),
+ *
+ * a measured, m model, both in g and filtered alike (post/figures/reference.h). The measured curve's clock is shifted
+ * so that both curves begin contact at the same instant: model time = measured time + shift. Regions and
+ * windows are given and reported on the clock of the measured curve. They must lie within it, and over the
+ * model's curve: before that, and after it if the missile has left the pad, the model is in free flight (0
+ * g), which the fit counts. */
+#ifndef SF_POST_COMPARE_H
+#define SF_POST_COMPARE_H
+
+#include "post/figures/injury.h"
+#include "post/figures/reference.h"
+
+typedef struct sf_region {
+    double begin; /* s, clock of the measured curve */
+    double end;   /* s */
+} sf_region;
+
+typedef struct sf_fit {
+    sf_region region; /* as asked for */
+    double first;     /* s, first sample */
+    double last;      /* s */
+    double interval;  /* s */
+    int64_t count;    /* samples */
+    int64_t flight;   /* of them, before or after the model's curve: free flight */
+    double r2;        /* NaN if fewer than 2 samples or a constant measured curve */
+    double rmse_g;    /* NaN if fewer than 2 samples */
+} sf_fit;
+
+typedef struct sf_compare_options {
+    sf_reference_options reference;
+    bool left;                /* the model's curve ends with the missile off the pad */
+    double flight;            /* g: the model's curve in free flight */
+    double shift;             /* s; NaN = align the contacts */
+    sf_region window;         /* NaN = HIC window of the measured curve */
+    const sf_region *regions; /* [region_count], besides the window */
+    int64_t region_count;
+} sf_compare_options;
+
+typedef struct sf_comparison {
+    sf_series measured;                       /* s on its own clock, g, filtered like the model; owned */
+    sf_series raw;                            /* the points of the file; owned */
+    char understood[SF_REFERENCE_UNDERSTOOD]; /* how the file was read */
+    double cfc;                               /* of the measured curve; 0: not filtered here */
+    bool inverted;                            /* on the user's word */
+    sf_injury injury;                         /* of the measured curve */
+    double shift;                             /* s, as used */
+    int shift_given;                          /* 1 if the caller gave it */
+    double peak_error;                        /* model a_max / measured a_max - 1 */
+    int64_t fit_count;
+    sf_fit *fits; /* [fit_count]: for the window, then each region: at 0.25 and at 0.50 ms; owned */
+} sf_comparison;
+
+/* "A,B" or "A-B" in ms. SF_ERR_INPUT names the text. */
+sf_status sf_region_parse(const char *text, sf_region *region, sf_error *err);
+/* "0-10,10-16,16-30" in ms; `*regions` from sf_alloc, owned by the caller. */
+sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count, sf_error *err);
+
+/* Instant at which contact begins: the straight line through the points where the curve last rises through 2
+ * % and 10 % of its peak, before the peak, extrapolated to zero. SF_ERR_INPUT naming `name` if the curve has
+ * no such rise. */
+sf_status sf_contact_instant(const sf_series *curve, const char *name, double *instant, sf_error *err);
+
+/* One region at one sampling interval (s). `left`: the missile is off the pad at the model's end, and stays
+ * in free flight; `flight` (g): the model there, and before its curve. SF_ERR_INPUT if the region is not
+ * within the measured curve, or where the model has no value. */
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double flight,
+                         double shift, sf_region region, double interval, sf_fit *fit, sf_error *err);
+
+/* Reads the measured curve and compares `model` (s, g) with it. Release with sf_comparison_free. */
+sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *comparison,
+                         sf_error *err);
+void sf_comparison_free(sf_comparison *comparison);
+
+#endif

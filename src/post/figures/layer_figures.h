@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Figures of each layer of a pad of several materials. */
+#ifndef SF_POST_LAYERS_H
+#define SF_POST_LAYERS_H
+
+#include "post/results/results.h"
+
+/* X(member, key in summary.json, factor from SI to the unit in the key, meaning). */
+/* clang-format off */
+#define SF_LAYER_FIGURES(X)                                                                                            \
+    X(volume, "volume_cm3", 1e6, "of the undeformed layer, whole pad")                                                 \
+    X(density, "density_kg_m3", 1, "of the undeformed material")                                                       \
+    X(max_local_strain, "max_local_strain", 1, "largest compression (1 - smallest principal stretch) of the run")      \
+    X(absorbed_energy, "absorbed_energy_J", 1, "stored, lost and viscous energy in the last frame, whole pad")         \
+    X(stored_energy, "stored_energy_J", 1, "of it, recoverable")                                                       \
+    X(hysteresis_energy, "hysteresis_energy_J", 1, "of it, lost by the unloading rule")                                \
+    X(viscous_energy, "viscous_energy_J", 1, "of it, viscous work")                                                    \
+    X(energy_share, "energy_share", 1, "of the energy of the foams' curves at /peak")                                  \
+    X(energy_beyond_data, "energy_beyond_data", 1, "share of the layer's own such energy in nodes compressed beyond its `informed_strain`") \
+    X(informed_strain, "informed_strain", 1, "strain up to which the data of its material inform its curve")
+/* clang-format on */
+
+#define SF_LAYER_MEMBER(member, ...) double member;
+typedef struct sf_layer_figures {
+    const char *name;                 /* of the results */
+    SF_LAYER_FIGURES(SF_LAYER_MEMBER) /* SI; NaN: the file does not say */
+} sf_layer_figures;
+#undef SF_LAYER_MEMBER
+
+typedef struct sf_layer_figure {
+    const char *key;
+    double factor;
+    size_t offset; /* of the double in sf_layer_figures */
+    const char *meaning;
+} sf_layer_figure;
+
+/* The list; static storage. */
+const sf_layer_figure *sf_layer_figure_list(size_t *count);
+
+/* [results->layer_count] owned by the caller (free); NULL without layers or on failure. compression and
+ * energy_density: [node_count] of /peak, or NULL. */
+sf_layer_figures *sf_layer_figures_compute(const sf_results *results, const double *compression,
+                                           const double *energy_density, sf_error *err);
+
+/* Notes by how much layers slide on each other at the peak, if that is more than 2 % of the thickness: their
+ * ties hold along the undeformed normal, which is right for small slips. */
+sf_status sf_layers_note_slip(sf_results *results, sf_error *err);
+
+#endif

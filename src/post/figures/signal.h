@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Curves over time, uniform resampling and the channel frequency class (CFC) filter of crash testing.
+ *
+ * sf_series is a piecewise-linear curve: `value[i]` at `time[i]` (s), times strictly ascending. The unit of
+ * the values is the user's (here: multiples of g). Arrays come from sf_alloc and belong to the series;
+ * sf_series_free releases them. A failing function leaves its output series zeroed. */
+#ifndef SF_POST_SIGNAL_H
+#define SF_POST_SIGNAL_H
+
+#include "base/error.h"
+#include <stdint.h>
+
+#define SF_SIGNAL_RATE 100e3 /* Hz, least sampling rate of a resampled curve */
+
+typedef struct sf_series {
+    int64_t count;
+    double *time;  /* [count] s */
+    double *value; /* [count] */
+} sf_series;
+
+sf_status sf_series_create(int64_t count, sf_series *series, sf_error *err);
+void sf_series_free(sf_series *series);
+
+/* SF_ERR_INPUT, naming `name` and the point, unless there are two points or more, all finite, times
+ * ascending. */
+sf_status sf_series_check(const sf_series *series, const char *name, sf_error *err);
+
+/* Linear interpolation at `time` (s); the end values outside the curve. */
+double sf_series_at(const sf_series *series, double time);
+
+/* The curve with `lead` (s) of the value `level` before its first point, where it jumps. */
+sf_status sf_signal_lead_in(const sf_series *series, double lead, double level, sf_series *out,
+                            sf_error *err);
+
+/* A sampling rate (Hz) that keeps every detail of the curve: SF_SIGNAL_RATE, or the next multiple of it above
+ * the mean rate of the points, so that resampling a finely stepped history does not alias it. At most 20
+ * times as much. */
+double sf_signal_rate(const sf_series *series);
+
+/* Uniform samples from the first instant on, `rate` (Hz) apart. A sample is the mean of the curve over its
+ * interval, half a step on either side, so that the integral of the curve, an impulse, survives however short
+ * its peaks are; the first and the last sample are the curve's own values. */
+sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *uniform, sf_error *err);
+
+/* Two-pole Butterworth filter of SAE J211-1, run forward and backward (four poles, no phase shift), on
+ * uniformly sampled data. Both ends are extended by point reflection, as ISO 6487 does, until the filter's
+ * memory has faded, so that the first and the last sample are not bent. SF_ERR_INPUT if the samples are not
+ * uniform or too far apart for `cfc`. */
+sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *filtered, sf_error *err);
+
+#endif

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/figures/strain_field.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double SLIP = 1e-6; /* of the thickness: none */
+
+/* The cells of each node: those of node n are cell[first[n]] to cell[first[n + 1] - 1]. */
+typedef struct node_cells {
+    int64_t *first; /* [node_count + 2] owned */
+    int64_t *cell;  /* [cell_nnz] owned */
+} node_cells;
+
+static void list_cells(const sf_results *r, node_cells *n) {
+    for (int64_t k = 0; k < r->cell_nnz; k++)
+        n->first[r->cell_node[k] + 2]++;
+    for (int64_t i = 0; i < r->node_count; i++)
+        n->first[i + 2] += n->first[i + 1];
+    for (int64_t c = 0; c < r->cell_count; c++) /* moves first[i + 1] from the start of node i to its end */
+        for (int64_t k = r->cell_ptr[c]; k < r->cell_ptr[c + 1]; k++)
+            n->cell[n->first[r->cell_node[k] + 1]++] = c;
+}
+
+/* Appends the neighbours' values of a node in its layer to the `count` values in room; room: NULL counts
+ * only.
+ */
+static int64_t gather(const sf_results *r, const node_cells *n, int64_t node, const double *value,
+                      int64_t count, double *room) {
+    for (int64_t k = n->first[node]; k < n->first[node + 1]; k++)
+        for (int64_t j = r->cell_ptr[n->cell[k]]; j < r->cell_ptr[n->cell[k] + 1]; j++) {
+            if (r->cell_node[j] == node)
+                continue;
+            if (room)
+                room[count] = value[r->cell_node[j]];
+            count++;
+        }
+    return count;
+}
+
+/* ---- nodes of several layers at one place ---- */
+
+static int by_place(const void *a, const void *b, void *positions) {
+    int64_t first = *(const int64_t *)a, second = *(const int64_t *)b;
+    const double *x = (const double *)positions + 3 * first, *y = (const double *)positions + 3 * second;
+    for (int c = 0; c < 3; c++)
+        if (x[c] != y[c])
+            return x[c] < y[c] ? -1 : 1;
+    return (first > second) - (first < second);
+}
+
+static bool is_one_place(const sf_results *r, int64_t a, int64_t b) {
+    return memcmp(&r->position[3 * a], &r->position[3 * b], 3 * sizeof *r->position) == 0;
+}
+
+/* [node_count] the next node at the same place, in a ring; owned by the caller. */
+static int64_t *ring_copies(const sf_results *r, sf_error *err) {
+    unsigned long count = (unsigned long)r->node_count;
+    int64_t *order = sf_alloc(err, count, sizeof *order, "nodes by place"),
+            *next = sf_alloc(err, count, sizeof *next, "nodes by place");
+    for (int64_t i = 0; err->status == SF_OK && i < r->node_count; i++)
+        order[i] = i;
+    if (err->status == SF_OK)
+        qsort_r(order, count, sizeof *order, by_place, r->position);
+    for (int64_t k = 0, first = 0; err->status == SF_OK && k < r->node_count; k++) {
+        bool last = k + 1 == r->node_count || !is_one_place(r, order[k], order[k + 1]);
+        next[order[k]] = last ? order[first] : order[k + 1];
+        first = last ? k + 1 : first;
+    }
+    free(order);
+    return next;
+}
+
+/* Nodes at one place have moved together: they are tied, or would be. */
+static bool is_together(const sf_results *r, const double *displacement, int64_t a, int64_t b) {
+    double square = 0;
+    for (int c = 0; c < 3; c++)
+        square += pow(displacement[3 * a + c] - displacement[3 * b + c], 2);
+    return square <= pow(SLIP * r->thickness, 2);
+}
+
+/* ---- collapse ---- */
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of an even number of values the upper one of the two in the middle, so that half of them reach it. */
+static double median(double *value, int64_t count) {
+    qsort(value, (size_t)count, sizeof *value, ascending);
+    return value[count / 2];
+}
+
+typedef struct collapse_search {
+    const sf_results *r;
+    const double *compression, *displacement;
+    node_cells cells;
+    int64_t *next; /* [node_count] as of ring_copies; NULL: one material; owned */
+    double *room;  /* for the neighbours of a node and of its copies; owned */
+} collapse_search;
+
+static int64_t most_neighbours(const collapse_search *s) {
+    int64_t most = 0;
+    for (int64_t i = 0; i < s->r->node_count; i++) {
+        int64_t count = gather(s->r, &s->cells, i, NULL, 0, NULL);
+        for (int64_t j = s->next ? s->next[i] : i; j != i; j = s->next[j])
+            count = gather(s->r, &s->cells, j, NULL, count, NULL);
+        most = count > most ? count : most;
+    }
+    return most;
+}
+
+/* Compression of a node above its neighbours, in its layer or in all that are tied there, whichever is less:
+ * at a tied interface either side may be the one that carries. */
+static double excess_of(const collapse_search *s, int64_t node) {
+    const double *value = s->compression;
+    int64_t own = gather(s->r, &s->cells, node, value, 0, s->room), all = own;
+    if (own == 0)
+        return 0;
+    for (int64_t j = s->next ? s->next[node] : node; j != node; j = s->next[j])
+        if (is_together(s->r, s->displacement, node, j))
+            all = gather(s->r, &s->cells, j, value, all, s->room);
+    double usual = median(s->room, all); /* sorts the values of all */
+    if (all > own) {
+        gather(s->r, &s->cells, node, value, 0, s->room);
+        usual = fmax(usual, median(s->room, own));
+    }
+    return value[node] - usual;
+}
+
+sf_status sf_strain_field_collapse(const sf_results *r, const double *compression, const double *displacement,
+                                   double *collapse, sf_error *err) {
+    collapse_search s = {
+        .r = r,
+        .compression = compression,
+        .displacement = displacement,
+        .cells = {
+            .first = sf_alloc(err, (unsigned long)r->node_count + 2, sizeof *s.cells.first, "cells of nodes"),
+            .cell = sf_alloc(err, (unsigned long)r->cell_nnz, sizeof *s.cells.cell, "cells of nodes")}};
+    *collapse = 0;
+    if (err->status == SF_OK) {
+        list_cells(r, &s.cells);
+        s.next = r->layer_count > 1 && displacement ? ring_copies(r, err) : NULL;
+    }
+    if (err->status == SF_OK)
+        s.room = sf_alloc(err, (unsigned long)most_neighbours(&s), sizeof *s.room, "neighbours of a node");
+    for (int64_t i = 0; err->status == SF_OK && i < r->node_count; i++)
+        if (compression[i] > *collapse)
+            *collapse = fmax(*collapse, excess_of(&s, i));
+    free(s.room);
+    free(s.next);
+    free(s.cells.first);
+    free(s.cells.cell);
+    return err->status;
+}
+
+double sf_strain_field_energy_beyond(const sf_results *r, const double *compression,
+                                     const double *energy_density, double strain) {
+    double all = 0, beyond = 0;
+    for (int64_t i = 0; i < r->node_count; i++) {
+        double energy = r->volume[i] * energy_density[i];
+        all += energy;
+        beyond += compression[i] > strain ? energy : 0;
+    }
+    return all > 0 ? beyond / all : 0;
+}

@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/figures/verdict.h"
+
+#include "base/units.h"
+#include "base/utf8.h"
+#include "post/results/results_check.h"
+#include <stdio.h>
+#include <string.h>
+
+const char *sf_verdict_phrase(sf_grade grade) {
+    static const char *const phrases[] = {"valid", "valid with remarks", "do not use"};
+    return phrases[grade];
+}
+
+/* ---- the value of each check; NaN: not defined ---- */
+
+static double ending_value(const sf_results *r, const sf_figures *f) {
+    if (!f->touched)
+        return 2;
+    if (!r->has_summary || strcmp(r->status, "interrupted") == 0)
+        return 1;
+    return sf_results_ended_well(r) ? 0 : 2;
+}
+
+static double ended_in_contact_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    if (!f->touched || f->driven)
+        return NAN;
+    if (f->rebounded)
+        return 0;
+    double left = f->raw.value[f->raw.count - 1] / f->injury.a_max_g;
+    return fmax(left, 1e-6); /* still in contact: never 0 */
+}
+
+static double energy_error_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->energy_error;
+}
+
+static double stabilisation_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->stabilisation_energy_fraction;
+}
+
+static double contact_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->contact_energy_fraction;
+}
+
+static bool has_step_artefact(const sf_figures *f) {
+    return f->raw_peak_rows > 0 && f->raw_peak_rows < 3;
+}
+
+static double step_artefact_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->driven || !f->touched ? NAN : has_step_artefact(f);
+}
+
+static double filter_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    if (has_step_artefact(f) || f->driven || !(f->injury.a_max_g > 0))
+        return NAN;
+    return f->injury_raw.a_max_g / f->injury.a_max_g - 1;
+}
+
+static double coarse_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return isnan(f->local_strain_excess) ? NAN : fmax(0, -f->local_strain_excess);
+}
+
+static double local_collapse_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->local_collapse;
+}
+
+static double mesh_value(const sf_results *r, const sf_figures *f) {
+    (void)f;
+    return r->expected_mesh_error;
+}
+
+static double slit_value(const sf_results *r, const sf_figures *f) {
+    (void)f;
+    return r->slit_fraction;
+}
+
+static double informed_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->energy_beyond_data;
+}
+
+static double anvil_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->max_mean_strain;
+}
+
+static double below_anvil_value(const sf_results *r, const sf_figures *f) {
+    return f->below_anvil / r->thickness;
+}
+
+static double notes_value(const sf_results *r, const sf_figures *f) {
+    (void)f;
+    int count = 0;
+    for (int k = 0; k < r->note_count; k++)
+        count += !r->note_of_ending[k];
+    return count;
+}
+
+typedef double (*value_of)(const sf_results *results, const sf_figures *figures);
+#define VALUE(name, ...) name##_value,
+static const value_of values[SF_CHECKS] = {SF_GOOD_RUN(VALUE)};
+#undef VALUE
+
+/* ---- rows ---- */
+
+static sf_grade judge(double value, const sf_good_run_rule *rule) {
+    double size = fabs(value);
+    return size > rule->refuse   ? SF_GRADE_DO_NOT_USE
+           : size > rule->remark ? SF_GRADE_REMARKS
+                                 : SF_GRADE_VALID;
+}
+
+/* A value as a sentence shows it. */
+static void show(double value, bool percent, char text[32]) {
+    snprintf(text, 32, percent ? "%.3g %%" : "%.3g", percent ? 100 * value : value);
+}
+
+bool sf_check_is_flag(const sf_check *check) {
+    return check->key == sf_good_run_rule_get(SF_CHECK_step_artefact)->key;
+}
+
+/* The first note that does not only repeat the row `ending`. */
+static const char *first_note(const sf_results *r) {
+    int k = 0;
+    while (k + 1 < r->note_count && r->note_of_ending[k])
+        k++;
+    return r->notes[k];
+}
+
+/* The sentence of solver/run/ending.c is the reason, not only a failure. */
+static bool ended_on_anvil(const sf_results *r) {
+    static const char reason[] = SF_ENDED_ON_ANVIL;
+    return r->has_summary && strncmp(r->status, reason, sizeof reason - 1) == 0;
+}
+
+static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf_figures *f, sf_check *c) {
+    char value[32], bound[32];
+    show(c->value, rule->percent, value);
+    show(c->grade == SF_GRADE_DO_NOT_USE ? c->use_bound : c->bound, rule->percent, bound);
+    if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_notes)->key)
+        snprintf(c->text, sizeof c->text, "%.0f of the programs' notes, the first: %.*s", c->value,
+                 sf_utf8_cut(first_note(r), 200), first_note(r));
+    else if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_ending)->key)
+        snprintf(c->text, sizeof c->text, "%.250s",
+                 ended_on_anvil(r)         ? r->status
+                 : !f->touched             ? "the missile never touched the pad"
+                 : !r->has_summary         ? "the run has no end: it still runs or was killed"
+                 : c->value > c->use_bound ? "the run failed"
+                                           : "the run was interrupted");
+    else if (isnan(c->value))
+        snprintf(c->text, sizeof c->text, "%s: not defined by this run", c->title);
+    else if (sf_check_is_flag(c))
+        snprintf(c->text, sizeof c->text, "the raw peak is %s",
+                 c->value > 0 ? "one or two time steps long" : "longer than two time steps");
+    else
+        snprintf(c->text, sizeof c->text, "%s %s (%s %s)", c->title, value,
+                 c->grade == SF_GRADE_DO_NOT_USE ? "not to be used beyond" : "good up to", bound);
+}
+
+static void fill_row(int k, const sf_results *r, const sf_figures *f, sf_check *c) {
+    const sf_good_run_rule *rule = sf_good_run_rule_get(k);
+    *c = (sf_check){.key = rule->key,
+                    .title = rule->title,
+                    .why = rule->why,
+                    .unit = "1",
+                    .value = values[k](r, f),
+                    .bound = rule->remark,
+                    .use_bound = rule->refuse};
+    c->grade = judge(c->value, rule);
+    describe(rule, r, f, c);
+}
+
+const char *sf_limit_phrase(const sf_limit *limit) {
+    return !limit->judged ? "not judged" : limit->passed ? "passed" : "failed";
+}
+
+/* Peak and HIC window may lie in the part of the drop that was not computed. */
+static bool ended_early(const sf_verdict *v, const sf_figures *f) {
+    const sf_check *ending = &v->rows[SF_CHECK_ending];
+    return ending->grade == SF_GRADE_DO_NOT_USE ||
+           v->rows[SF_CHECK_ended_in_contact].grade == SF_GRADE_DO_NOT_USE ||
+           (ending->grade != SF_GRADE_VALID && !f->rebounded);
+}
+
+static sf_limit limit_of(const char *key, const char *title, const char *unit, double value, double bound,
+                         bool whole) {
+    bool judged = whole && isfinite(value);
+    return (sf_limit){key, title, unit, value, bound, judged, judged && value <= bound};
+}
+
+void sf_verdict_compute(const sf_results *results, const sf_figures *figures, const sf_limits *limits,
+                        sf_verdict *verdict) {
+    *verdict = (sf_verdict){.count = SF_CHECKS};
+    for (int k = 0; k < SF_CHECKS; k++) {
+        sf_check *row = &verdict->rows[k];
+        fill_row(k, results, figures, row);
+        if (row->grade > verdict->grade)
+            verdict->grade = row->grade;
+    }
+    if (figures->driven)
+        return;
+    verdict->limit_count = SF_LIMITS;
+    const sf_injury *injury = &figures->injury;
+    bool whole = !ended_early(verdict, figures);
+    verdict->limits[0] = limit_of("a_max_g", "a_max", "g", injury->a_max_g, limits->a_max_g, whole);
+    verdict->limits[1] = limit_of("hic", "HIC", "1", injury->hic.value, limits->hic, whole);
+}
+
+void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size) {
+    enum { SHOWN = 3 };
+    size_t used = (size_t)snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
+    int found = 0;
+    for (int grade = SF_GRADE_DO_NOT_USE; grade > SF_GRADE_VALID; grade--)
+        for (int k = 0; k < verdict->count && used < size; k++)
+            if (verdict->rows[k].grade == (sf_grade)grade && found++ < SHOWN)
+                used += (size_t)snprintf(text + used, size - used, "%s%s", found == 1 ? ": " : "; ",
+                                         verdict->rows[k].text);
+    if (found > SHOWN && used < size)
+        snprintf(text + used, size - used, "; and %d more", found - SHOWN);
+}

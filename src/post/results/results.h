@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads results.h5 (docs/formats.md) and refuses what does not keep to that format: every size, index range,
+ * order and finiteness is checked here, so that the rest of softfall-post may trust the numbers.
+ *
+ * A file of a run that failed, was killed or is in progress is read as far as it is valid; `notes` lists the
+ * parts left out: history rows that are not complete or not finite, and frames without their scalars. In a
+ * file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
+ * errors. */
+#ifndef SF_POST_RESULTS_H
+#define SF_POST_RESULTS_H
+
+#include "base/mat3.h"
+#include "base/error.h"
+#include "model/frame_field.h"
+#include "model/columns.h"
+#include "io/h5.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct sf_frame_head {
+    char group[24];                 /* "/frames/000012" or "/peak" */
+    double time;                    /* s */
+    double missile_displacement[3]; /* m, translation of its centre since t = 0 */
+    double missile_quaternion[4];   /* its orientation, base/rotation.h */
+    double acceleration;            /* m s-2 */
+} sf_frame_head;
+
+typedef struct sf_frame {
+    double *field[SF_FRAME_FIELDS]; /* [node_count][components], NULL if the file does not hold it */
+} sf_frame;
+
+/* Of one layer, whole pad, to date. */
+typedef struct sf_layer_sums {
+    double stored, hysteresis, viscous; /* J */
+    double compression;                 /* -, largest */
+} sf_layer_sums;
+
+enum { SF_RESULTS_NOTES = 24, SF_RESULTS_NOTE_SIZE = 512 };
+
+typedef struct sf_results {
+    sf_h5 *file; /* open until sf_results_close */
+
+    int64_t node_count;
+    double *position; /* [node_count][3] m */
+    double *volume;   /* [node_count] m3 */
+    int64_t cell_count;
+    int64_t cell_nnz;
+    uint8_t *cell_type; /* [cell_count] XDMF topology code */
+    int64_t *cell_ptr;  /* [cell_count + 1] */
+    int32_t *cell_node; /* [cell_nnz] VTK order */
+    int64_t surface_node_count;
+    int64_t surface_triangle_count;
+    double *surface_position;  /* [surface_node_count][3] m, missile at t = 0 */
+    int32_t *surface_triangle; /* [surface_triangle_count][3] */
+    int64_t symmetry_factor;
+    double symmetry_place[2]; /* m, of the symmetry planes normal to x and y; NaN: none, or the file does not
+                                 say */
+    double thickness;         /* m */
+    double density;           /* kg m-3, mean */
+    double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
+    double slit_fraction;    /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
+                                the file does not say */
+    double informed_strain;  /* -, up to which data inform the material (of layers the least); NaN: the file
+                                does not say */
+    double sphere_radius;    /* m, of the contact's exact sphere; NaN: triangles, or the file does not say */
+    double sphere_centre[3]; /* m, at t = 0; 0 without it */
+    double anvil_depth;  /* m, below the undeformed pad's top; 0: there is none; NaN: the file does not say */
+    int layer_count;     /* of a pad of several materials; 0: one */
+    uint8_t *node_layer; /* [node_count] number of the layer */
+    char **layer_name;   /* [layer_count] parts of layer_names */
+    char *layer_names;
+    double *layer_density;     /* [layer_count] kg m-3 */
+    double *layer_informed;    /* [layer_count] as informed_strain */
+    sf_layer_sums *layer_sums; /* [layer_count] of the last frame; NULL: no frame has them */
+    double impact_x, impact_y; /* m, where the missile's lowest point arrives at the pad's top; NaN: the file
+                                  does not say */
+    double missile_mass;       /* kg; 0 with a prescribed motion, like the speed */
+    double missile_speed;      /* m s-1 */
+    double gravity_along;      /* m s-2, acceleration of the missile in free flight, along its direction */
+    bool kinematic;            /* figures of the kinematic acceleration; else as an accelerometer reads */
+    bool driven;               /* the missile had a prescribed motion; else it was free */
+    bool turns;                /* it had six degrees of freedom */
+    double missile_centre[3];  /* m, its centre of mass at t = 0; 0 unless it turns */
+    double missile_direction[3]; /* unit vector, see sf_results_along */
+
+    sf_history history; /* its usable rows */
+
+    int64_t frame_count;
+    sf_frame_head *frames; /* [frame_count], ascending in time */
+    bool has_peak;
+    sf_frame_head peak;
+
+    bool has_summary;    /* false: the members below are empty, NaN or -1 */
+    char status[512];    /* "" without summary */
+    double contact_time; /* s, NaN if the bodies never touched */
+    double wall_time;    /* s */
+    int64_t steps;
+    int64_t threads;
+    int64_t interactions;
+
+    int note_count;
+    char notes[SF_RESULTS_NOTES][SF_RESULTS_NOTE_SIZE]; /* sentences for the user: the solver's, and about
+                                                           what was left out */
+    bool note_of_ending[SF_RESULTS_NOTES]; /* that only says how the run ended, as the check `ending` does */
+} sf_results;
+
+/* Opens, reads and checks; on success release with sf_results_close. On failure `results` is already
+ * released. */
+sf_status sf_results_open(const char *path, sf_results *results, sf_error *err);
+void sf_results_close(sf_results *results);
+
+/* Every field that the group holds, checked for shape and finiteness; release with sf_frame_free. SF_ERR_IO:
+ * the group is gone, too, as a run in progress moves its frames: open the results again. */
+sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame, sf_error *err);
+/* Of them those in `fields`, bits SF_FIELD_*. */
+sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
+                               sf_frame *frame, sf_error *err);
+void sf_frame_free(sf_frame *frame);
+
+/* Component of a vector along the missile's direction of motion. */
+static inline double sf_results_along(const sf_results *results, const double vector[3]) {
+    return sf_dot3(vector, results->missile_direction);
+}
+/* Where the missile's point that was at x (m) at t = 0 is in that frame. */
+void sf_results_place(const sf_results *results, const sf_frame_head *head, const double x[3], double out[3]);
+/* Speed of the missile downwards, along -z, at t = 0, m s-1. */
+double sf_results_fall_speed(const sf_results *results);
+/* Modelled parts that make the whole pad: see sf_model_whole. */
+double sf_results_whole(const sf_results *results);
+/* Mean cross-section of the whole pad, its volume over its thickness, m2. */
+double sf_results_cross_section(const sf_results *results);
+
+/* True if the missile ever touched the pad. */
+bool sf_results_touched(const sf_results *results);
+
+#endif

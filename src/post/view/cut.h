@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The undeformed pad and the missile cut by the vertical plane y = constant through the missile's axis: what
+ * the pictures of a report show, deformed. Where a symmetry plane is the picture's plane the cut lies a
+ * millionth of the pad's size inside. */
+#ifndef SF_POST_CUT_H
+#define SF_POST_CUT_H
+
+#include "post/results/results.h"
+
+/* A point on an edge of the mesh: (1 - weight) of the first node and weight of the second. */
+typedef struct sf_cut_point {
+    int32_t node[2];
+    double weight;
+} sf_cut_point;
+
+typedef struct sf_cut_polygon {
+    int count; /* 3 or 4 */
+    sf_cut_point point[4];
+} sf_cut_polygon;
+
+/* Grows as it is filled; arrays from malloc, owned by the cut. */
+typedef struct sf_cut {
+    const sf_results *results; /* borrowed */
+    double plane;              /* m, y */
+    double axis;               /* m, x of the missile's axis */
+    bool mirrored;             /* the other half, mirrored at the axis, belongs to the pad too */
+    double x[2], z[2];         /* m, extent of the undeformed pad in the plane, without the other half */
+    double missile[2];         /* m, extent of the missile along x in the plane */
+    int64_t polygon_count, polygon_room;
+    sf_cut_polygon *polygon; /* of the tetrahedra that fill the cells */
+    int64_t line_count, line_room;
+    sf_cut_point (*line)[2]; /* of the faces of the cells */
+    int64_t outline_count, outline_room;
+    double (*outline)[2][2]; /* m, x and z of both ends: of the missile's triangles at t = 0 */
+} sf_cut;
+
+/* Release with sf_cut_free, also after a failure. */
+sf_status sf_cut_make(const sf_results *results, sf_cut *cut, sf_error *err);
+void sf_cut_free(sf_cut *cut);
+
+/* The missile's triangle where it is in that frame: x and z of both ends of its part of the plane; false: it
+ * is not in the plane. */
+bool sf_cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t triangle, double end[2][2]);
+
+/* Value of a field ([node_count][components]) at a point. */
+double sf_cut_value(const sf_cut_point *point, const double *field, int components, int component);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* acceleration.png, drawn by gnuplot from acceleration.gp and history.csv (and reference.csv), which stay
+ * beside it: the picture can be drawn again, or differently, with `gnuplot acceleration.gp`. Of a run with a
+ * prescribed motion, compression.png from compression.gp and compression.csv. */
+#ifndef SF_POST_PLOT_H
+#define SF_POST_PLOT_H
+
+#include "post/figures/compare.h"
+#include "post/figures/figures.h"
+#include "post/figures/verdict.h"
+#include "io/staging.h"
+
+/* Of the key: three entries such as "HIC 595.2: 6.54 to 15.33 ms" do not fit beside each other. */
+enum { SF_PLOT_KEY_COLUMNS = 2 };
+
+/* The name of the script without its ending. */
+const char *sf_plot_name(const sf_figures *figures);
+
+/* After the CSV files. The picture names the verdict and shows its limits. `comparison` may be NULL. If
+ * gnuplot is absent or fails, `warning` (size bytes) says so in a sentence, and that is no error; otherwise
+ * it is "". */
+sf_status sf_plot_write(const sf_staging *output, const sf_results *results, const sf_figures *figures,
+                        const sf_comparison *comparison, const sf_verdict *verdict, char *warning,
+                        size_t size, sf_error *err);
+
+/* Instants (s) between which the axis of the pulse runs: where the model's curve is above 2 % of its largest
+ * value, or the measured one above 5 %, and a margin; all of a run without a pulse. */
+void sf_plot_time_range(const sf_figures *figures, const sf_comparison *comparison, double range[2]);
+
+/* The largest difference of two curves over the range, of the largest value of `a`: is `a` seen beside `b`?
+ */
+double sf_plot_difference(const sf_series *a, const sf_series *b, const double range[2]);
+
+#endif

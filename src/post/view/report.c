@@ -1,0 +1,504 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/view/report.h"
+
+#include "build_info.h"
+#include "model/model.h"
+#include "base/units.h"
+#include "report/gnuplot.h"
+#include "report/html.h"
+#include "post/results/origin.h"
+#include "post/view/origin_page.h"
+#include "post/view/plot.h"
+#include "post/view/report_picture.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char caution[] =
+    "Indicative, not a certification: figures of one simulated impact, not the test of EN 1177 or ASTM F1292.";
+
+/* The page, and what its parts need. */
+typedef struct page {
+    FILE *file;
+    const sf_report *report;
+    const sf_results *results;
+    const sf_figures *figures;
+    const sf_verdict *verdict;
+    const sf_report_pictures *pictures;
+    char *case_text, *parameters; /* of the model; owned */
+} page;
+
+static const char *kind_of(sf_grade grade) {
+    static const char *const kinds[] = {"good", "fair", "bad"};
+    return kinds[grade];
+}
+
+/* ---- the top ---- */
+
+static void put_verdict_line(const page *p) {
+    char line[SF_VERDICT_LINE_SIZE];
+    sf_verdict_line(p->verdict, line, sizeof line);
+    const char *findings = strstr(line, ": ");
+    sf_html_banner(p->file, kind_of(p->verdict->grade), sf_verdict_phrase(p->verdict->grade), "%s. %s",
+                   findings ? findings + 2 : "Every check of the run is within its bounds", caution);
+}
+
+static void put_limit_tile(const page *p, const sf_limit *limit) {
+    char value[48], remark[96];
+    const char *unit = strcmp(limit->unit, "1") == 0 ? "" : limit->unit, *blank = *unit ? " " : "";
+    bool known = isfinite(limit->value);
+    if (known)
+        snprintf(value, sizeof value, "%.1f%s%s", limit->value, blank, unit);
+    else
+        snprintf(value, sizeof value, "–");
+    snprintf(remark, sizeof remark, "limit %g%s%s: %s", limit->bound, blank, unit, sf_limit_phrase(limit));
+    sf_html_tile(p->file,
+                 !limit->judged  ? "plain"
+                 : limit->passed ? "good"
+                                 : "bad",
+                 limit->title, value, remark);
+}
+
+static void put_tile(const page *p, const char *title, double value, int digits, const char *unit,
+                     const char *format, double remark) {
+    char text[48] = "–", below[96] = "";
+    if (isfinite(value))
+        snprintf(text, sizeof text, "%.*f %s", digits, value, unit);
+    if (isfinite(remark))
+        snprintf(below, sizeof below, format, remark);
+    sf_html_tile(p->file, "plain", title, text, below);
+}
+
+static void put_tiles(const page *p) {
+    const sf_figures *f = p->figures;
+    sf_html_tiles_begin(p->file);
+    for (int k = 0; k < p->verdict->limit_count; k++)
+        put_limit_tile(p, &p->verdict->limits[k]);
+    if (f->driven) {
+        put_tile(p, "largest force", f->peak_force, 1, "N", "at %.2f ms", f->peak_force_time * 1e3);
+        put_tile(p, "largest stress", f->peak_stress * 1e-3, 1, "kPa", "over %.4g cm² at rest",
+                 f->area * 1e4);
+    }
+    put_tile(p, "largest indentation", f->max_indentation * 1e3, 1, "mm", "%.0f %% of the thickness",
+             100 * f->max_mean_strain);
+    if (f->driven)
+        put_tile(p, "work", f->work, 3, "J", "%.0f %% given back", 100 * f->returned_energy_fraction);
+    else
+        put_tile(p, "rebound", f->v_rebound, 2, "m/s", "%.0f %% of the energy absorbed",
+                 100 * f->absorbed_energy_fraction);
+    sf_html_tiles_end(p->file);
+}
+
+/* ---- what was dropped on what ---- */
+
+static void put_parameter(const page *p, sf_html_table *table, const char *name, const char *title) {
+    sf_origin_put_key(table, p->parameters, name, title);
+}
+
+static void put_missile(const page *p) {
+    const sf_results *r = p->results;
+    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    if (r->driven) {
+        put_parameter(p, &table, "missile.motion", "prescribed motion");
+    } else {
+        double height = r->missile_speed * r->missile_speed / (2 * SF_STANDARD_GRAVITY);
+        sf_html_fact(&table, "mass", "%.4g kg, of the whole missile", r->missile_mass);
+        sf_html_fact(&table, "speed at contact", "%.4g m/s (free fall from %.3f m)", r->missile_speed,
+                     height);
+        sf_html_fact(&table, "kinetic energy", "%.4g J",
+                     r->missile_mass * r->missile_speed * r->missile_speed / 2);
+    }
+    put_parameter(p, &table, "geometry.missile_file", "shape");
+    put_parameter(p, &table, "geometry.missile_parameters", "its parameters");
+    if (isfinite(r->impact_x) && isfinite(r->impact_y))
+        sf_html_fact(&table, "impact point", "x = %.4g mm, y = %.4g mm", r->impact_x * 1e3,
+                     r->impact_y * 1e3);
+    put_parameter(p, &table, "missile.friction", "friction on the pad");
+    sf_html_table_end(&table);
+}
+
+static void put_pad(const page *p) {
+    const sf_results *r = p->results;
+    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    sf_html_fact(&table, "thickness", "%.4g mm", r->thickness * 1e3);
+    sf_html_fact(&table, "mean cross-section", "%.4g cm², of the whole pad", p->figures->area * 1e4);
+    sf_html_fact(&table, "density", "%.4g kg/m³, undeformed%s", r->density,
+                 r->layer_count > 0 ? ", mean of the layers" : "");
+    put_parameter(p, &table, "geometry.file", "shape");
+    put_parameter(p, &table, "geometry.parameters", "its parameters");
+    put_parameter(p, &table, "geometry.length_unit", "their unit");
+    put_parameter(p, &table, "pad.fixed", "surfaces of the base");
+    put_parameter(p, &table, "pad.sliding", "sliding surfaces");
+    put_parameter(p, &table, "pad.base", "base");
+    if (r->history.anvil_nodes[0] > 0) {
+        put_parameter(p, &table, "pad.friction", "friction on the anvil");
+        put_parameter(p, &table, "pad.gravity", "gravity on the pad");
+    }
+    put_parameter(p, &table, "pad.sliding_interfaces", "sliding layers");
+    sf_html_table_end(&table);
+}
+
+static void put_bodies(const page *p) {
+    sf_html_columns_begin(p->file, "");
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Missile");
+    put_missile(p);
+    sf_html_block_end(p->file);
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Pad");
+    put_pad(p);
+    sf_html_block_end(p->file);
+    sf_html_columns_end(p->file);
+}
+
+/* ---- pictures ---- */
+
+static void put_curve(const page *p, const sf_staging *output) {
+    char warning[320];
+    const sf_figures *f = p->figures;
+    char *svg = sf_gnuplot_svg(output, sf_plot_name(f), "softfall-post", warning, sizeof warning);
+    if (!svg)
+        sf_html_figure(p->file, NULL, "%s.", warning);
+    else if (f->driven)
+        sf_html_figure(p->file, svg, "Nominal stress over strain (indentation over thickness).");
+    else if (f->injury.hic.value > 0)
+        sf_html_figure(p->file, svg, "Missile: %s, filtered (CFC %.0f); shaded: the HIC window.",
+                       sf_figures_acceleration(f), f->cfc);
+    else
+        sf_html_figure(p->file, svg, "Missile: %s, filtered with CFC %.0f, over time.",
+                       sf_figures_acceleration(f), f->cfc);
+    free(svg);
+}
+
+/* The picture that came with the film. */
+static void put_scene(const page *p, const sf_staging *output) {
+    char *scene = sf_html_png(output, "pad.png");
+    if (scene)
+        sf_html_figure(p->file, scene,
+                       "The same in ParaView (pad_paraview.py), all of the pad behind the missile's axis.");
+    free(scene);
+}
+
+static void put_pictures(const page *p, const sf_staging *output) {
+    const sf_report_pictures *q = p->pictures;
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "The pad at the peak");
+    sf_html_figure(p->file, q->pad, "%s", q->pad_text);
+    put_scene(p, output);
+    sf_html_block_end(p->file);
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Mid-section");
+    sf_html_figure(p->file, q->instants, "%s", q->instants_text);
+    sf_html_block_end(p->file);
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, p->figures->driven ? "Stress and strain"
+                                                : "Acceleration, and stress through the thickness");
+    sf_html_columns_begin(p->file, "wide");
+    put_curve(p, output);
+    sf_html_figure(p->file, q->profile, "%s", q->profile_text);
+    sf_html_columns_end(p->file);
+    sf_html_block_end(p->file);
+}
+
+/* ---- tables ---- */
+
+static void put_number(sf_html_table *table, double value) {
+    if (isfinite(value))
+        sf_html_cell(table, fabs(value) >= 1e4 ? "%.6g" : "%.4g", value);
+    else
+        sf_html_cell(table, "–");
+}
+
+static void put_check(sf_html_table *table, const sf_check *c) {
+    sf_html_row(table);
+    sf_html_hint(table, c->why);
+    sf_html_cell(table, "%s", c->title);
+    if (sf_check_is_flag(c)) {
+        sf_html_cell(table, "%s", isnan(c->value) ? "–" : c->value > 0 ? "yes" : "no");
+        sf_html_cell(table, "no");
+        sf_html_cell(table, "–");
+    } else {
+        put_number(table, c->value);
+        put_number(table, c->bound);
+        put_number(table, c->use_bound);
+    }
+    sf_html_cell(table, "%s", isnan(c->value) ? "not judged" : sf_verdict_phrase(c->grade));
+}
+
+static void put_checks(const page *p) {
+    sf_html_heading(p->file, "Checks of the run");
+    sf_html_table table =
+        sf_html_table_begin(p->file, "dense", "check|>value|>good up to|>usable up to|finding");
+    for (int k = 0; k < p->verdict->count; k++)
+        put_check(&table, &p->verdict->rows[k]);
+    sf_html_table_end(&table);
+    for (int k = 0; k < p->results->note_count; k++)
+        sf_html_note(p->file, "Note: %s", p->results->notes[k]);
+}
+
+/* The checks, and the force beside them. */
+static void put_verdict(const page *p) {
+    sf_html_columns_begin(p->file, "wide");
+    sf_html_block_begin(p->file);
+    put_checks(p);
+    sf_html_block_end(p->file);
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Force and indentation");
+    sf_html_figure(p->file, p->pictures->force, "%s", p->pictures->force_text);
+    sf_html_block_end(p->file);
+    sf_html_columns_end(p->file);
+}
+
+/* NaN if the run does not define it; 0 of a text or a flag. */
+static double number_of(const sf_figure *figure, const void *place) {
+    return figure->type == SF_FIGURE_DOUBLE    ? *(const double *)place * figure->factor
+           : figure->type == SF_FIGURE_INTEGER ? (double)*(const int64_t *)place
+                                               : 0;
+}
+
+static void put_figure(const page *p, sf_html_table *table, const sf_figure *figure) {
+    const void *place = sf_figure_place(figure, p->results, p->figures);
+    sf_html_row(table);
+    sf_html_hint(table, figure->meaning);
+    sf_html_cell(table, "%s", figure->key);
+    if (figure->type == SF_FIGURE_TEXT)
+        sf_html_cell(table, "%.32s", *(const char *)place ? (const char *)place : "–");
+    else if (figure->type == SF_FIGURE_BOOL)
+        sf_html_cell(table, "%s", *(const bool *)place ? "yes" : "no");
+    else if (figure->type == SF_FIGURE_INTEGER)
+        sf_html_cell(table, "%.0f", number_of(figure, place));
+    else
+        put_number(table, number_of(figure, place));
+}
+
+/* Those that the run defines, down each of three columns. */
+static void put_figures(const page *p) {
+    enum { COLUMNS = 3 };
+    size_t count, defined = 0, next = 0;
+    const sf_figure *figure = sf_figure_list(&count);
+    for (size_t k = 0; k < count; k++)
+        defined +=
+            isfinite(number_of(&figure[k], sf_figure_place(&figure[k], p->results, p->figures))) ? 1 : 0;
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Figures");
+    sf_html_columns_begin(p->file, "");
+    for (size_t c = 0; c < COLUMNS; c++) {
+        sf_html_table table = sf_html_table_begin(p->file, "dense", "figure|>value");
+        for (size_t put = 0; next < count && put < (defined + COLUMNS - 1) / COLUMNS; next++)
+            if (isfinite(number_of(&figure[next], sf_figure_place(&figure[next], p->results, p->figures)))) {
+                put_figure(p, &table, &figure[next]);
+                put++;
+            }
+        sf_html_table_end(&table);
+    }
+    sf_html_columns_end(p->file);
+    sf_html_note(
+        p->file,
+        "Values of summary.json, units at the end of the names (docs/formats.md). Not defined by this run: %zu.",
+        count - defined);
+    sf_html_block_end(p->file);
+}
+
+static void put_comparison(const page *p) {
+    const sf_comparison *c = p->report->summary->comparison;
+    if (!c)
+        return;
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Comparison with a measured curve");
+    sf_html_paragraph(
+        p->file, "%s: a_max %.1f g (model %+.1f %%), HIC %.1f. Model time = measured time %+.3f ms (%s).",
+        p->report->summary->reference_path, c->injury.a_max_g, 100 * c->peak_error, c->injury.hic.value,
+        c->shift * 1e3, c->shift_given ? "as given" : "contact of both curves");
+    sf_html_table table = sf_html_table_begin(
+        p->file, "dense", "region, measured time (ms)|>interval (ms)|>samples|>R²|>RMSE (g)");
+    for (int64_t k = 0; k < c->fit_count; k++) {
+        const sf_fit *fit = &c->fits[k];
+        sf_html_row(&table);
+        sf_html_cell(&table, "%.3f to %.3f%s", fit->region.begin * 1e3, fit->region.end * 1e3,
+                     k < 2 ? " (window)" : "");
+        sf_html_number(&table, 2, fit->interval * 1e3);
+        sf_html_cell(&table, "%lld", (long long)fit->count);
+        sf_html_number(&table, 4, fit->r2);
+        sf_html_number(&table, 3, fit->rmse_g);
+    }
+    sf_html_table_end(&table);
+    sf_html_block_end(p->file);
+}
+
+/* "864 hexahedra, 744 pyramids" */
+static void count_cells(const sf_results *r, char *text, size_t size) {
+    static const char *const names[] = {"tetrahedra", "pyramids", "prisms", "hexahedra"};
+    int64_t count[4] = {0};
+    for (int64_t c = 0; c < r->cell_count; c++)
+        if (r->cell_type[c] >= SF_CELL_TETRAHEDRON && r->cell_type[c] <= SF_CELL_HEXAHEDRON)
+            count[r->cell_type[c] - SF_CELL_TETRAHEDRON]++;
+    *text = '\0';
+    for (int k = 3; k >= 0; k--) {
+        size_t used = strlen(text);
+        if (count[k])
+            snprintf(text + used, size - used, "%s%lld %s", used ? ", " : "", (long long)count[k], names[k]);
+    }
+}
+
+static void put_text_fact(const page *p, sf_html_table *table, const char *title, const char *path) {
+    char *text = sf_origin_text(p->results, path);
+    sf_html_fact(table, title, "%s", text && *text ? text : "not recorded in this file");
+    free(text);
+}
+
+static void put_mesh(const page *p, sf_html_table *table) {
+    const sf_results *r = p->results;
+    char cells[160];
+    double smallest = INFINITY, largest = 0;
+    for (int64_t i = 0; i < r->node_count; i++) {
+        smallest = fmin(smallest, cbrt(r->volume[i]));
+        largest = fmax(largest, cbrt(r->volume[i]));
+    }
+    count_cells(r, cells, sizeof cells);
+    sf_html_fact(table, "nodes", "%lld, modelled: 1/%lld of the whole", (long long)r->node_count,
+                 (long long)r->symmetry_factor);
+    sf_html_fact(table, "cells", "%s", cells);
+    sf_html_fact(table, "nodal spacing", "%.1f to %.1f mm (cube root of the volumes)", smallest * 1e3,
+                 largest * 1e3);
+    put_text_fact(p, table, "hash of the mesh", "/provenance/model/mesh_hash");
+    put_text_fact(p, table, "hash of the model", "/provenance/model_hash");
+}
+
+static void put_version(const page *p, sf_html_table *table, const char *title, const char *group) {
+    char path[96];
+    char *text[3];
+    static const char *const items[3] = {"version", "git_revision", "created"};
+    for (int k = 0; k < 3; k++) {
+        snprintf(path, sizeof path, "%s/%s", group, items[k]);
+        text[k] = sf_origin_text(p->results, path);
+    }
+    if (text[0] && text[1] && text[2] && *text[0])
+        sf_html_fact(table, title, "%s (%s), %s", text[0], text[1], text[2]);
+    else
+        sf_html_fact(table, title, "not recorded in this file");
+    for (int k = 0; k < 3; k++)
+        free(text[k]);
+}
+
+static void put_command(const page *p) {
+    char *pre = sf_origin_text(p->results, "/provenance/model/command_line");
+    char *solve = sf_origin_text(p->results, "/provenance/command_line");
+    char *all = NULL;
+    if (pre && solve &&
+        asprintf(&all, "%s\n%s\n%s", *pre ? pre : "(softfall-pre: not recorded)",
+                 *solve ? solve : "(softfall-solve: not recorded)", p->report->command_line) >= 0) {
+        sf_html_block_begin(p->file);
+        sf_html_heading(p->file, "The commands that repeat this report, in the folder of the original run");
+        sf_html_pre(p->file, all);
+        sf_html_block_end(p->file);
+    }
+    free(all);
+    free(pre);
+    free(solve);
+}
+
+/* Mesh and versions, and the energies beside them. */
+static void put_provenance(const page *p) {
+    sf_html_columns_begin(p->file, "");
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Mesh and versions");
+    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    put_mesh(p, &table);
+    put_version(p, &table, "softfall-pre", "/provenance/model");
+    put_version(p, &table, "softfall-solve", "/provenance");
+    sf_html_fact(&table, "softfall-post", "%s (%s)", SF_VERSION, SF_GIT_REVISION);
+    put_text_fact(p, &table, "compiler", "/provenance/compiler");
+    put_text_fact(p, &table, "libraries", "/provenance/libraries");
+    sf_html_table_end(&table);
+    sf_html_block_end(p->file);
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Energies");
+    sf_html_figure(p->file, p->pictures->energies, "%s", p->pictures->energies_text);
+    sf_html_block_end(p->file);
+    sf_html_columns_end(p->file);
+}
+
+/* A pad of several materials, layer by layer. */
+static void put_layers(const page *p) {
+    const sf_layer_figures *layer = p->figures->layers;
+    if (!layer)
+        return;
+    sf_html_block_begin(p->file);
+    sf_html_heading(p->file, "Layers");
+    sf_html_table table = sf_html_table_begin(
+        p->file, "dense",
+        "layer|>density (kg/m³)|>volume (cm³)|>largest strain|>absorbed (J)|>of it viscous (J)|>share of the "
+        "energy at the peak (%)|>of it beyond its data (%)");
+    for (int k = 0; k < p->results->layer_count; k++, layer++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", layer->name);
+        sf_html_number(&table, 1, layer->density);
+        sf_html_number(&table, 1, layer->volume * 1e6);
+        sf_html_number(&table, 3, layer->max_local_strain);
+        sf_html_number(&table, 3, layer->absorbed_energy);
+        sf_html_number(&table, 3, layer->viscous_energy);
+        sf_html_number(&table, 1, 100 * layer->energy_share);
+        sf_html_number(&table, 1, 100 * layer->energy_beyond_data);
+    }
+    sf_html_table_end(&table);
+    sf_html_note(p->file,
+                 "Absorbed: stored, lost and viscous energy in the last frame. Beyond its data: in nodes "
+                 "compressed beyond the strain up to which the data of the layer's material inform it.");
+    sf_html_block_end(p->file);
+}
+
+/* ---- the page ---- */
+
+static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
+    const sf_results *r = p->results;
+    char title[160];
+    char *subtitle = sf_origin_title(p->case_text);
+    if (r->driven)
+        snprintf(title, sizeof title, "Compression of a foam specimen of %.4g mm", r->thickness * 1e3);
+    else
+        snprintf(title, sizeof title, "Drop of %.4g kg at %.4g m/s on a foam pad of %.4g mm", r->missile_mass,
+                 r->missile_speed, r->thickness * 1e3);
+    p->file = sf_html_begin(output, title, subtitle && *subtitle ? subtitle : NULL, err);
+    free(subtitle);
+    return err->status;
+}
+
+static sf_status write_page(page *p, const sf_staging *output, sf_error *err) {
+    char foot[512];
+    if (begin_page(p, output, err) != SF_OK)
+        return err->status;
+    put_verdict_line(p);
+    put_tiles(p);
+    put_bodies(p);
+    put_layers(p);
+    put_pictures(p, output);
+    put_comparison(p);
+    put_verdict(p);
+    put_provenance(p);
+    sf_origin_put_material(p->file, p->case_text, p->parameters);
+    put_figures(p);
+    put_command(p);
+    snprintf(foot, sizeof foot, "softfall-post %s (%s), from %.300s", SF_VERSION, SF_GIT_REVISION,
+             p->report->summary->results_path);
+    return sf_html_end(p->file, foot, err);
+}
+
+sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_error *err) {
+    const sf_summary *s = report->summary;
+    sf_report_pictures pictures = {0};
+    page p = {.report = report,
+              .results = s->results,
+              .figures = s->figures,
+              .verdict = s->verdict,
+              .pictures = &pictures,
+              .case_text = sf_origin_text(s->results, "/provenance/model/case_text"),
+              .parameters = sf_origin_text(s->results, "/provenance/model/parameters")};
+    if (!p.case_text || !p.parameters)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for report.html");
+    else if (sf_report_pictures_make(output, s->results, s->figures, &pictures, err) == SF_OK)
+        write_page(&p, output, err);
+    sf_report_pictures_free(&pictures);
+    free(p.case_text);
+    free(p.parameters);
+    return err->status;
+}

@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/view/report_picture.h"
+
+#include "base/units.h"
+#include "report/gnuplot.h"
+#include "post/view/cut.h"
+#include "post/view/picture.h"
+#include "post/view/plot.h"
+#include "post/view/section.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An instant: a third of the way to the peak, the peak, half its force after it. */
+typedef struct instant {
+    const sf_frame_head *head; /* NULL: there is no frame near it */
+    sf_frame frame;
+    double wanted;  /* s */
+    char title[96]; /* "t = 5.0 ms: 23 g, ..." */
+} instant;
+
+static const char *const moments[SF_INSTANTS] = {"a third of the way", "peak", "half the peak force"};
+
+/* ---- which frames ---- */
+
+/* Times (s) of the instants; false if the history has no peak within it. */
+static bool find_instants(const sf_results *r, const sf_series *raw, instant list[SF_INSTANTS]) {
+    const sf_history *h = &r->history;
+    const double *load = r->driven ? h->contact_force : raw->value;
+    int64_t peak = sf_history_row_of_lasting(h, load), first = 0, half = peak;
+    while (first < peak && !(h->contact_nodes[first] > 0))
+        first++;
+    while (half + 1 < h->rows && load[half] > 0.5 * load[peak])
+        half++;
+    list[1].wanted = h->time[peak];
+    list[0].wanted = h->time[first] + (h->time[peak] - h->time[first]) / 3;
+    list[2].wanted = load[half] > 0.5 * load[peak] ? NAN : h->time[half];
+    return load[peak] > 0 && peak > first;
+}
+
+static const sf_frame_head *nearest(const sf_results *r, double time, double reach) {
+    const sf_frame_head *best = NULL;
+    for (int64_t k = 0; k < r->frame_count; k++)
+        if (fabs(r->frames[k].time - time) <= reach &&
+            (!best || fabs(r->frames[k].time - time) < fabs(best->time - time)))
+            best = &r->frames[k];
+    return best;
+}
+
+static bool has_fields(const sf_frame *frame) {
+    return frame->field[SF_FRAME_DISPLACEMENT] && frame->field[SF_FRAME_VON_MISES];
+}
+
+static double force_at(const sf_history *h, double time) {
+    int64_t k = 0;
+    while (k + 1 < h->rows && h->time[k] < time)
+        k++;
+    return h->contact_force[k];
+}
+
+static void name_instant(const sf_results *r, const sf_series *raw, instant *i, const char *moment) {
+    if (r->driven)
+        snprintf(i->title, sizeof i->title, "%.1f ms: %.3g N, %s", i->head->time * 1e3,
+                 force_at(&r->history, i->head->time), moment);
+    else
+        snprintf(i->title, sizeof i->title, "%.1f ms: %.0f g, %s", i->head->time * 1e3,
+                 sf_series_at(raw, i->head->time), moment);
+}
+
+/* Reads the frames nearest to the instants, within a fifth of the time to the peak, or what there is. */
+static void read_instants(const sf_results *r, const sf_series *raw, instant list[SF_INSTANTS]) {
+    if (!find_instants(r, raw, list))
+        return;
+    double reach = 0.3 * (list[1].wanted - list[0].wanted);
+    for (int k = 0; k < SF_INSTANTS; k++) {
+        sf_error ignored = SF_ERROR_INIT;
+        const sf_frame_head *head = isnan(list[k].wanted) ? NULL : nearest(r, list[k].wanted, reach);
+        if (k == 1 && r->has_peak)
+            head = &r->peak;
+        if (!head || sf_frame_read(r, head, &list[k].frame, &ignored) != SF_OK || !has_fields(&list[k].frame))
+            continue;
+        list[k].head = head;
+        name_instant(r, raw, &list[k], moments[k]);
+    }
+}
+
+/* "a third of the way (4.1 ms) and half the peak force (14.2 ms)": those without a frame. */
+static int name_missing(const instant list[SF_INSTANTS], char *text, size_t size) {
+    int count = 0;
+    *text = '\0';
+    for (int k = 0; k < SF_INSTANTS; k++) {
+        size_t used = strlen(text);
+        if (list[k].head)
+            continue;
+        snprintf(text + used, size - used, "%s%s", count++ ? ", " : "", moments[k]);
+        used = strlen(text);
+        if (list[k].wanted > 0)
+            snprintf(text + used, size - used, " (%.1f ms)", list[k].wanted * 1e3);
+    }
+    return count;
+}
+
+/* ---- pictures of the cut ---- */
+
+static char *draw_pad(const sf_cut *cut, const instant *peak, char *text, size_t size, sf_error *err) {
+    if (!peak->head || cut->polygon_count == 0) {
+        snprintf(
+            text, size,
+            "No picture of the deformed pad: results.h5 holds no displacement and von Mises stress at the "
+            "peak.");
+        return NULL;
+    }
+    bool strain = peak->frame.field[SF_FRAME_LARGEST_COMPRESSION] != NULL;
+    const sf_picture_style style = {.field = strain ? SF_FRAME_LARGEST_COMPRESSION : SF_FRAME_VON_MISES,
+                                    .factor = strain ? 1 : 1e-3,
+                                    .label =
+                                        strain ? "largest compression (strain)" : "von Mises stress (kPa)",
+                                    .lines = true,
+                                    .half_width = INFINITY};
+    const sf_picture picture = {peak->title, peak->head, &peak->frame};
+    snprintf(
+        text, size,
+        "The deformed pad, cut through the axis of the missile%s, with the cells of the background mesh.",
+        cut->mirrored ? " and mirrored there" : "");
+    return sf_picture_draw(cut, &picture, 1, &style, err);
+}
+
+static char *draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], char *text, size_t size,
+                           sf_error *err) {
+    sf_picture picture[SF_INSTANTS];
+    char missing[160];
+    int count = 0, lost = name_missing(list, missing, sizeof missing);
+    for (int k = 0; k < SF_INSTANTS && cut->polygon_count > 0; k++)
+        if (list[k].head)
+            picture[count++] = (sf_picture){list[k].title, list[k].head, &list[k].frame};
+    if (count == 0) {
+        snprintf(text, size,
+                 "No picture of the mid-section: results.h5 holds no frames with displacement and von Mises "
+                 "stress near the peak.");
+        return NULL;
+    }
+    double half = 1.25 * fmax(cut->missile[1] - cut->axis, cut->axis - cut->missile[0]);
+    const sf_picture_style style = {.field = SF_FRAME_VON_MISES,
+                                    .factor = 1e-3,
+                                    .label = "von Mises stress (kPa), logarithmic",
+                                    .logarithmic = true,
+                                    .half_width = half > 0 ? half : INFINITY};
+    snprintf(text, size, "Von Mises stress in the mid-section at %s.%s%s%s",
+             count == 3 ? "three instants" : "the instants that have a frame", lost ? " No frame near: " : "",
+             missing, lost ? " (shorten output.frame_interval)." : "");
+    return sf_picture_draw(cut, picture, count, &style, err);
+}
+
+/* ---- curves ---- */
+
+/* Draws NAME as SVG and removes its script. */
+static char *take_curve(const sf_staging *output, const char *name, char *text, size_t size) {
+    char warning[320], file[64];
+    char *svg = sf_gnuplot_svg(output, name, "softfall-post", warning, sizeof warning);
+    snprintf(file, sizeof file, "%s.gp", name);
+    sf_staging_remove(output, file);
+    if (!svg)
+        snprintf(text, size, "%s.", warning);
+    return svg;
+}
+
+/* A step of 1, 2 or 5 times a power of ten that divides the axis into five parts or a few less. */
+static double tic_step(double top) {
+    double power = pow(10, floor(log10(top / 5))), part = top / 5 / power;
+    return power * (part <= 1 ? 1 : part <= 2 ? 2 : part <= 5 ? 5 : 10);
+}
+
+enum { SMALL_WIDTH = 790, SMALL_HEIGHT = 720, HALF_WIDTH = 1130, FORCE_HEIGHT = 570, HALF_HEIGHT = 460 };
+
+static void put_profile(FILE *g, const sf_section_point *station, double top, const sf_results *r,
+                        const instant *i, int number) {
+    fprintf(g, "$instant%d << EOD\n", number);
+    for (int s = 0; s < SF_SECTION_STATIONS; s++)
+        if (sf_section_inside(&station[s]))
+            fprintf(g, "%.6g,%.6g\n",
+                    1e-3 * sf_section_mean(i->frame.field[SF_FRAME_VON_MISES], 1, 0, &station[s]),
+                    1e3 * (top - sf_section_mean(r->position, 3, 2, &station[s])));
+    fputs("EOD\n", g);
+}
+
+static sf_status draw_profile(const sf_staging *output, const sf_results *r, const instant list[SF_INSTANTS],
+                              char **svg, char *text, size_t size, sf_error *err) {
+    static const char *const colour[SF_INSTANTS] = {"#6baed6", "#cb181d", "#41ab5d"};
+    sf_section_point station[SF_SECTION_STATIONS];
+    int count = 0;
+    snprintf(text, size, "No frames for the von Mises stress through the thickness.");
+    for (int k = 0; k < SF_INSTANTS; k++)
+        count += list[k].head != NULL;
+    if (count == 0)
+        return SF_OK;
+    FILE *g = sf_gnuplot_begin(output, "profile", SMALL_WIDTH, SMALL_HEIGHT, err);
+    if (!g)
+        return err->status;
+    double top = sf_section_stations(r, station);
+    for (int k = 0; k < SF_INSTANTS; k++)
+        if (list[k].head)
+            put_profile(g, station, top, r, &list[k], k);
+    fprintf(
+        g,
+        "set xlabel 'von Mises stress (kPa)'\nset ylabel 'undeformed depth (mm)' offset 1,0\nset yrange [%.6g:0]\n"
+        "set logscale x\n",
+        r->thickness * 1e3);
+    fputs(
+        "set bmargin 4.6\nset key at screen 0.55,0.015 center bottom horizontal maxcols 3 Left reverse samplen 1.2 "
+        "width -1.5\nplot ",
+        g);
+    for (int k = 0; k < SF_INSTANTS; k++)
+        if (list[k].head)
+            fprintf(g, "$instant%d using 1:2 with lines lw 4 lc rgb '%s' title '%.1f ms'%s", k, colour[k],
+                    list[k].head->time * 1e3, --count > 0 ? ", " : "\n");
+    if (sf_staging_close(g, "profile.gp", err) != SF_OK)
+        return err->status;
+    snprintf(text, size, "Von Mises stress through the thickness, under the axis of the missile.");
+    *svg = take_curve(output, "profile", text, size);
+    return SF_OK;
+}
+
+static sf_status draw_force(const sf_staging *output, const sf_history *h, char **svg, char *text,
+                            size_t size, sf_error *err) {
+    FILE *g = sf_gnuplot_begin(output, "force", HALF_WIDTH, FORCE_HEIGHT, err);
+    if (!g)
+        return err->status;
+    fprintf(
+        g,
+        "set xlabel 'indentation (mm)'\nset ylabel 'contact force (kN)'\nset yrange [0:*]\nset xrange [0:*]\n"
+        "set ytics %.6g\nunset key\nplot 'history.csv' using "
+        "(column('indentation_mm')):(column('contact_force_N')/1000) with lines lw 3.5 lc rgb '#08519c'\n",
+        tic_step(fmax(1e-3 * sf_history_largest(h, h->contact_force), 1e-9)));
+    if (sf_staging_close(g, "force.gp", err) != SF_OK)
+        return err->status;
+    snprintf(text, size, "Force on the missile over its indentation.");
+    *svg = take_curve(output, "force", text, size);
+    return SF_OK;
+}
+
+/* The curves that are seen beside the largest. */
+static void put_energies(FILE *g, const sf_history *h, double top) {
+    static const struct {
+        const char *name, *title, *colour;
+    } list[] = {
+        {"energy_kinetic_missile", "missile", "#303030"},     {"energy_stored", "stored", "#08519c"},
+        {"energy_hysteresis", "hysteresis", "#cb181d"},       {"energy_viscous", "viscous", "#f08030"},
+        {"energy_kinetic_pad", "pad in motion", "#a6761d"},   {"energy_friction", "friction", "#e7298a"},
+        {"energy_stabilisation", "stabilisation", "#8856a7"}, {"energy_contact", "contact", "#41ab5d"}};
+    bool any = false;
+    for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
+        for (int c = 0; c < SF_HISTORY_COUNT; c++) {
+            const sf_history_column *column = sf_history_column_get(c);
+            if (strcmp(column->name, list[k].name) != 0 || sf_history_largest(h, h->column[c]) < 0.01 * top)
+                continue;
+            fprintf(
+                g,
+                "%s 'history.csv' using (column('time_ms')):(column('%s')) with lines lw 3 lc rgb '%s' title '%s'",
+                any ? "," : "plot", column->csv, list[k].colour, list[k].title);
+            any = true;
+        }
+    fputs(any ? "\n" : "plot 0 notitle\n", g);
+}
+
+static sf_status draw_energies(const sf_staging *output, const sf_history *h, const sf_figures *f, char **svg,
+                               char *text, size_t size, sf_error *err) {
+    double range[2];
+    double top =
+        fmax(sf_history_largest(h, h->energy_kinetic_missile), sf_history_largest(h, h->energy_stored));
+    FILE *g = sf_gnuplot_begin(output, "energies", HALF_WIDTH, HALF_HEIGHT, err);
+    if (!g)
+        return err->status;
+    sf_plot_time_range(f, NULL, range);
+    fprintf(
+        g,
+        "set xlabel 'time (ms)'\nset ylabel 'energy (J)'\nset yrange [0:*]\nset xrange [%.6g:%.6g]\n"
+        "set ytics %.6g\nset rmargin 17\n"
+        "set key at screen 0.99,0.58 right center vertical maxcols 1 Left reverse samplen 1.5 spacing 0.9\n",
+        range[0] * 1e3, range[1] * 1e3, tic_step(fmax(top, 1e-9)));
+    put_energies(g, h, top);
+    if (sf_staging_close(g, "energies.gp", err) != SF_OK)
+        return err->status;
+    snprintf(text, size, "Energies of the whole pad and missile; those below 1 %% are left out.");
+    *svg = take_curve(output, "energies", text, size);
+    return SF_OK;
+}
+
+/* ---- all ---- */
+
+sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *results,
+                                  const sf_figures *figures, sf_report_pictures *p, sf_error *err) {
+    instant list[SF_INSTANTS] = {0};
+    sf_cut cut = {0};
+    *p = (sf_report_pictures){0};
+    read_instants(results, &figures->raw, list);
+    if (sf_cut_make(results, &cut, err) == SF_OK) {
+        p->pad = draw_pad(&cut, &list[1], p->pad_text, sizeof p->pad_text, err);
+        p->instants = draw_instants(&cut, list, p->instants_text, sizeof p->instants_text, err);
+    }
+    if (err->status == SF_OK &&
+        draw_profile(output, results, list, &p->profile, p->profile_text, sizeof p->profile_text, err) ==
+            SF_OK &&
+        draw_force(output, &results->history, &p->force, p->force_text, sizeof p->force_text, err) == SF_OK)
+        draw_energies(output, &results->history, figures, &p->energies, p->energies_text,
+                      sizeof p->energies_text, err);
+    for (int k = 0; k < SF_INSTANTS; k++)
+        sf_frame_free(&list[k].frame);
+    sf_cut_free(&cut);
+    return err->status;
+}
+
+void sf_report_pictures_free(sf_report_pictures *p) {
+    free(p->pad);
+    free(p->instants);
+    free(p->profile);
+    free(p->force);
+    free(p->energies);
+    *p = (sf_report_pictures){0};
+}

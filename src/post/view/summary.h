@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* summary.json, and the short table that softfall-post prints. Keys carry their units; a figure that the run
+ * does not define is null. docs/formats.md lists the keys. */
+#ifndef SF_POST_SUMMARY_H
+#define SF_POST_SUMMARY_H
+
+#include "post/figures/compare.h"
+#include "post/figures/figures.h"
+#include "post/figures/verdict.h"
+#include "io/staging.h"
+
+/* `comparison` may be NULL. */
+typedef struct sf_summary {
+    const char *results_path;
+    const char *reference_path; /* NULL without comparison */
+    const sf_results *results;
+    const sf_figures *figures;
+    const sf_comparison *comparison;
+    const sf_verdict *verdict;
+} sf_summary;
+
+sf_status sf_summary_write(const sf_staging *output, const sf_summary *summary, sf_error *err);
+
+/* The verdict, its rows that are not valid, and the table on `out`; the last line says that the figures are
+ * indicative. */
+void sf_summary_print(FILE *out, const sf_summary *summary);
+
+#endif

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/mesher/work.h"
+
+#include "pre/mesher/gmsh_adapter.h"
+#include "pre/mesher/stream.h"
+#include "pre/mesh/mesher_protocol.h"
+
+#include <gmshc.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void write_head(const char *error) {
+    char version[32];
+    sf_gmsh_adapter_version(version, sizeof version);
+    sf_stream_word(SF_MESH_STREAM_BEGIN);
+    sf_stream_text(version);
+    sf_stream_text(error);
+}
+
+static void write_error(const char *error) {
+    write_head(error);
+    sf_stream_word(SF_MESH_STREAM_END);
+    sf_stream_flush();
+}
+
+/* The first message of gmsh that begins with "Error" carries file and line, which `ierr` does not. True if
+ * there is none and `ierr` is 0; else the stream holds it. */
+static bool check(int ierr, const char *action) {
+    char **log = NULL, text[1000] = "";
+    size_t count = 0;
+    int ignored;
+    gmshLoggerGet(&log, &count, &ignored);
+    for (size_t i = 0; i < count && !*text; i++)
+        if (strncmp(log[i], "Error", 5) == 0)
+            snprintf(text, sizeof text, "%s: %s", action, log[i] + 5 + strspn(log[i] + 5, " :"));
+    if (!*text && ierr)
+        snprintf(text, sizeof text, "%s: it fails without a message (code %d)", action, ierr);
+    if (*text)
+        write_error(text);
+    return !*text;
+}
+
+int sf_work_begin(void) {
+    int ierr = sf_gmsh_adapter_initialize();
+    if (ierr)
+        return ierr;
+    gmshOptionSetNumber("General.AbortOnError", 0.0, &ierr);
+    gmshOptionSetNumber("Mesh.Algorithm3D", 1.0, &ierr);
+    gmshLoggerStart(&ierr);
+    gmshModelAdd("geometry", &ierr);
+    return ierr;
+}
+
+_Bool sf_work_parse(const char *parameters, const char *path) {
+    int ierr = 0;
+    gmshMerge(parameters, &ierr);
+    if (!check(ierr, "setting the parameters"))
+        return false;
+    gmshMerge(path, &ierr);
+    return check(ierr, "reading");
+}
+
+static bool has_elements(int dimension) {
+    int *types = NULL, ierr = 0;
+    size_t count = 0;
+    gmshModelMeshGetElementTypes(&types, &count, dimension, -1, &ierr);
+    gmshFree(types);
+    return count > 0;
+}
+
+/* With several threads meshes differ from run to run; the file may have asked for them. */
+static void mesh_on_one_thread(void) {
+    static const char *const numbers[] = {"General.NumThreads", "Mesh.MaxNumThreads1D",
+                                          "Mesh.MaxNumThreads2D", "Mesh.MaxNumThreads3D"};
+    int ierr = 0;
+    for (int i = 0; i < 4; i++)
+        gmshOptionSetNumber(numbers[i], 1.0, &ierr);
+}
+
+static void write_nodes(void) {
+    size_t *tags = NULL, count = 0, coordinates = 0, parameters = 0;
+    double *xyz = NULL, *parameter = NULL;
+    int ierr = 0;
+    gmshModelMeshGetNodes(&tags, &count, &xyz, &coordinates, &parameter, &parameters, -1, -1, 0, 0, &ierr);
+    if (ierr)
+        _exit(1); /* the stream has begun: the parent says that gmsh failed */
+    sf_stream_word(count);
+    sf_stream_words(tags, count * sizeof *tags);
+    sf_stream_words(xyz, 3 * count * sizeof *xyz);
+    gmshFree(tags);
+    gmshFree(xyz);
+    gmshFree(parameter);
+}
+
+static int compare_int(const void *a, const void *b) {
+    const int *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+typedef struct entity_list {
+    int *entity;
+    size_t count;
+} entity_list;
+
+/* Sorts and drops what is there twice. */
+static size_t sort_entities(int *entity, size_t count) {
+    size_t kept = 0;
+    if (count > 0)
+        qsort(entity, count, sizeof *entity, compare_int);
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || entity[i] != entity[i - 1])
+            entity[kept++] = entity[i];
+    return kept;
+}
+
+/* More entities for a list. */
+static void append(entity_list *list, const int *entity, size_t count) {
+    list->entity = realloc(list->entity, (list->count + count + 1) * sizeof *list->entity);
+    if (!list->entity)
+        _exit(1);
+    memcpy(list->entity + list->count, entity, count * sizeof *entity);
+    list->count += count;
+}
+
+/* The groups of a dimension go to the stream; the entities of the named ones to `named` too, unless NULL. */
+static void write_groups(int dimension, const int *pairs, size_t length, entity_list *named) {
+    for (size_t g = 0; g < length / 2; g++) {
+        int *member = NULL, ierr = 0, tag = pairs[2 * g + 1];
+        size_t members = 0;
+        char *name = NULL;
+        gmshModelGetPhysicalName(dimension, tag, &name, &ierr);
+        gmshModelGetEntitiesForPhysicalGroup(dimension, tag, &member, &members, &ierr);
+        if (ierr)
+            members = 0;
+        sf_stream_int(dimension);
+        sf_stream_int(tag);
+        sf_stream_text(name ? name : "");
+        sf_stream_word(members);
+        for (size_t i = 0; i < members; i++) {
+            member[i] = abs(member[i]);
+            sf_stream_int(member[i]);
+        }
+        if (named && name && *name && members > 0)
+            append(named, member, members);
+        gmshFree(name);
+        gmshFree(member);
+    }
+}
+
+/* The elements of some entities: first they are counted, then written. */
+typedef struct element_list {
+    bool counting;
+    size_t count;
+} element_list;
+
+static void write_block(int dimension, int entity, int type, const size_t *node, size_t length) {
+    char *name = NULL;
+    int type_dimension, order, vertices, primary, ierr;
+    double *local = NULL;
+    size_t local_length = 0;
+    gmshModelMeshGetElementProperties(type, &name, &type_dimension, &order, &vertices, &local, &local_length,
+                                      &primary, &ierr);
+    sf_stream_int(dimension);
+    sf_stream_int(entity);
+    sf_stream_int(type);
+    sf_stream_text(name ? name : "unknown");
+    sf_stream_word(length);
+    sf_stream_words(node, length * sizeof *node);
+    gmshFree(name);
+    gmshFree(local);
+}
+
+static void list_entity(element_list *list, int dimension, int entity) {
+    int *types = NULL, ierr = 0;
+    size_t type_count = 0, **elements = NULL, *element_counts = NULL, element_lists = 0;
+    size_t **nodes = NULL, *node_counts = NULL, node_lists = 0;
+    gmshModelMeshGetElements(&types, &type_count, &elements, &element_counts, &element_lists, &nodes,
+                             &node_counts, &node_lists, dimension, entity, &ierr);
+    if (ierr)
+        return; /* a group of an entity that does not exist: it has no elements */
+    for (size_t t = 0; t < type_count; t++) {
+        list->count += list->counting;
+        if (!list->counting)
+            write_block(dimension, entity, types[t], nodes[t], node_counts[t]);
+    }
+    for (size_t t = 0; t < element_lists; t++)
+        gmshFree(elements[t]);
+    for (size_t t = 0; t < node_lists; t++)
+        gmshFree(nodes[t]);
+    gmshFree(types);
+    gmshFree(elements);
+    gmshFree(element_counts);
+    gmshFree(nodes);
+    gmshFree(node_counts);
+}
+
+static void write_elements(const int *surface, size_t surfaces, const int *volume, size_t volumes) {
+    for (int counting = 1; counting >= 0; counting--) {
+        element_list list = {.counting = counting};
+        for (size_t i = 0; i < surfaces; i++)
+            list_entity(&list, 2, surface[i]);
+        for (size_t i = 0; i < volumes; i++)
+            list_entity(&list, 3, volume[i]);
+        if (counting)
+            sf_stream_word(list.count);
+    }
+}
+
+static void write_mesh(void) {
+    int *pairs[2] = {NULL, NULL}, *volume = NULL, ierr = 0;
+    size_t length[2] = {0, 0}, volumes = 0;
+    entity_list surface = {NULL, 0};
+    write_head("");
+    write_nodes();
+    gmshModelGetPhysicalGroups(&pairs[0], &length[0], 2, &ierr);
+    gmshModelGetPhysicalGroups(&pairs[1], &length[1], 3, &ierr);
+    sf_stream_word(length[0] / 2 + length[1] / 2);
+    write_groups(2, pairs[0], length[0], &surface);
+    write_groups(3, pairs[1], length[1], NULL);
+    surface.count = sort_entities(surface.entity, surface.count);
+    gmshModelGetEntities(&volume, &volumes, 3, &ierr);
+    volumes /= 2;
+    for (size_t i = 0; i < volumes; i++)
+        volume[i] = volume[2 * i + 1];
+    volumes = sort_entities(volume, volumes);
+    write_elements(surface.entity, surface.count, volume, volumes);
+    sf_stream_word(SF_MESH_STREAM_END);
+    sf_stream_flush();
+    for (int k = 0; k < 2; k++)
+        gmshFree(pairs[k]);
+    gmshFree(volume);
+    free(surface.entity);
+}
+
+void sf_work_mesh(const char *path) {
+    int ierr = 0;
+    bool is_mesh = sf_mesher_has_suffix(path, ".msh");
+    if (!has_elements(3) && !is_mesh) {
+        mesh_on_one_thread();
+        gmshModelMeshGenerate(3, &ierr);
+        if (!check(ierr, "meshing"))
+            return;
+    }
+    if (has_elements(3) || has_elements(2))
+        write_mesh();
+    else
+        write_error(is_mesh ? "it holds no mesh" : "it holds no mesh: there is no volume or surface to mesh");
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-fit WORD ...: material parameters from measurements. The first word names the kind of
+ * measurement. */
+#include "build_info.h"
+#include "base/program.h"
+#include "base/error.h"
+#include "study/fit/compression/compression_command.h"
+#include "study/fit/drop/drop_command.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *word;
+    int (*run)(int argc, char **argv);
+    const char *meaning;
+} commands[] = {
+    {"compression", sf_fit_compression_main, "from compression tests of a foam cube to a material file"},
+    {"drop", sf_fit_drop_main, "from measured drops to a material file"},
+};
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+static void print_usage(FILE *file) {
+    fputs("Usage: softfall-fit WORD [OPTION...] FIT.cfg -o DIR\n"
+          "Material parameters from measurements (docs/identification.md).\n\n",
+          file);
+    for (int k = 0; k < COMMANDS; k++)
+        fprintf(file, "  %-14s %s\n", commands[k].word, commands[k].meaning);
+    fputs("\nsoftfall-fit WORD --help lists the options.\n", file);
+}
+
+int main(int argc, char **argv) {
+    const char *word = argc > 1 ? argv[1] : "";
+    sf_error err = SF_ERROR_INIT;
+    if (sf_program_begin(argv, &err) != SF_OK)
+        return sf_error_report(&err, "softfall-fit");
+    argp_program_version = "softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")";
+    for (int k = 0; k < COMMANDS; k++)
+        if (strcmp(word, commands[k].word) == 0)
+            return commands[k].run(argc - 1, argv + 1);
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-?") == 0) {
+        print_usage(stdout);
+        return 0;
+    }
+    if (strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0) {
+        puts(argp_program_version);
+        return 0;
+    }
+    if (argc > 1)
+        fprintf(stderr, "softfall-fit: \"%s\" is none of its words\n", word);
+    print_usage(stderr);
+    return 2;
+}

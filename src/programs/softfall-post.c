@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* softfall-post RESULTS -o DIR: injury figures, curves, pictures and ParaView files from a results.h5. */
+#include "build_info.h"
+#include "base/text.h"
+#include "base/program.h"
+#include "io/provenance.h"
+#include "post/figures/layer_figures.h"
+#include "post/figures/compare.h"
+#include "post/view/csv.h"
+#include "post/figures/figures.h"
+#include "io/staging.h"
+#include "post/view/overlay.h"
+#include "post/view/paraview.h"
+#include "post/view/plot.h"
+#include "post/view/report.h"
+#include "post/results/results.h"
+#include "post/view/section.h"
+#include "post/view/summary.h"
+#include "post/figures/verdict.h"
+#include "post/view/xdmf.h"
+
+#include <argp.h>
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    KEY_FORCE = 256,
+    KEY_FILTER,
+    KEY_REFERENCE,
+    KEY_WINDOW,
+    KEY_REGIONS,
+    KEY_SHIFT,
+    KEY_STRICT,
+    KEY_FULL,
+    KEY_FILM,
+    KEY_LIMIT_G,
+    KEY_LIMIT_HIC,
+    KEY_REFERENCE_FILTER,
+    KEY_REFERENCE_COLUMN,
+    KEY_REFERENCE_INVERT
+};
+
+typedef struct options {
+    const char *results_path;
+    const char *directory;
+    bool force;
+    bool full;        /* doubles for ParaView */
+    const char *film; /* name of the file; NULL: none is asked for */
+    bool strict;      /* the exit status shows the verdict */
+    sf_limits limits;
+    double cfc;
+    bool comparing; /* --reference was given */
+    bool tuned;     /* an option that needs --reference was given */
+    sf_compare_options compare;
+    sf_region *regions;
+    sf_error err;
+} options;
+
+/* All resources of the program, released together. */
+typedef struct job {
+    sf_results results;
+    sf_figures figures;
+    sf_verdict verdict;
+    sf_comparison comparison;
+    sf_staging output;
+    const char *names[19];        /* of every file that may be written */
+    char data[SF_XDMF_NAME_SIZE]; /* of the data of pad.xdmf */
+    char *command_line;
+    sf_xdmf xdmf;
+    char plot_warning[512], state_warning[512];
+} job;
+
+static sf_status parse_filter(const char *option, const char *text, double *cfc, sf_error *err) {
+    static const double classes[] = {60, 180, 600, 1000};
+    bool number = sf_decimal_is(text, cfc);
+    for (size_t k = 0; k < sizeof classes / sizeof classes[0]; k++)
+        if (number && *cfc == classes[k])
+            return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the channel frequency classes are 60, 180, 600 and 1000%s",
+                   option, text, strcmp(option, "--filter") == 0 ? "" : " (none: not filtered)");
+}
+
+static sf_status parse_shift(const char *text, double *shift, sf_error *err) {
+    bool number = sf_decimal_is(text, shift);
+    *shift *= 1e-3;
+    if (!number)
+        return SF_FAIL(err, SF_ERR_INPUT, "--shift %s: not a time in ms", text);
+    return SF_OK;
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+    options *o = state->input;
+    switch (key) {
+    case 'o':
+        o->directory = text;
+        break;
+    case KEY_FORCE:
+        o->force = true;
+        break;
+    case KEY_FULL:
+        o->full = true;
+        break;
+    case KEY_FILM:
+        sf_paraview_check_film(text, &o->film, &o->err);
+        break;
+    case KEY_STRICT:
+        o->strict = true;
+        break;
+    case KEY_LIMIT_G:
+        sf_program_read_limit("--limit-g", text, &o->limits.a_max_g, &o->err);
+        break;
+    case KEY_LIMIT_HIC:
+        sf_program_read_limit("--limit-hic", text, &o->limits.hic, &o->err);
+        break;
+    case KEY_FILTER:
+        parse_filter("--filter", text, &o->cfc, &o->err);
+        break;
+    case KEY_REFERENCE:
+        o->compare.reference.path = text;
+        o->comparing = true;
+        break;
+    case KEY_REFERENCE_FILTER:
+        o->compare.reference.cfc = 0;
+        if (strcmp(text, "none") != 0)
+            parse_filter("--reference-filter", text, &o->compare.reference.cfc, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_REFERENCE_COLUMN:
+        o->compare.reference.column = text;
+        o->tuned = true;
+        break;
+    case KEY_REFERENCE_INVERT:
+        o->compare.reference.invert = true;
+        o->tuned = true;
+        break;
+    case KEY_WINDOW:
+        sf_region_parse(text, &o->compare.window, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_REGIONS:
+        free(o->regions);
+        sf_regions_parse(text, &o->regions, &o->compare.region_count, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_SHIFT:
+        parse_shift(text, &o->compare.shift, &o->err);
+        o->tuned = true;
+        break;
+    case ARGP_KEY_ARG:
+        if (o->results_path)
+            argp_error(state, "one results file is expected, found \"%s\" as well", text);
+        o->results_path = text;
+        break;
+    case ARGP_KEY_END:
+        if (!o->results_path || !o->directory)
+            argp_error(state, "give a results file, and the output directory with -o");
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static void print_version(FILE *stream, struct argp_state *state) {
+    (void)state;
+    fputs("softfall-post " SF_VERSION " (" SF_GIT_REVISION ")\n", stream);
+}
+
+static sf_status parse_command(int argc, char **argv, options *o) {
+    static const struct argp_option known[] = {
+        {"output", 'o', "DIR", 0, "write everything there (required)", 0},
+        {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier run in DIR", 0},
+        {"full", KEY_FULL, NULL, 0,
+         "data of pad.xdmf as doubles, as in results.h5 (default: as floats, a third of the bytes)", 0},
+        {"film", KEY_FILM, "mp4|gif", OPTION_ARG_OPTIONAL,
+         "a film of the drop too, pad.mp4 or pad.gif, and pad.png, the picture at the peak, which report.html then "
+         "shows; by pvbatch (ParaView) and ffmpeg",
+         0},
+        {"filter", KEY_FILTER, "CFC", 0, "channel frequency class: 60, 180, 600 or 1000 (default)", 0},
+        {"strict", KEY_STRICT, NULL, 0,
+         "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"; it says nothing about limits that "
+         "are exceeded",
+         0},
+        {"limit-g", KEY_LIMIT_G, "G", 0,
+         "limit of a_max in g (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) ")", 0},
+        {"limit-hic", KEY_LIMIT_HIC, "HIC", 0,
+         "limit of HIC (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_HIC) ")", 0},
+        {"reference", KEY_REFERENCE, "CSV", 0,
+         "compare with a measured curve: columns such as time_ms and acceleration_g, or \"Time (ms)\" and "
+         "\"Acceleration (m/s2)\"; separators , ; tab or blanks",
+         1},
+        {"reference-filter", KEY_REFERENCE_FILTER, "CFC", 0,
+         "filter of the measured curve: none if the file is filtered already (default: that of --filter)", 1},
+        {"reference-column", KEY_REFERENCE_COLUMN, "NAME", 0,
+         "heading of its acceleration, if several columns could be", 1},
+        {"reference-invert", KEY_REFERENCE_INVERT, NULL, 0,
+         "its channel is inverted: positive must mean that the missile is slowed down", 1},
+        {"window", KEY_WINDOW, "A,B", 0,
+         "compare over A to B ms of the measured time (default: its HIC window); within the data", 1},
+        {"regions", KEY_REGIONS, "A-B,C-D,...", 0,
+         "compare over these regions too, in ms of the measured time", 1},
+        {"shift", KEY_SHIFT, "MS", 0, "model time = measured time + MS (default: align the contacts)", 1},
+        {0},
+    };
+    const struct argp parser = {
+        .options = known,
+        .parser = parse_option,
+        .args_doc = "RESULTS.h5 -o DIR\ncompare RESULTS RESULTS ... -o DIR",
+        .doc =
+            "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, summary.json, "
+            "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
+            "motion compression.csv and .png instead of the acceleration. Open the drop in ParaView with paraview "
+            "--script=pad_paraview.py, in that directory. The "
+            "figures are indicative, not a certification.",
+    };
+    argp_program_version_hook = print_version;
+    *o = (options){.cfc = 1000,
+                   .limits = SF_DEFAULT_LIMITS,
+                   .compare = {.reference = {.cfc = NAN,
+                                             .column_option = "--reference-column",
+                                             .unfiltered_option = "--reference-filter none",
+                                             .invert_option = "--reference-invert"},
+                               .shift = NAN,
+                               .window = {NAN, NAN}},
+                   .err = SF_ERROR_INIT};
+    if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
+        return SF_FAIL(&o->err, SF_ERR_INPUT, "the command line cannot be read");
+    o->compare.regions = o->regions;
+    if (isnan(o->compare.reference.cfc))
+        o->compare.reference.cfc = o->cfc;
+    if (o->tuned && !o->comparing)
+        return SF_FAIL(&o->err, SF_ERR_INPUT,
+                       "--window, --regions, --shift and --reference-... need --reference");
+    return o->err.status;
+}
+
+/* Every file that this program may write. The data of pad.xdmf are moved before it, and earlier ones (pad.h5
+ * of earlier versions) removed after it. Without a name of the data yet, pad.xdmf stands for them. */
+static void name_output(job *j) {
+    const char *const names[] = {j->data,
+                                 "pad.xdmf",
+                                 "pad_paraview.py",
+                                 "pad.mp4",
+                                 "pad.gif",
+                                 "pad.png",
+                                 "history.csv",
+                                 "section.csv",
+                                 "reference.csv",
+                                 "compression.csv",
+                                 "compression.gp",
+                                 "compression.png",
+                                 "acceleration.csv",
+                                 "acceleration.gp",
+                                 "acceleration.png",
+                                 "report.html",
+                                 "summary.json",
+                                 "pad.h5",
+                                 NULL};
+    static_assert(sizeof names == sizeof j->names, "as many as the job holds");
+    memcpy(j->names, names, sizeof names);
+    snprintf(j->data, sizeof j->data, "pad.xdmf");
+}
+
+static sf_status write_output(const options *o, job *j, sf_error *err) {
+    bool section = false;
+    const sf_comparison *comparison = o->comparing ? &j->comparison : NULL;
+    const sf_xdmf_options xdmf = {j->command_line, o->full};
+    name_output(j);
+    if (sf_staging_begin(o->directory, j->names, o->force, &j->output, err) != SF_OK ||
+        sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
+        (j->figures.driven && sf_csv_write_compression(&j->output, &j->results, &j->figures, err) != SF_OK) ||
+        (!j->figures.driven && sf_csv_write_acceleration(&j->output, &j->figures, err) != SF_OK) ||
+        (comparison && sf_csv_write_reference(&j->output, comparison, &j->figures, err) != SF_OK) ||
+        sf_section_write(&j->output, &j->results, &section, err) != SF_OK ||
+        sf_xdmf_write(&j->output, &j->results, &xdmf, j->data, &j->xdmf, err) != SF_OK ||
+        sf_paraview_write(&j->output, &j->results, &j->xdmf, j->state_warning, sizeof j->state_warning,
+                          err) != SF_OK ||
+        (o->film && sf_paraview_film(&j->output, o->film, err) != SF_OK) ||
+        sf_plot_write(&j->output, &j->results, &j->figures, comparison, &j->verdict, j->plot_warning,
+                      sizeof j->plot_warning, err))
+        return err->status;
+    if (!section)
+        fprintf(stderr,
+                "softfall-post: warning: no frame holds the von Mises stress at the peak: no section.csv\n");
+    const sf_summary summary = {
+        o->results_path, o->compare.reference.path, &j->results, &j->figures, comparison, &j->verdict};
+    const sf_report report = {&summary, j->command_line};
+    if (sf_report_write(&j->output, &report, err) != SF_OK ||
+        sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
+        return err->status;
+    sf_xdmf_remove_old(o->directory, j->data);
+    sf_summary_print(stdout, &summary);
+    return SF_OK;
+}
+
+static void print_warnings(const job *j) {
+    fflush(stdout);
+    for (int k = 0; k < j->results.note_count; k++)
+        fprintf(stderr, "softfall-post: warning: %s\n", j->results.notes[k]);
+    if (!j->figures.touched)
+        fprintf(stderr,
+                "softfall-post: warning: the missile never touched the pad: there are no injury figures\n");
+    else if (!j->figures.rebounded && !j->figures.driven)
+        fprintf(
+            stderr,
+            "softfall-post: warning: the run ended in contact: no rebound speed, the peak may lie ahead\n");
+    if (j->plot_warning[0])
+        fprintf(stderr, "softfall-post: warning: %s\n", j->plot_warning);
+    if (j->state_warning[0])
+        fprintf(stderr, "softfall-post: warning: %s\n", j->state_warning);
+}
+
+static void print_files(const job *j) {
+    static const struct {
+        const char *name, *meaning;
+    } files[] = {
+        {"report.html", "a page to read or print, usually two sides of A4"},
+        {"summary.json", "the figures"},
+        {"acceleration.png", "the curves and the HIC window"},
+        {"acceleration.csv", "the filtered curve of a_max and HIC, from 5 ms before contact"},
+        {"history.csv", "acceleration, speed, indentation, forces, energies over time"},
+        {"compression.png", "stress over strain"},
+        {"compression.csv", "strain and nominal stress over time"},
+        {"section.csv", "mid-section and profile under the axis at the peak"},
+        {"reference.csv", "the measured curve, aligned"},
+        {"pad.xdmf", "pad and missile for ParaView (with pad-....h5)"},
+        {"pad_paraview.py", "opens them: paraview --script=pad_paraview.py"},
+        {"pad.mp4", "film of the drop"},
+        {"pad.gif", "film of the drop"},
+        {"pad.png", "picture at the peak"},
+    };
+    printf("Files\n");
+    for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
+        if (sf_staging_has(&j->output, files[k].name))
+            printf("  %s/%-18s %s\n", j->output.directory, files[k].name, files[k].meaning);
+}
+
+static sf_status run(const options *o, job *j, sf_error *err) {
+    if (!j->command_line)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the command line");
+    static const char *const known[] = {"pad.xdmf", "history.csv", "report.html", "summary.json", NULL};
+    if (sf_staging_check(o->directory, known, o->force, err) != SF_OK || /* the rest when it is known */
+        sf_results_open(o->results_path, &j->results, err) != SF_OK ||
+        sf_layers_note_slip(&j->results, err) != SF_OK ||
+        sf_figures_compute(&j->results, o->cfc, &j->figures, err) != SF_OK)
+        return err->status;
+    if (o->comparing && j->figures.driven)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile's motion was prescribed",
+                       o->results_path);
+    if (o->comparing && !j->figures.touched)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile never touched the pad",
+                       o->results_path);
+    sf_compare_options compare = o->compare;
+    compare.left = j->figures.rebounded;
+    compare.flight = j->figures.free_flight;
+    if (o->comparing && sf_compare_run(&compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
+        return err->status;
+    sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);
+    if (write_output(o, j, err) != SF_OK)
+        return err->status;
+    print_files(j);
+    print_warnings(j);
+    return SF_OK;
+}
+
+/* Exit status with --strict, by grade; no sf_status has these numbers. */
+static const int strict_codes[] = {[SF_GRADE_VALID] = 0, [SF_GRADE_REMARKS] = 8, [SF_GRADE_DO_NOT_USE] = 9};
+
+int main(int argc, char **argv) {
+    if (argc > 1 && strcmp(argv[1], "compare") == 0)
+        return sf_overlay_main(argc, argv);
+    options o;
+    job j = {0};
+    sf_error err = SF_ERROR_INIT;
+    if (sf_program_begin(argv, &err) != SF_OK)
+        return sf_error_report(&err, "softfall-post");
+    if (parse_command(argc, argv, &o) != SF_OK) {
+        err = o.err;
+    } else {
+        j.command_line = sf_command_line(argc, argv);
+        run(&o, &j, &err);
+    }
+    sf_staging_end(&j.output);
+    if (o.comparing)
+        sf_comparison_free(&j.comparison);
+    sf_figures_free(&j.figures);
+    sf_results_close(&j.results);
+    free(j.command_line);
+    free(o.regions);
+    int code = sf_error_report(&err, "softfall-post");
+    return code == 0 && o.strict ? strict_codes[j.verdict.grade] : code;
+}

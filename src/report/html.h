@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reports: one self-contained page on A4, without a script and without anything to load. All programs use
+ * this template. The page is well-formed XML; texts are escaped, bytes that are not UTF-8 become U+FFFD.
+ * Failed writes are reported by sf_staging_close. */
+#ifndef SF_IO_HTML_H
+#define SF_IO_HTML_H
+
+#include "base/error.h"
+#include "io/staging.h"
+#include <stdio.h>
+
+/* Opens report.html in the staging directory: head, style, title and the line below it (NULL: none). NULL on
+ * failure. */
+FILE *sf_html_begin(const sf_staging *output, const char *title, const char *subtitle, sf_error *err);
+/* The line at the foot, the end, and sf_staging_close. */
+sf_status sf_html_end(FILE *page, const char *foot, sf_error *err);
+
+/* Escaped text, without an element around it. */
+void sf_html_text(FILE *page, const char *text);
+void sf_html_format(FILE *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* <h2>, <p>, <p class="note">, <pre>, <pre class="prose">; escaped. */
+void sf_html_heading(FILE *page, const char *text);
+void sf_html_paragraph(FILE *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void sf_html_note(FILE *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void sf_html_pre(FILE *page, const char *text);
+void sf_html_prose(FILE *page, const char *text);
+
+/* The line at the top that says what to think of all that follows. `kind`: "good", "fair", "bad" or "plain".
+ */
+void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* A few figures in large type: begin, tiles, end. `kind` as above; `remark` below the value. */
+void sf_html_tiles_begin(FILE *page);
+void sf_html_tile(FILE *page, const char *kind, const char *title, const char *value, const char *remark);
+void sf_html_tiles_end(FILE *page);
+
+/* What follows stands side by side until the end. `kind`: "" equal widths; "narrow", "wide": the first is. */
+void sf_html_columns_begin(FILE *page, const char *kind);
+void sf_html_columns_end(FILE *page);
+
+/* A part that is not broken between pages. */
+void sf_html_block_begin(FILE *page);
+void sf_html_block_end(FILE *page);
+
+/* A figure of an SVG element; with `svg` NULL the caption says what is missing and why. */
+void sf_html_figure(FILE *page, const char *svg, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The PNG of a file of the staging directory as an SVG element that holds it, for sf_html_figure. From
+ * malloc, owned by the caller; NULL if there is none. */
+char *sf_html_png(const sf_staging *output, const char *name);
+
+/* A table; released by nothing. */
+typedef struct sf_html_table {
+    FILE *page;
+    unsigned right;   /* bits of the columns of numbers */
+    int column;       /* of the next cell */
+    const char *hint; /* of the next cell; NULL: none */
+} sf_html_table;
+
+/* `columns`: the headings between '|'; one that begins with '>' is of numbers, set right. NULL: no headings,
+ * two columns of which the first is set as a heading. `kind`: "", or "dense". */
+sf_html_table sf_html_table_begin(FILE *page, const char *kind, const char *columns);
+void sf_html_row(sf_html_table *table);
+void sf_html_cell(sf_html_table *table, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The next cell has this as its hint. */
+void sf_html_hint(sf_html_table *table, const char *text);
+/* The value with so many digits after the point, or a dash if it is not finite. */
+void sf_html_number(sf_html_table *table, int digits, double value);
+void sf_html_table_end(sf_html_table *table);
+/* Of a table without headings: a row. */
+void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+#endif

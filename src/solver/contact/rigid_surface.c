@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/contact/rigid_surface.h"
+
+#include "base/mat3.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Behind the rim of an open surface a point counts as inside only straight behind it: the part of its ray
+ * across the rim's normal may be this much of the part along it, as on the rim of a quarter missile, whose
+ * normal is tilted by half the angle between facets, and this much of the reach, as predicted positions waver
+ * about a symmetry plane. */
+static const double RIM_TILT = 0.2, RIM_WIDTH = 0.01;
+
+static void subtract(const double *a, const double *b, double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] - b[k];
+}
+
+static void normalise(double a[3]) {
+    double length = sqrt(sf_dot3(a, a));
+    for (int k = 0; k < 3 && length > 0; k++)
+        a[k] /= length;
+}
+
+static const double *vertex(const sf_missile_surface *s, int64_t triangle, int corner) {
+    return &s->position[3 * (int64_t)s->triangle[3 * triangle + corner]];
+}
+
+/* Face normals, and the angle-weighted sums at the vertices. */
+static void build_normals(sf_missile_surface *s, int64_t triangles) {
+    for (int64_t t = 0; t < triangles; t++) {
+        double u[3], v[3];
+        subtract(vertex(s, t, 1), vertex(s, t, 0), u);
+        subtract(vertex(s, t, 2), vertex(s, t, 0), v);
+        sf_cross3(u, v, &s->normal[3 * t]);
+        normalise(&s->normal[3 * t]);
+        for (int corner = 0; corner < 3; corner++) {
+            subtract(vertex(s, t, (corner + 1) % 3), vertex(s, t, corner), u);
+            subtract(vertex(s, t, (corner + 2) % 3), vertex(s, t, corner), v);
+            normalise(u);
+            normalise(v);
+            double angle = acos(fmax(-1, fmin(1, sf_dot3(u, v))));
+            for (int k = 0; k < 3; k++)
+                s->vertex_normal[3 * (int64_t)s->triangle[3 * t + corner] + k] +=
+                    angle * s->normal[3 * t + k];
+        }
+    }
+}
+
+typedef struct half_edge {
+    int32_t low, high;
+    int64_t slot; /* 3 * triangle + edge */
+} half_edge;
+
+static int by_ends(const void *a, const void *b) {
+    const half_edge *x = a, *y = b;
+    if (x->low != y->low)
+        return x->low < y->low ? -1 : 1;
+    if (x->high != y->high)
+        return x->high < y->high ? -1 : 1;
+    return (x->slot > y->slot) - (x->slot < y->slot);
+}
+
+static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf_error *err) {
+    half_edge *edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *edge, "missile edges");
+    if (!edge)
+        return err->status;
+    for (int64_t k = 0; k < 3 * triangles; k++) {
+        int32_t a = s->triangle[k], b = s->triangle[k % 3 == 2 ? k - 2 : k + 1];
+        edge[k] = (half_edge){a < b ? a : b, a < b ? b : a, k};
+    }
+    qsort(edge, 3 * (size_t)triangles, sizeof *edge, by_ends);
+    for (int64_t first = 0, end; first < 3 * triangles; first = end) {
+        double sum[3] = {0};
+        for (end = first;
+             end < 3 * triangles && edge[end].low == edge[first].low && edge[end].high == edge[first].high;
+             end++)
+            for (int c = 0; c < 3; c++)
+                sum[c] += s->normal[3 * (edge[end].slot / 3) + c];
+        for (int64_t k = first; k < end; k++)
+            memcpy(&s->edge_normal[3 * edge[k].slot], sum, sizeof sum);
+        if (end == first + 1)
+            s->rim_edge[edge[first].slot] = s->rim_vertex[edge[first].low] = s->rim_vertex[edge[first].high] =
+                1;
+    }
+    free(edge);
+    return SF_OK;
+}
+
+static int64_t clamp_bin(const sf_missile_surface *s, int axis, double x) {
+    double b = floor((x - s->low[axis]) / s->reach);
+    return b < 0 ? 0 : b >= (double)s->bins[axis] ? s->bins[axis] - 1 : (int64_t)b;
+}
+
+/* Bins of width `reach` over the plan; each triangle goes to every bin its grown box meets. */
+static sf_status build_bins(sf_missile_surface *s, int64_t nodes, int64_t triangles, sf_error *err) {
+    for (int a = 0; a < 3; a++) {
+        s->low[a] = INFINITY;
+        s->high[a] = -INFINITY;
+    }
+    for (int64_t i = 0; i < nodes; i++)
+        for (int a = 0; a < 3; a++) {
+            s->low[a] = fmin(s->low[a], s->position[3 * i + a]);
+            s->high[a] = fmax(s->high[a], s->position[3 * i + a]);
+        }
+    for (int a = 0; a < 2; a++)
+        s->bins[a] = (int64_t)((s->high[a] - s->low[a]) / s->reach) + 1;
+    int64_t bins = s->bins[0] * s->bins[1];
+    s->start = sf_alloc(err, (unsigned long)bins + 2, sizeof *s->start, "missile bins");
+    for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
+        for (int64_t t = 0; t < triangles; t++) {
+            int64_t range[2][2];
+            for (int a = 0; a < 2; a++) {
+                double x = vertex(s, t, 0)[a], y = vertex(s, t, 1)[a], z = vertex(s, t, 2)[a];
+                range[a][0] = clamp_bin(s, a, fmin(x, fmin(y, z)) - s->reach);
+                range[a][1] = clamp_bin(s, a, fmax(x, fmax(y, z)) + s->reach);
+            }
+            for (int64_t i = range[0][0]; i <= range[0][1]; i++)
+                for (int64_t j = range[1][0]; j <= range[1][1]; j++) {
+                    if (pass == 0)
+                        s->start[i * s->bins[1] + j + 2]++;
+                    else
+                        s->member[s->start[i * s->bins[1] + j + 1]++] = (int32_t)t;
+                }
+        }
+        if (pass == 0) {
+            for (int64_t b = 0; b < bins; b++)
+                s->start[b + 2] += s->start[b + 1];
+            s->member = sf_alloc(err, (unsigned long)s->start[bins + 1], sizeof *s->member, "missile bins");
+        }
+    }
+    return err->status;
+}
+
+sf_status sf_missile_surface_build(const sf_model *m, const double axis[3], sf_missile_surface *s,
+                                   sf_error *err) {
+    memset(s, 0, sizeof *s);
+    s->shape = m->missile.shape;
+    s->radius = m->missile.sphere_radius;
+    s->cap_cosine = m->missile.sphere_cap_cosine;
+    memcpy(s->centre, m->missile.sphere_centre, sizeof s->centre);
+    memcpy(s->axis, axis, sizeof s->axis);
+    if (s->shape == SF_SHAPE_SPHERE)
+        return SF_OK;
+    int64_t triangles = m->surface_triangle_count;
+    s->position = m->surface_position;
+    s->triangle = m->surface_triangle;
+    for (int64_t c = 0; c < m->contact_count; c++)
+        s->reach = fmax(s->reach, m->spacing[m->contact_node[c]]);
+    s->normal = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *s->normal, "missile normals");
+    s->edge_normal = sf_alloc(err, 9 * (unsigned long)triangles, sizeof *s->edge_normal, "missile normals");
+    s->vertex_normal =
+        sf_alloc(err, 3 * (unsigned long)m->surface_node_count, sizeof *s->vertex_normal, "missile normals");
+    s->rim_edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *s->rim_edge, "missile rim");
+    s->rim_vertex = sf_alloc(err, (unsigned long)m->surface_node_count, sizeof *s->rim_vertex, "missile rim");
+    if (err->status == SF_OK) {
+        build_normals(s, triangles);
+        if (build_edge_normals(s, triangles, err) == SF_OK)
+            build_bins(s, m->surface_node_count, triangles, err);
+    }
+    if (err->status != SF_OK)
+        sf_missile_surface_free(s);
+    return err->status;
+}
+
+void sf_missile_surface_free(sf_missile_surface *s) {
+    free(s->normal);
+    free(s->vertex_normal);
+    free(s->edge_normal);
+    free(s->rim_edge);
+    free(s->rim_vertex);
+    free(s->start);
+    free(s->member);
+    memset(s, 0, sizeof *s);
+}
+
+static bool sphere_gap(const sf_missile_surface *s, const double x[3], double *gap, double normal[3]) {
+    double r[3];
+    subtract(x, s->centre, r);
+    double distance = sqrt(sf_dot3(r, r));
+    if (!(distance > 0) || sf_dot3(r, s->axis) < (s->cap_cosine - 1e-9) * distance)
+        return false;
+    *gap = distance - s->radius;
+    for (int k = 0; k < 3; k++)
+        normal[k] = r[k] / distance;
+    return true;
+}
+
+/* Nearest point of a triangle (Ericson 2005, section 5.1.5). `feature`: 0-2 vertex, 3-5 edge, 6 face. */
+static void nearest_point(const double *a, const double *b, const double *c, const double x[3], double out[3],
+                          int *feature) {
+    double ab[3], ac[3], ap[3], bp[3], cp[3], s = 0, t = 0;
+    subtract(b, a, ab);
+    subtract(c, a, ac);
+    subtract(x, a, ap);
+    subtract(x, b, bp);
+    subtract(x, c, cp);
+    double d1 = sf_dot3(ab, ap), d2 = sf_dot3(ac, ap), d3 = sf_dot3(ab, bp), d4 = sf_dot3(ac, bp),
+           d5 = sf_dot3(ab, cp), d6 = sf_dot3(ac, cp);
+    double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    if (d1 <= 0 && d2 <= 0) {
+        *feature = 0;
+    } else if (d3 >= 0 && d4 <= d3) {
+        *feature = 1;
+        s = 1;
+    } else if (d6 >= 0 && d5 <= d6) {
+        *feature = 2;
+        t = 1;
+    } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        *feature = 3;
+        s = d1 / (d1 - d3);
+    } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        *feature = 4;
+        t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        s = 1 - t;
+    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        *feature = 5;
+        t = d2 / (d2 - d6);
+    } else {
+        *feature = 6;
+        s = vb / (va + vb + vc);
+        t = vc / (va + vb + vc);
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] + s * ab[k] + t * ac[k];
+}
+
+static const double *feature_normal(const sf_missile_surface *s, int64_t triangle, int feature) {
+    if (feature == 6)
+        return &s->normal[3 * triangle];
+    if (feature >= 3)
+        return &s->edge_normal[3 * (3 * triangle + feature - 3)];
+    return &s->vertex_normal[3 * (int64_t)s->triangle[3 * triangle + feature]];
+}
+
+static bool feature_on_rim(const sf_missile_surface *s, int64_t triangle, int feature) {
+    if (feature == 6)
+        return false;
+    return feature >= 3 ? s->rim_edge[3 * triangle + feature - 3]
+                        : s->rim_vertex[s->triangle[3 * triangle + feature]];
+}
+
+static bool triangles_gap(const sf_missile_surface *s, const double x[3], double *gap, double normal[3]) {
+    double best = s->reach * s->reach, ray[3] = {0};
+    const double *outward = NULL;
+    bool rim = false;
+    for (int a = 0; a < 2; a++)
+        if (x[a] < s->low[a] - s->reach || x[a] > s->low[a] + s->reach * (double)(s->bins[a] + 1))
+            return false;
+    int64_t bin = clamp_bin(s, 0, x[0]) * s->bins[1] + clamp_bin(s, 1, x[1]);
+    for (int64_t k = s->start[bin]; k < s->start[bin + 1]; k++) {
+        double point[3], r[3];
+        int feature;
+        int64_t t = s->member[k];
+        nearest_point(vertex(s, t, 0), vertex(s, t, 1), vertex(s, t, 2), x, point, &feature);
+        subtract(x, point, r);
+        if (sf_dot3(r, r) >= best)
+            continue;
+        best = sf_dot3(r, r);
+        memcpy(ray, r, sizeof ray);
+        outward = feature_normal(s, t, feature);
+        rim = feature_on_rim(s, t, feature);
+    }
+    if (!outward)
+        return false;
+    double along = sf_dot3(ray, outward), side = along < 0 ? -1 : 1;
+    if (rim && along < 0) {
+        double depth = -along / sqrt(sf_dot3(outward, outward)), across = sqrt(fmax(0, best - depth * depth));
+        if (across > RIM_TILT * depth + RIM_WIDTH * s->reach)
+            return false;
+    }
+    *gap = side * sqrt(best);
+    /* The direction to the nearest point is the normal, except on the surface, where it is rounding noise. */
+    bool near = best < 1e-12 * s->reach * s->reach;
+    for (int k = 0; k < 3; k++)
+        normal[k] = near ? outward[k] : side * ray[k];
+    normalise(normal);
+    return true;
+}
+
+bool sf_missile_surface_near(const sf_missile_surface *s, const double x[3], double margin) {
+    double r[3];
+    if (s->shape == SF_SHAPE_SPHERE) {
+        subtract(x, s->centre, r);
+        return sf_dot3(r, r) <= (s->radius + margin) * (s->radius + margin);
+    }
+    margin += s->reach; /* as deep behind an open surface a point can be */
+    for (int a = 0; a < 3; a++)
+        if (x[a] < s->low[a] - margin || x[a] > s->high[a] + margin)
+            return false;
+    return true;
+}
+
+bool sf_missile_surface_gap(const sf_missile_surface *s, const double x[3], double *gap, double normal[3]) {
+    return s->shape == SF_SHAPE_SPHERE ? sphere_gap(s, x, gap, normal) : triangles_gap(s, x, gap, normal);
+}

@@ -1,0 +1,510 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/cfh/spread.h"
+
+#include "study/run_folder.h"
+#include "io/process.h"
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_fit.h>
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double STEP = 0.035;        /* of ln(height) on the grid */
+static const double OUTSIDE = 1.5;       /* factor by which it reaches beyond the simulated heights */
+static const double TAIL = 0.025;        /* on each side of the interval */
+static const double OUTERMOST = 0.05;    /* share of the outermost draws that are simulated */
+static const double MOST_SHIFT = 50;     /* of ln(height), for Student's t of one degree of freedom */
+static const double TREND_SPAN = 0.02;   /* of ln(height): checks closer together show no trend */
+enum { SEED = 1, RESPONSE_SEED = 1000 }; /* draw d (from 0) has RESPONSE_SEED + d for the responses */
+
+/* ---- columns ---- */
+
+/* ln of a_max and HIC of a drop. SF_ERR_NUMERIC: the columns collapse. */
+static sf_status drop_columns(const sf_columns *pad, const sf_material_law *law, double height, double *value,
+                              sf_error *err) {
+    sf_columns columns = *pad;
+    sf_columns_figures figures;
+    columns.speed = sf_cfh_speed(height);
+    if (sf_columns_respond(&columns, law, &figures, NULL, err) != SF_OK)
+        return err->status;
+    value[SF_CFH_A_MAX] = log(figures.a_max_g);
+    value[SF_CFH_HIC] = log(figures.hic);
+    if (!isfinite(value[SF_CFH_A_MAX]) || !isfinite(value[SF_CFH_HIC]))
+        return SF_FAIL(err, SF_ERR_NUMERIC, "the columns do not stop the missile");
+    return SF_OK;
+}
+
+/* value [SF_CFH_CRITERIA][SF_CFH_GRID]; `reach`: heights before the collapse. */
+static sf_status drop_grid(const sf_cfh_spread *s, const sf_columns *pad, const sf_material_law *law,
+                           double *value, int *reach, sf_error *err) {
+    for (*reach = 0; *reach < s->grid; (*reach)++) {
+        double y[SF_CFH_CRITERIA];
+        if (sf_process_stopped())
+            return sf_run_folder_interrupted(err);
+        if (drop_columns(pad, law, s->height[*reach], y, err) != SF_OK)
+            break;
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            value[c * SF_CFH_GRID + *reach] = y[c];
+    }
+    if (err->status == SF_ERR_NUMERIC)
+        *err = (sf_error)SF_ERROR_INIT;
+    return err->status;
+}
+
+static sf_status drop_draws(sf_cfh_spread *s, const sf_columns *pad, const sf_cfh_draws *draws,
+                            sf_error *err) {
+    sf_error *errors = sf_alloc(err, (unsigned long)s->draws, sizeof *errors, "draws");
+    if (!errors)
+        return err->status;
+#pragma omp parallel for schedule(dynamic)
+    for (int d = 0; d < s->draws; d++) {
+        errors[d] = (sf_error)SF_ERROR_INIT;
+        drop_grid(s, pad, &draws->draw[d].law, &s->value[(size_t)d * SF_CFH_CRITERIA * SF_CFH_GRID],
+                  &s->reach[d], &errors[d]);
+    }
+    for (int d = 0; d < s->draws && err->status == SF_OK; d++)
+        if (errors[d].status != SF_OK)
+            *err = errors[d];
+    free(errors);
+    return err->status;
+}
+
+/* ---- correction ---- */
+
+/* Linear in ln h, constant outside. */
+static double interpolate(int count, const double *height, const double *value, double at) {
+    int k = 0;
+    if (at <= height[0])
+        return value[0];
+    if (at >= height[count - 1])
+        return value[count - 1];
+    while (height[k + 1] < at)
+        k++;
+    return value[k] + (value[k + 1] - value[k]) * log(at / height[k]) / log(height[k + 1] / height[k]);
+}
+
+static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const sf_material_law *own,
+                                 const sf_cfh_points *points, sf_error *err) {
+    double height[SF_CFH_MAX_POINTS], bracket[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS];
+    int count = 0;
+    for (int k = 0; k < points->count && !points->point[k].on_anvil; k++) {
+        const sf_cfh_point *p = &points->point[k];
+        sf_error collapse = SF_ERROR_INIT;
+        double y[SF_CFH_CRITERIA];
+        if (p->failed)
+            continue;
+        if (drop_columns(pad, own, p->height, y, &collapse) != SF_OK) {
+            if (collapse.status != SF_ERR_NUMERIC)
+                *err = collapse;
+            continue;
+        }
+        height[count] = p->height;
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            bracket[c][count] = log(p->value[c]) - y[c];
+        count++;
+    }
+    if (err->status != SF_OK)
+        return err->status;
+    if (count == 0)
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "there is no simulated height at which the columns of the case's material, "
+                       "which stand for the draws, have figures");
+    s->simulated[0] = height[0];
+    s->simulated[1] = height[count - 1];
+    double low = height[0] / OUTSIDE, span = log(OUTSIDE * height[count - 1] / low);
+    s->grid = (int)fmin(SF_CFH_GRID, ceil(span / STEP) + 1);
+    for (int k = 0; k < s->grid; k++) {
+        s->height[k] = low * exp(span * k / (s->grid - 1));
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            s->correction[c][k] = interpolate(count, height, bracket[c], s->height[k]);
+    }
+    return SF_OK;
+}
+
+static void correct_draws(sf_cfh_spread *s) {
+    for (int d = 0; d < s->draws; d++)
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            for (int k = 0; k < s->grid; k++) {
+                double *value =
+                    &s->value[((size_t)d * SF_CFH_CRITERIA + (size_t)c) * SF_CFH_GRID + (size_t)k];
+                *value = k < s->reach[d] ? *value + s->correction[c][k] : INFINITY;
+            }
+}
+
+/* ---- crossings ---- */
+
+static const double *values_of(const sf_cfh_spread *s, int draw, int criterion) {
+    return &s->value[((size_t)draw * SF_CFH_CRITERIA + (size_t)criterion) * SF_CFH_GRID];
+}
+
+/* Where draw `d` first reaches ln(limit) less `raise`. Collapsed columns reach every limit, at the last
+ * height before.
+ */
+static double cross(const sf_cfh_spread *s, int d, int criterion, double raise) {
+    const double *y = values_of(s, d, criterion);
+    double target = log(s->limit[criterion]) - raise;
+    int k = 0;
+    while (k < s->reach[d] && y[k] < target)
+        k++;
+    if (k == 0)
+        return 0;
+    if (k == s->reach[d])
+        return k < s->grid ? s->height[k - 1] : INFINITY;
+    double share = (target - y[k - 1]) / (y[k] - y[k - 1]);
+    return s->height[k - 1] * pow(s->height[k] / s->height[k - 1], share);
+}
+
+/* Value of the corrected draw at a height within its reach. */
+static double value_at(const sf_cfh_spread *s, int d, int criterion, double height) {
+    return interpolate(s->reach[d], s->height, values_of(s, d, criterion), height);
+}
+
+/* Has the draw a limit reached before its columns collapse? */
+static bool reaches_limit(const sf_cfh_spread *s, int d) {
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        for (int k = 0; k < s->reach[d]; k++)
+            if (values_of(s, d, c)[k] >= log(s->limit[c]))
+                return true;
+    return false;
+}
+
+static void find_crossings(sf_cfh_spread *s) {
+    for (int d = 0; d < s->draws; d++) {
+        double *crossing = &s->crossing[(size_t)d * (SF_CFH_FIRST + 1)], first = INFINITY;
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            crossing[c] = cross(s, d, c, 0);
+            first = fmin(first, crossing[c]);
+        }
+        crossing[SF_CFH_FIRST] = first;
+        s->above += isinf(first);
+        s->below += first <= 0;
+        s->collapsed += s->reach[d] < s->grid && !reaches_limit(s, d);
+        s->beyond += first > 0 && isfinite(first) && (first < s->simulated[0] || first > s->simulated[1]);
+    }
+}
+
+/* ---- quantiles ---- */
+
+static int compare(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of sorted values, of which the first may be 0 and the last infinite: between those and a value there is
+ * nothing. */
+static double quantile(const double *sorted, int count, double share) {
+    double at = share * (count - 1);
+    int k = (int)floor(at);
+    if (k >= count - 1 || isinf(sorted[k]) || sorted[k] <= 0 || sorted[k + 1] == sorted[k])
+        return sorted[k];
+    return isinf(sorted[k + 1]) ? INFINITY : sorted[k] + (at - k) * (sorted[k + 1] - sorted[k]);
+}
+
+static sf_cfh_interval interval_of(double *values, int count) {
+    qsort(values, (size_t)count, sizeof *values, compare);
+    return (sf_cfh_interval){.low = quantile(values, count, TAIL),
+                             .median = quantile(values, count, 0.5),
+                             .high = quantile(values, count, 1 - TAIL)};
+}
+
+static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
+    double *values = sf_alloc(err, (unsigned long)s->draws, sizeof *values, "draws");
+    if (!values)
+        return err->status;
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        for (int k = 0; k < s->grid; k++) {
+            for (int d = 0; d < s->draws; d++)
+                values[d] = exp(values_of(s, d, c)[k]);
+            sf_cfh_interval i = interval_of(values, s->draws);
+            s->band[c][k] = (sf_cfh_band){i.low, i.median, i.high};
+        }
+    free(values);
+    return SF_OK;
+}
+
+/* ---- errors of the responses ---- */
+
+static void take_responses(sf_cfh_spread *s, const sf_cfh_draws *draws) {
+    static const int kind[SF_CFH_CRITERIA] = {[SF_CFH_A_MAX] = SF_FIT_A_MAX, [SF_CFH_HIC] = SF_FIT_HIC};
+    s->with_response = draws->with_response;
+    for (int d = 0; d < s->draws && s->with_response; d++)
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            s->response[d].shared[c] = draws->draw[d].response.shared[kind[c]];
+            s->response[d].own_sd[c] = draws->draw[d].response.own_sd[kind[c]];
+        }
+}
+
+/* ---- build ---- */
+
+sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, const sf_material_law *own,
+                              const sf_cfh_points *points, const sf_cfh_result *result, const double *limit,
+                              sf_cfh_spread *s, sf_error *err) {
+    unsigned long n = (unsigned long)draws->count;
+    *s = (sf_cfh_spread){.draws = draws->count, .mesh_error = pad->mesh_error};
+    s->own_height = result->verdict == SF_CFH_FOUND ? result->crossing[result->deciding].height : NAN;
+    memcpy(s->limit, limit, sizeof s->limit);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_fit *fit = &result->crossing[c].fit;
+        s->fit_scatter[c] = fit->count > 3 ? fit->rms * sqrt(fit->count / (fit->count - 3.0)) : NAN;
+    }
+    s->value = sf_alloc(err, n * SF_CFH_CRITERIA * SF_CFH_GRID, sizeof *s->value, "draws");
+    s->reach = sf_alloc(err, n, sizeof *s->reach, "draws");
+    s->crossing = sf_alloc(err, n * (SF_CFH_FIRST + 1), sizeof *s->crossing, "draws");
+    s->response = sf_alloc(err, n, sizeof *s->response, "draws");
+    if (err->status == SF_OK && find_correction(s, &pad->columns, own, points, err) == SF_OK &&
+        drop_draws(s, &pad->columns, draws, err) == SF_OK) {
+        take_responses(s, draws);
+        correct_draws(s);
+        find_crossings(s);
+        find_bands(s, err);
+    }
+    return err->status;
+}
+
+void sf_cfh_spread_free(sf_cfh_spread *s) {
+    free(s->value);
+    free(s->reach);
+    free(s->crossing);
+    free(s->response);
+    *s = (sf_cfh_spread){0};
+}
+
+/* ---- checks ---- */
+
+typedef struct place {
+    double height;
+    int draw;
+} place;
+
+static int compare_places(const void *a, const void *b) {
+    const place *x = a, *y = b;
+    return x->height != y->height ? compare(&x->height, &y->height)
+                                  : (x->draw > y->draw) - (x->draw < y->draw);
+}
+
+void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {
+    place places[SF_CFH_MOST_DRAWS];
+    int n = 0;
+    for (int d = 0; d < s->draws; d++) {
+        double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];
+        if (height > 0 && isfinite(height))
+            places[n++] = (place){height, d};
+    }
+    qsort(places, (size_t)n, sizeof *places, compare_places);
+    s->checks = count < n ? count : n;
+    for (int k = 0; k < s->checks; k++) {
+        double share = s->checks == 1 ? 0.5 : OUTERMOST + (1 - 2 * OUTERMOST) * k / (s->checks - 1);
+        int rank = (int)lround(share * (n - 1));
+        const place *p = &places[rank];
+        sf_cfh_check *check = &s->check[k];
+        *check = (sf_cfh_check){
+            .draw = p->draw, .share = (double)(s->below + rank) / s->draws, .shift = {NAN, NAN}};
+        check->height = fmax(grain, grain * round(p->height / grain));
+        const double *crossing = &s->crossing[(size_t)p->draw * (SF_CFH_FIRST + 1)];
+        check->first = crossing[SF_CFH_HIC] < crossing[SF_CFH_A_MAX] ? SF_CFH_HIC : SF_CFH_A_MAX;
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            check->columns[c] = exp(value_at(s, p->draw, c, check->height));
+    }
+}
+
+/* Slope of ln(value) over ln(height) around a height, on what the grid has of that. */
+static double slope_at(const sf_cfh_spread *s, int draw, int criterion, double height) {
+    double low = fmax(height * exp(-STEP), s->height[0]),
+           high = fmin(height * exp(STEP), s->height[s->reach[draw] - 1]);
+    return (value_at(s, draw, criterion, high) - value_at(s, draw, criterion, low)) / log(high / low);
+}
+
+void sf_cfh_check_compare(const sf_cfh_spread *s, sf_cfh_check *check) {
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        double slope = slope_at(s, check->draw, c, check->height);
+        check->shift[c] = slope > 0 ? -log(check->simulated[c] / check->columns[c]) / slope : NAN;
+    }
+}
+
+/* The checks that have a shift of the criterion, as ln(height) and shift. */
+static int list_shifts(const sf_cfh_spread *s, int criterion, double *x, double *y) {
+    int count = 0;
+    for (int k = 0; k < s->checks; k++)
+        if (!s->check[k].failed && isfinite(s->check[k].shift[criterion])) {
+            x[count] = log(s->check[k].height);
+            y[count++] = s->check[k].shift[criterion];
+        }
+    return count;
+}
+
+/* x is ascending, as the checks are. */
+static void fit_trend(int count, const double *x, const double *y, sf_cfh_trend *t) {
+    double constant, variance[3], rest;
+    gsl_fit_linear(x, 1, y, 1, (size_t)count, &constant, &t->slope, &variance[0], &variance[1], &variance[2],
+                   &rest);
+    for (int k = 0; k < count; k++)
+        t->centre += x[k] / count;
+    for (int k = 0; k < count; k++)
+        t->sum += (x[k] - t->centre) * (x[k] - t->centre);
+    t->shift = constant + t->slope * t->centre;
+    t->range[0] = x[0];
+    t->range[1] = x[count - 1];
+    t->freedom = count - 2;
+}
+
+static double from_centre(const sf_cfh_trend *t, double x) {
+    return fmin(fmax(x, t->range[0]), t->range[1]) - t->centre;
+}
+
+static double shift_of(const sf_cfh_trend *t, double x) {
+    return t->shift + t->slope * from_centre(t, x);
+}
+
+/* Standard deviation of a further check's remainder, but for Student's t. */
+static double remainder_of(const sf_cfh_trend *t, double x) {
+    double d = from_centre(t, x), line = t->sum > 0 ? 1.0 / t->checks + d * d / t->sum : 0;
+    return t->freedom > 0 ? t->scatter * sqrt(1 + line) : 0;
+}
+
+static sf_cfh_trend find_trend(const sf_cfh_spread *s, int criterion) {
+    double x[SF_CFH_CHECKS], y[SF_CFH_CHECKS], sum = 0;
+    int count = list_shifts(s, criterion, x, y);
+    sf_cfh_trend t = {.checks = count, .scatter = NAN, .freedom = count};
+    if (count >= SF_CFH_TREND && x[count - 1] - x[0] > TREND_SPAN)
+        fit_trend(count, x, y, &t);
+    for (int k = 0; k < count; k++)
+        sum += pow(y[k] - shift_of(&t, x[k]), 2);
+    if (count > 0)
+        t.scatter = sqrt(sum / t.freedom);
+    return t;
+}
+
+/* ---- the random errors ---- */
+
+/* Of one repeat of a draw. */
+typedef struct errors {
+    double response[SF_CFH_CRITERIA];
+    double mesh, fit[SF_CFH_CRITERIA];
+    double columns[SF_CFH_CRITERIA]; /* Student's t, the same quantile of both */
+    double rig;
+} errors;
+
+static double or_none(double scatter) {
+    return isnan(scatter) ? 0 : scatter;
+}
+
+static errors random_errors(const sf_cfh_spread *s, const sf_cfh_rig *rig, gsl_rng *random) {
+    errors e = {.mesh = SF_CFH_MESH_SIZE * or_none(s->mesh_error) * gsl_ran_ugaussian(random)};
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        e.fit[c] = or_none(s->fit_scatter[c]) * gsl_ran_ugaussian(random);
+    double share = gsl_rng_uniform_pos(random);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        if (s->trend[c].freedom > 0)
+            e.columns[c] = gsl_cdf_tdist_Pinv(share, s->trend[c].freedom);
+    if (rig->pairs > 1)
+        e.rig = gsl_ran_tdist(random, rig->pairs - 1) * rig->standard_error / rig->gravity;
+    return e;
+}
+
+/* Of the repeat `at`, from a generator of the draw. */
+static void respond(const sf_cfh_spread *s, int at, gsl_rng *random, errors *e) {
+    const sf_cfh_response *r = &s->response[at / SF_CFH_REPEATS];
+    if (at % SF_CFH_REPEATS == 0)
+        gsl_rng_set(random, (unsigned long)(RESPONSE_SEED + at / SF_CFH_REPEATS));
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        e->response[c] = r->shared[c] + r->own_sd[c] * gsl_ran_ugaussian(random);
+}
+
+static double raise_of(const errors *e, sf_cfh_part part, int criterion) {
+    double raise = 0;
+    if (part >= SF_CFH_PART_RESPONSE)
+        raise += e->response[criterion];
+    if (part >= SF_CFH_PART_MESH)
+        raise += criterion == SF_CFH_HIC ? SF_CFH_MESH_HIC * e->mesh : e->mesh;
+    if (part >= SF_CFH_PART_FIT)
+        raise += e->fit[criterion];
+    return raise;
+}
+
+/* What the checks do to the height of a criterion: a factor. */
+static double factor_of(const sf_cfh_spread *s, int d, const errors *e, sf_cfh_part part, int criterion) {
+    const sf_cfh_trend *t = &s->trend[criterion];
+    double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];
+    double x = log(fmin(fmax(height, s->height[0]), s->height[s->grid - 1]));
+    if (part < SF_CFH_PART_COLUMNS)
+        return 1;
+    double shift = shift_of(t, x) + remainder_of(t, x) * e->columns[criterion];
+    return exp(fmax(-MOST_SHIFT, fmin(shift, MOST_SHIFT)));
+}
+
+/* values [SF_CFH_FIRST + 1][count] and rig [count] of one repeat, at `at`. */
+static void repeat(const sf_cfh_spread *s, int d, const errors *e, const sf_cfh_rig *rig, sf_cfh_part part,
+                   int count, int at, double *values, double *on_rig) {
+    double first = INFINITY;
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        double height = cross(s, d, c, raise_of(e, part, c)) * factor_of(s, d, e, part, c);
+        values[(size_t)c * (size_t)count + (size_t)at] = height;
+        first = fmin(first, height);
+    }
+    values[(size_t)SF_CFH_FIRST * (size_t)count + (size_t)at] = first;
+    on_rig[at] = sf_cfh_rig_height(rig, first) * exp(-e->rig);
+}
+
+/* The interval of heights, on the rig or not, of those looked at. */
+static sf_cfh_interval height_interval(const sf_cfh_spread *s, double *values, int count, double scale) {
+    sf_cfh_interval i = interval_of(values, count);
+    i.end[0] = scale * s->height[0];
+    i.end[1] = scale * s->height[s->grid - 1];
+    return i;
+}
+
+/* The intervals of one part. values [SF_CFH_FIRST + 2][count], the last of them on the rig. */
+static void evaluate_part(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_cfh_part part, int count,
+                          double *values, gsl_rng *random, gsl_rng *of_draw) {
+    double *on_rig = &values[(size_t)count * (SF_CFH_FIRST + 1)];
+    gsl_rng_set(random, SEED);
+    for (int at = 0; at < count; at++) {
+        errors e = random_errors(s, rig, random);
+        respond(s, at, of_draw, &e);
+        repeat(s, at / SF_CFH_REPEATS, &e, rig, part, count, at, values, on_rig);
+    }
+    for (int c = 0; c <= SF_CFH_FIRST; c++)
+        s->part[part][c] = height_interval(s, &values[(size_t)c * (size_t)count], count, 1);
+}
+
+sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_error *err) {
+    int count = s->draws * SF_CFH_REPEATS;
+    double *values =
+        sf_alloc(err, (unsigned long)count * (SF_CFH_FIRST + 2), sizeof *values, "repeats of the draws");
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937), *of_draw = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        s->trend[c] = find_trend(s, c);
+    if (values && random && of_draw) {
+        for (int part = 0; part < SF_CFH_PARTS; part++)
+            evaluate_part(s, rig, (sf_cfh_part)part, count, values, random, of_draw);
+        s->rig = rig->pairs ? height_interval(s, &values[(size_t)count * (SF_CFH_FIRST + 1)], count,
+                                              sf_cfh_rig_height(rig, 1))
+                            : (sf_cfh_interval){NAN, NAN, NAN, {NAN, NAN}};
+    } else if (values) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
+    }
+    if (random)
+        gsl_rng_free(random);
+    if (of_draw)
+        gsl_rng_free(of_draw);
+    free(values);
+    return err->status;
+}
+
+/* Squared length of ln(height). */
+static double square_of(const sf_cfh_interval *i) {
+    double length = log(i->high / i->low);
+    return i->low > 0 && isfinite(length) ? length * length : NAN;
+}
+
+double sf_cfh_spread_share(const sf_cfh_spread *s, sf_cfh_part part, int criterion) {
+    double whole = square_of(sf_cfh_spread_whole(s, criterion));
+    double before = part > 0 ? square_of(&s->part[part - 1][criterion]) : 0;
+    return whole > 0 ? (square_of(&s->part[part][criterion]) - before) / whole : NAN;
+}
+
+const sf_cfh_interval *sf_cfh_spread_whole(const sf_cfh_spread *s, int criterion) {
+    return &s->part[SF_CFH_PARTS - 1][criterion];
+}

@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The interval of the critical fall height from draws of the foam's posterior (docs/cfh.md). Of every draw
+ * the columns below the missile (study/column.h) give a_max and HIC over the height; they are corrected
+ * by the drops that were simulated with the case's own material,
+ *
+ *     ln y_draw(h) = ln columns_draw(h) + [ln y_simulated(h) - ln columns_case(h)],
+ *
+ * the bracket linear in ln h between the simulated heights and constant beyond them. Each draw is repeated
+ * with random errors of the responses (study/fit/drop/inference.h), of the mesh, of the points about their fit, of
+ * the corrected columns and of the rig.
+ * Heights are those of free fall (m) unless a name says "rig". The same bits for any number of threads. */
+#ifndef SF_CFH_SPREAD_H
+#define SF_CFH_SPREAD_H
+
+#include "study/cfh/points.h"
+#include "study/cfh/posterior.h"
+#include "study/column.h"
+
+enum {
+    SF_CFH_GRID = 80,               /* heights at which the columns drop, at most */
+    SF_CFH_REPEATS = 64,            /* of a draw with random errors */
+    SF_CFH_CHECKS = 9,              /* simulated draws at most */
+    SF_CFH_TREND = 4,               /* of them give a trend; fewer only a scatter */
+    SF_CFH_FIRST = SF_CFH_CRITERIA, /* in place of a criterion: the one that is met first */
+};
+
+/* Root mean square of the mesh error of a_max over what softfall-pre expects; that of HIC is larger by a
+ * factor (docs/cfh.md, from docs/theory.md section 11 and the mesh study). */
+#define SF_CFH_MESH_SIZE 0.78
+#define SF_CFH_MESH_HIC 1.3
+
+/* What an interval holds, one after another. */
+typedef enum sf_cfh_part {
+    SF_CFH_PART_FOAM,
+    SF_CFH_PART_RESPONSE,
+    SF_CFH_PART_MESH,
+    SF_CFH_PART_FIT,
+    SF_CFH_PART_COLUMNS,
+    SF_CFH_PARTS
+} sf_cfh_part;
+
+typedef struct sf_cfh_interval {
+    double low, median, high; /* m, 2.5, 50 and 97.5 %; 0 or INFINITY: beyond the heights looked at */
+    double end[2];            /* m, the lowest and the highest of these */
+} sf_cfh_interval;
+
+/* The pad that the drops had, for the columns. */
+typedef struct sf_cfh_pad {
+    sf_columns columns; /* of any speed; count 0: not known yet */
+    double mesh_error;  /* -, expected of a_max; NaN: not estimated */
+} sf_cfh_pad;
+
+/* A draw that was simulated at its critical height. */
+typedef struct sf_cfh_check {
+    int draw;     /* from 0 */
+    double share; /* of all draws, those whose height is lower */
+    double height;
+    sf_cfh_criterion first;            /* which limit it meets first by the corrected columns */
+    double columns[SF_CFH_CRITERIA];   /* g, -, corrected */
+    bool failed;                       /* no figures: `note` says why */
+    double simulated[SF_CFH_CRITERIA]; /* g, - */
+    double shift[SF_CFH_CRITERIA];     /* of ln height, by the difference of each; NaN: not known */
+    char note[SF_CFH_NOTE_SIZE];
+} sf_cfh_check;
+
+/* How far the height of a criterion moves, by the checks: ln height += shift + slope (ln h - centre), where h
+ * is the draw's critical height by the columns, constant beyond the checks, and a remainder. */
+typedef struct sf_cfh_trend {
+    int checks;                  /* that were used */
+    double shift, slope, centre; /* 0 if they are no trend: fewer than SF_CFH_TREND, or all at one height */
+    double range[2];             /* of ln h */
+    double sum;                  /* of (ln h - centre)^2; 0: no trend */
+    double scatter;              /* of the remainder: its root mean square; NaN: not known */
+    int freedom;                 /* degrees of freedom of that */
+} sf_cfh_trend;
+
+typedef struct sf_cfh_band {
+    double low, median, high; /* g, -; INFINITY: of draws whose columns collapse */
+} sf_cfh_band;
+
+/* Errors of ln(value) of a draw: the one that all drops share, the standard deviation of a drop's own. */
+typedef struct sf_cfh_response {
+    double shared[SF_CFH_CRITERIA], own_sd[SF_CFH_CRITERIA];
+} sf_cfh_response;
+
+typedef struct sf_cfh_spread {
+    int draws, grid;
+    double height[SF_CFH_GRID];
+    double simulated[2]; /* m, the heights between which the correction is known */
+    double correction[SF_CFH_CRITERIA][SF_CFH_GRID]; /* the bracket */
+    sf_cfh_band band[SF_CFH_CRITERIA][SF_CFH_GRID];  /* of the draws, foam alone */
+    double *value;                                   /* [draws][SF_CFH_CRITERIA][SF_CFH_GRID] ln; owned */
+    int *reach;                                      /* [draws] heights before the columns collapse; owned */
+    double *crossing;   /* [draws][SF_CFH_FIRST + 1] m, foam alone; 0 or INFINITY: beyond the grid; owned */
+    bool with_response; /* the draws state errors of the responses */
+    sf_cfh_response *response; /* [draws] zeros if they do not; owned */
+    double limit[SF_CFH_CRITERIA];
+    double own_height;                   /* m, of the case's own material; NaN: none was found */
+    double mesh_error;                   /* -, expected of a_max; NaN: not known */
+    double fit_scatter[SF_CFH_CRITERIA]; /* of ln(value); NaN: not known */
+    sf_cfh_trend trend[SF_CFH_CRITERIA]; /* of the checks */
+    int checks;
+    sf_cfh_check check[SF_CFH_CHECKS];
+    int above, below, collapsed,
+        beyond; /* draws: no limit reached; one exceeded at the lowest height; columns
+                   collapse before a limit; crossing outside of `simulated` */
+    sf_cfh_interval part[SF_CFH_PARTS][SF_CFH_FIRST + 1];
+    sf_cfh_interval rig; /* of the first, on the rig, with g_eff; NaN without a rig */
+} sf_cfh_spread;
+
+/* Drops the columns of the case's own material and of every draw. `result` has the fits. Errors: no drop has
+ * figures; the columns of the case's own material collapse at each of the simulated heights; SF_INTERRUPTED.
+ * Release with sf_cfh_spread_free, also on failure. */
+sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, const sf_material_law *own,
+                              const sf_cfh_points *points, const sf_cfh_result *result, const double *limit,
+                              sf_cfh_spread *spread, sf_error *err);
+void sf_cfh_spread_free(sf_cfh_spread *spread);
+
+/* Chooses `count` draws, of 5 to 95 % of the heights (one: 50 %), that are to be simulated; their heights are
+ * multiples of `grain` m. Fewer if fewer draws have a height. */
+void sf_cfh_spread_choose(sf_cfh_spread *spread, int count, double grain);
+/* Takes the simulated values of a check into its shifts. */
+void sf_cfh_check_compare(const sf_cfh_spread *spread, sf_cfh_check *check);
+
+/* The intervals, with the trend and the scatter that the checks show. */
+sf_status sf_cfh_spread_evaluate(sf_cfh_spread *spread, const sf_cfh_rig *rig, sf_error *err);
+
+/* The share of a part in the squared length of the whole interval of ln(height); the shares sum to 1. NaN: an
+ * end is open, or the interval has no length. */
+double sf_cfh_spread_share(const sf_cfh_spread *spread, sf_cfh_part part, int criterion);
+
+/* The whole interval of a criterion, or of SF_CFH_FIRST. */
+const sf_cfh_interval *sf_cfh_spread_whole(const sf_cfh_spread *spread, int criterion);
+
+#endif

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/config.h"
+
+#include "io/plain_file.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
+                           const char *format, ...) {
+    char sentence[768];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    int line = setting ? (int)config_setting_source_line(setting) : 0;
+    if (line == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s", config->path, sentence);
+    const char *path = sf_case_source_find(&config->source, line, &line);
+    return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line, sentence);
+}
+
+sf_status sf_config_open(const char *path, sf_config *config, sf_error *err) {
+    *config = (sf_config){.path = path};
+    config_init(&config->config);
+    config->folder = sf_case_folder_of(path, err);
+    char *text = config->folder ? sf_case_load_text(path, 0, NULL, &config->source, err) : NULL;
+    if (text && !config_read_string(&config->config, text)) {
+        int line = 0;
+        const char *file = sf_case_source_find(&config->source, config_error_line(&config->config), &line);
+        SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", file, line, config_error_text(&config->config));
+    }
+    free(text);
+    return err->status == SF_OK ? sf_units_open(&config->units, err) : err->status;
+}
+
+void sf_config_close(sf_config *config) {
+    sf_units_close(&config->units);
+    config_destroy(&config->config);
+    sf_case_source_free(&config->source);
+    free(config->folder);
+    *config = (sf_config){0};
+}
+
+/* Index of the name in "one|two|three"; -1 if it is not there. */
+static int find_word(const char *name, const char *words) {
+    size_t length = strlen(name);
+    int index = 0;
+    if (strchr(name, '|'))
+        return -1;
+    for (const char *at = words; at; at = strchr(at, '|'), index++) {
+        at += *at == '|';
+        if (strncmp(at, name, length) == 0 && (at[length] == '|' || at[length] == '\0'))
+            return index;
+    }
+    return -1;
+}
+
+/* "one, two, three" */
+static void list_words(const char *words, char *out, size_t size) {
+    size_t used = 0;
+    for (const char *c = words; *c && used + 3 < size; c++) {
+        out[used++] = *c == '|' ? ',' : *c;
+        if (*c == '|')
+            out[used++] = ' ';
+    }
+    out[used] = '\0';
+}
+
+sf_status sf_config_names(const sf_config *config, const config_setting_t *group, const char *names,
+                          sf_error *err) {
+    enum { NAMED = 10 };
+    const config_setting_t *first = NULL;
+    char list[512], others[400] = "", more[32] = "";
+    int unknown = 0;
+    for (int k = 0; k < config_setting_length(group); k++) {
+        const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
+        size_t used = strlen(others);
+        if (find_word(config_setting_name(item), names) >= 0)
+            continue;
+        if (unknown++ == 0)
+            first = item;
+        else if (unknown <= NAMED)
+            snprintf(others + used, sizeof others - used, "%s%.24s",
+                     used ? ", " : "; unknown too: ", config_setting_name(item));
+    }
+    if (unknown == 0)
+        return SF_OK;
+    list_words(names, list, sizeof list);
+    if (unknown > NAMED)
+        snprintf(more, sizeof more, " and %d more", unknown - NAMED);
+    return sf_config_refuse(config, first, err, "unknown key \"%.80s\"%s%s; the keys here are %s",
+                            config_setting_name(first), others, more, list);
+}
+
+/* The setting; records the failure if a required one is missing. */
+static const config_setting_t *find(const sf_config *config, const config_setting_t *group, const char *name,
+                                    bool required, sf_error *err) {
+    const config_setting_t *setting = config_setting_get_member(group, name);
+    if (!setting && required)
+        sf_config_refuse(config, group, err, "%s is missing", name);
+    return setting;
+}
+
+sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
+                           bool required, double low, double high, double *out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, required, err);
+    if (!s)
+        return err->status;
+    int type = config_setting_type(s);
+    if (type == CONFIG_TYPE_FLOAT)
+        *out = config_setting_get_float(s);
+    else if (type == CONFIG_TYPE_INT)
+        *out = config_setting_get_int(s);
+    else if (type == CONFIG_TYPE_INT64)
+        *out = (double)config_setting_get_int64(s);
+    else
+        return sf_config_refuse(config, s, err, "%s must be a number", name);
+    if (!(*out >= low && *out <= high))
+        return sf_config_refuse(config, s, err, "%s is %g, outside %g to %g", name, *out, low, high);
+    return SF_OK;
+}
+
+sf_status sf_config_whole(const sf_config *config, const config_setting_t *group, const char *name,
+                          bool required, double low, double high, double *out, sf_error *err) {
+    SF_TRY(sf_config_number(config, group, name, required, low, high, out, err));
+    if (*out != floor(*out))
+        return sf_config_refuse(config, config_setting_get_member(group, name), err,
+                                "%s is %g; it must be a whole number", name, *out);
+    return SF_OK;
+}
+
+sf_status sf_config_flag(const sf_config *config, const config_setting_t *group, const char *name, bool *out,
+                         sf_error *err) {
+    const config_setting_t *s = find(config, group, name, false, err);
+    if (s && config_setting_type(s) != CONFIG_TYPE_BOOL)
+        return sf_config_refuse(config, s, err, "%s must be true or false", name);
+    if (s)
+        *out = config_setting_get_bool(s);
+    return SF_OK;
+}
+
+sf_status sf_config_text(const sf_config *config, const config_setting_t *group, const char *name,
+                         bool required, const char **out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, required, err);
+    if (!s)
+        return err->status;
+    const char *text = config_setting_get_string(s);
+    if (!text || !*text)
+        return sf_config_refuse(config, s, err, "%s must be a text", name);
+    *out = text;
+    return SF_OK;
+}
+
+sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
+                             sf_quantity kind, bool required, double low, double *out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, required, err);
+    sf_error inner = SF_ERROR_INIT;
+    if (!s)
+        return err->status;
+    const char *text = config_setting_get_string(s);
+    if (!text)
+        return sf_config_refuse(config, s, err, "%s must be a text with its unit, for example \"%s\"", name,
+                                sf_quantity_example(kind));
+    if (sf_units_parse(config->units, text, kind, out, &inner) != SF_OK)
+        return sf_config_refuse(config, s, err, "%s: %s", name, inner.text);
+    if (low > 0 ? !(*out >= low) : !(*out > 0))
+        return sf_config_refuse(config, s, err, "%s is %s; it must be %s %g %s", name, text,
+                                low > 0 ? "at least" : "above", low, sf_quantity_unit(kind));
+    return SF_OK;
+}
+
+sf_status sf_config_choice(const sf_config *config, const config_setting_t *group, const char *name,
+                           const char *words, int *out, sf_error *err) {
+    const char *text = NULL;
+    char list[256];
+    if (sf_config_text(config, group, name, false, &text, err) != SF_OK || !text)
+        return err->status;
+    int index = find_word(text, words);
+    list_words(words, list, sizeof list);
+    if (index < 0)
+        return sf_config_refuse(config, config_setting_get_member(group, name), err,
+                                "%s is \"%.80s\"; it must be one of %s", name, text, list);
+    *out = index;
+    return SF_OK;
+}
+
+sf_status sf_config_file(const sf_config *config, const config_setting_t *group, const char *name,
+                         bool required, char **out, sf_error *err) {
+    const char *text = NULL;
+    if (sf_config_text(config, group, name, required, &text, err) != SF_OK || !text)
+        return err->status;
+    char *path = NULL;
+    if (*text == '/')
+        path = strdup(text);
+    else if (asprintf(&path, "%s/%s", config->folder, text) < 0)
+        path = NULL;
+    if (!path)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", text);
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_plain_check(path, NULL, &inner) != SF_OK) {
+        sf_config_refuse(config, config_setting_get_member(group, name), err, "%s: %s", name, inner.text);
+        free(path);
+        return err->status;
+    }
+    *out = path;
+    return SF_OK;
+}
+
+sf_status sf_config_list(const sf_config *config, const config_setting_t *group, const char *name,
+                         bool required, int most, const config_setting_t **out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, required, err);
+    *out = NULL;
+    if (!s)
+        return err->status;
+    if (!config_setting_is_list(s) || config_setting_length(s) == 0)
+        return sf_config_refuse(config, s, err, "%s must be a list: %s = ( { ... }, { ... } )", name, name);
+    if (config_setting_length(s) > most)
+        return sf_config_refuse(config, s, err, "%s has %d entries; at most %d are taken", name,
+                                config_setting_length(s), most);
+    for (int k = 0; k < config_setting_length(s); k++)
+        if (!config_setting_is_group(config_setting_get_elem(s, (unsigned)k)))
+            return sf_config_refuse(config, config_setting_get_elem(s, (unsigned)k), err,
+                                    "%s: each entry must be a group: { ... }", name);
+    *out = s;
+    return SF_OK;
+}
+
+sf_status sf_config_overrides(const sf_config *config, const char *name, int most, char **text, int *count,
+                              sf_error *err) {
+    const config_setting_t *list = config_lookup(&config->config, name);
+    if (!list)
+        return SF_OK;
+    if (!config_setting_is_array(list) && !config_setting_is_list(list))
+        return sf_config_refuse(config, list, err, "%s must be a list of texts, [\"group.key=value\", ...]",
+                                name);
+    if (config_setting_length(list) > most)
+        return sf_config_refuse(config, list, err, "%s has more than %d entries", name, most);
+    for (int k = 0; k < config_setting_length(list); k++) {
+        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
+        const char *entry = config_setting_get_string(s);
+        if (!entry || !strchr(entry, '='))
+            return sf_config_refuse(config, s, err, "%s: each entry must be a text \"group.key=value\"",
+                                    name);
+        text[*count] = strdup(entry);
+        if (!text[(*count)++])
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %s", config->path);
+    }
+    return SF_OK;
+}

@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/fit/compression/compression_config.h"
+
+#include "study/config.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* In the order of sf_rate_model and sf_rule_choice. */
+static const char *const RATE_MODELS[] = {"none", "log", "maxwell", "curves", "auto"};
+static const char RATE_WORDS[] = "none|log|maxwell|curves|auto", RULE_WORDS[] = "auto|H1|H1_automatic|H2";
+
+const char *sf_rate_model_name(sf_rate_model model) {
+    return RATE_MODELS[model];
+}
+
+static const double PI = 3.14159265358979323846;
+
+/* One shape of the pressed face. */
+static sf_status check_shape(const sf_config *file, const config_setting_t *group, sf_compression_specimen *s,
+                             sf_error *err) {
+    if ((s->side > 0) + (s->diameter > 0) + (s->area > 0) > 1 || (s->width > 0 && !(s->side > 0)))
+        return sf_config_refuse(
+            file, group, err, "specimen: give side (with width, if the face is no square), diameter or area");
+    if (s->side > 0)
+        s->area = s->side * (s->width > 0 ? s->width : s->side);
+    if (s->diameter > 0)
+        s->area = PI / 4 * s->diameter * s->diameter;
+    return SF_OK;
+}
+
+/* Replaces the default of the tests, if the group is there. */
+static sf_status read_specimen(const sf_config *file, const config_setting_t *parent,
+                               sf_compression_specimen *specimen, sf_error *err) {
+    const config_setting_t *group = config_setting_get_member(parent, "specimen");
+    sf_compression_specimen s = {0};
+    if (!group)
+        return SF_OK;
+    if (!config_setting_is_group(group))
+        return sf_config_refuse(file, group, err,
+                                "specimen must be a group { side = \"50 mm\"; thickness = \"50 mm\"; }");
+    SF_TRY(sf_config_names(file, group, "side|width|diameter|area|thickness", err));
+    SF_TRY(sf_config_quantity(file, group, "side", SF_LENGTH, false, 0, &s.side, err));
+    SF_TRY(sf_config_quantity(file, group, "width", SF_LENGTH, false, 0, &s.width, err));
+    SF_TRY(sf_config_quantity(file, group, "diameter", SF_LENGTH, false, 0, &s.diameter, err));
+    SF_TRY(sf_config_quantity(file, group, "area", SF_AREA, false, 0, &s.area, err));
+    SF_TRY(sf_config_quantity(file, group, "thickness", SF_LENGTH, false, 0, &s.thickness, err));
+    SF_TRY(check_shape(file, group, &s, err));
+    *specimen = s;
+    return SF_OK;
+}
+
+/* ---- tests ---- */
+
+static sf_status check_rate(const sf_config *file, const config_setting_t *entry, double rate,
+                            const sf_compression_config *c, sf_error *err) {
+    for (int k = 0; k < c->test_count; k++)
+        if (fabs(log(rate / c->test[k].rate)) < 1e-6)
+            return sf_config_refuse(file, config_setting_get_member(entry, "rate"), err,
+                                    "the rate %g 1/s is that of %s already; give each rate once (join the "
+                                    "tests or take their mean)",
+                                    rate, c->test[k].path);
+    return SF_OK;
+}
+
+/* The same points under another rate would say that the rate has no effect. */
+static sf_status check_points(const sf_config *file, const config_setting_t *entry,
+                              const sf_compression_test *test, const sf_compression_config *c,
+                              sf_error *err) {
+    for (int k = 0; k < c->test_count; k++) {
+        const sf_compression_test *earlier = &c->test[k];
+        size_t size = (size_t)test->count * sizeof *test->strain;
+        if (earlier->count == test->count && memcmp(earlier->strain, test->strain, size) == 0 &&
+            memcmp(earlier->stress, test->stress, size) == 0)
+            return sf_config_refuse(file, config_setting_get_member(entry, "file"), err,
+                                    "the points of %s are those of %s, which has another rate: give the same "
+                                    "data once",
+                                    test->path, earlier->path);
+    }
+    return SF_OK;
+}
+
+/* Puts the test in its place by rate. */
+static void insert_test(sf_compression_test *tests, int *count, const sf_compression_test *test) {
+    int at = (*count)++;
+    for (; at > 0 && tests[at - 1].rate > test->rate; at--)
+        tests[at] = tests[at - 1];
+    tests[at] = *test;
+}
+
+/* A strain rate, or the crosshead's speed over the thickness. */
+static sf_status read_rate(const sf_config *file, const config_setting_t *entry, double thickness,
+                           double *rate, sf_error *err) {
+    const config_setting_t *setting = config_setting_get_member(entry, "rate");
+    const char *text = setting ? config_setting_get_string(setting) : NULL;
+    sf_error no_speed = SF_ERROR_INIT;
+    double speed = 0;
+    if (!text || sf_units_parse(file->units, text, SF_SPEED, &speed, &no_speed) != SF_OK)
+        return sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, rate, err);
+    if (!(speed > 0))
+        return sf_config_refuse(file, setting, err, "rate is %s; the speed must be above 0", text);
+    if (!(thickness > 0))
+        return sf_config_refuse(
+            file, setting, err,
+            "rate is a speed (%s): give the specimen's thickness, for example specimen = { "
+            "thickness = \"50 mm\"; }",
+            text);
+    *rate = speed / thickness;
+    return SF_OK;
+}
+
+/* `specimen` and `source->toe`: of the tests without their own. */
+static sf_status read_keys(const sf_config *file, const config_setting_t *entry,
+                           sf_compression_specimen specimen, sf_compression_source *source, sf_error *err) {
+    int invert = SF_INVERT_NONE;
+    SF_TRY(read_specimen(file, entry, &specimen, err));
+    SF_TRY(read_rate(file, entry, specimen.thickness, &source->rate, err));
+    SF_TRY(sf_config_flag(file, entry, "toe_correction", &source->toe, err));
+    SF_TRY(sf_config_choice(file, entry, "invert", "none|strain|stress|both", &invert, err));
+    source->invert = (sf_inversion)invert;
+    source->area = specimen.area;
+    source->thickness = specimen.thickness;
+    return SF_OK;
+}
+
+sf_status sf_compression_source_read(const sf_config *file, const config_setting_t *entry,
+                                     sf_compression_source *source, sf_error *err) {
+    *source = (sf_compression_source){0};
+    return read_keys(file, entry, (sf_compression_specimen){0}, source, err);
+}
+
+static sf_status read_source(const sf_config *file, const config_setting_t *entry,
+                             const sf_compression_config *c, sf_compression_source *source, sf_error *err) {
+    *source = (sf_compression_source){.toe = c->toe};
+    SF_TRY(sf_config_names(file, entry, "file|rate|specimen|toe_correction|invert", err));
+    return read_keys(file, entry, c->specimen, source, err);
+}
+
+/* Into the tests that are fitted, each rate once, or those that are predicted. */
+static sf_status read_test(const sf_config *file, const config_setting_t *entry, bool predicted,
+                           sf_compression_config *c, sf_error *err) {
+    sf_compression_test test;
+    sf_error inner = SF_ERROR_INIT;
+    char *path = NULL;
+    sf_compression_source source;
+    if (read_source(file, entry, c, &source, err) == SF_OK &&
+        (predicted || check_rate(file, entry, source.rate, c, err) == SF_OK) &&
+        sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
+        source.path = path;
+        if (sf_compression_test_read(&source, &test, &inner) != SF_OK)
+            SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
+                    config_setting_source_line(entry));
+        else if (predicted)
+            insert_test(c->predicted, &c->predicted_count, &test);
+        else if (check_points(file, entry, &test, c, err) == SF_OK)
+            insert_test(c->test, &c->test_count, &test);
+        else
+            sf_compression_test_free(&test);
+    }
+    free(path);
+    return err->status;
+}
+
+static sf_status read_tests(const sf_config *file, const config_setting_t *root, const char *name,
+                            bool predicted, sf_compression_config *c, sf_error *err) {
+    const config_setting_t *tests;
+    SF_TRY(sf_config_list(file, root, name, !predicted, SF_COMPRESSION_TESTS, &tests, err));
+    for (int i = 0; tests && i < config_setting_length(tests) && err->status == SF_OK; i++)
+        read_test(file, config_setting_get_elem(tests, (unsigned)i), predicted, c, err);
+    return err->status;
+}
+
+/* ---- the file ---- */
+
+static sf_status read_name(const sf_config *file, const config_setting_t *root, sf_compression_config *c,
+                           sf_error *err) {
+    const char *text = c->name;
+    if (sf_config_text(file, root, "name", false, &text, err) != SF_OK || text == c->name)
+        return err->status;
+    if (strlen(text) >= SF_COMPRESSION_NAME || strpbrk(text, "\n\r'\\"))
+        return sf_config_refuse(file, config_setting_get_member(root, "name"), err,
+                                "name must be a text of 1 to %d characters, without ', \\ and line ends",
+                                SF_COMPRESSION_NAME - 1);
+    snprintf(c->name, sizeof c->name, "%s", text);
+    return SF_OK;
+}
+
+static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
+    const config_setting_t *root = config_root_setting(&file->config);
+    int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
+    bool form;
+    SF_TRY(sf_form_request_asked(file, root, &form, err));
+    SF_TRY(sf_config_names(
+        file, root,
+        form ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|" SF_FORM_REQUEST_KEYS
+             : "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
+               "confidence|specimen|toe_correction|curve_form",
+        err));
+    SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err));
+    SF_TRY(read_name(file, root, c, err));
+    SF_TRY(sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err));
+    SF_TRY(sf_config_number(file, root, "E_range", false, 0.001, 0.2, &c->modulus_range, err));
+    SF_TRY(sf_config_number(file, root, "confidence", false, 0.5, 0.9999, &c->confidence, err));
+    SF_TRY(
+        sf_config_number(file, root, "densification_start", false, 0.05, 0.98, &c->densification_start, err));
+    if (!form)
+        SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err));
+    SF_TRY(sf_config_choice(file, root, "densification", RULE_WORDS, &rule, err));
+    SF_TRY(sf_config_flag(file, root, "toe_correction", &c->toe, err));
+    SF_TRY(read_specimen(file, root, &c->specimen, err));
+    c->rate_model = (sf_rate_model)model;
+    c->rule = (sf_rule_choice)rule;
+    SF_TRY(read_tests(file, root, "tests", false, c, err));
+    if (!form)
+        return SF_OK;
+    SF_TRY(read_tests(file, root, "predict", true, c, err));
+    return sf_form_request_read(file, root, c->density, c->damp, c->modulus_range, c->test_count, c->test,
+                                c->predicted_count, c->predicted, &c->form, err);
+}
+
+/* ---- requirements on all tests together ---- */
+
+static sf_status check_together(const char *path, const sf_compression_config *c, sf_error *err) {
+    double shortest = 1;
+    int below = 0;
+    if (c->form.form.curve)
+        return SF_OK; /* nothing is asked of the tests together */
+    for (int k = 0; k < c->test_count; k++)
+        shortest = fmin(shortest, c->test[k].largest_strain);
+    if (c->densification_start > 0.97 * shortest)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: densification_start = %g leaves no data to fit the densification to: the tests "
+                       "reach a strain of %g",
+                       path, c->densification_start, shortest);
+    for (int i = 0; i < c->test[0].loading; i++)
+        below += c->test[0].strain[i] <= c->modulus_range;
+    if (below < 4)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: %d points below the strain %g (E_range) while loading; E needs at least 4",
+                       c->test[0].path, below, c->modulus_range);
+    if (c->test_count == 1 && c->rate_model != SF_RATE_AUTO && c->rate_model != SF_RATE_NONE)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: the rate model \"%s\" needs tests at two rates; there is one test", path,
+                       sf_rate_model_name(c->rate_model));
+    return SF_OK;
+}
+
+sf_status sf_compression_config_read(const char *path, sf_compression_config *config, sf_error *err) {
+    sf_config file;
+    *config = (sf_compression_config){.name = "foam",
+                                      .modulus_range = 0.02,
+                                      .confidence = 0.95,
+                                      .rate_model = SF_RATE_AUTO,
+                                      .rule = SF_RULE_AUTO};
+    if (sf_config_open(path, &file, err) == SF_OK && read_root(&file, config, err) == SF_OK)
+        check_together(path, config, err);
+    sf_config_close(&file);
+    if (err->status != SF_OK)
+        sf_compression_config_free(config);
+    return err->status;
+}
+
+void sf_compression_config_free(sf_compression_config *config) {
+    for (int k = 0; k < config->test_count; k++)
+        sf_compression_test_free(&config->test[k]);
+    for (int k = 0; k < config->predicted_count; k++)
+        sf_compression_test_free(&config->predicted[k]);
+    *config = (sf_compression_config){0};
+}

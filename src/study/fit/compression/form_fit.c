@@ -1,0 +1,478 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/fit/compression/form_fit.h"
+
+#include "material/curve.h"
+#include "study/fit/compression/point_model.h"
+#include "study/fit/compression/least_squares.h"
+#include "material/unloading.h"
+#include <gsl/gsl_errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RISES = 400 };                  /* strains at which the curve must rise */
+static const double RISE_END = 0.97;   /* of the pole */
+static const double LEAST_RISE = 1e-5; /* of the largest stress, from one of them to the next */
+/* The weights of a fall: of the searches from all starts, and of those that go on from the best. */
+static const double FALL_WEIGHT[] = {100, 3e3, 1e5};
+enum { FALL_WEIGHTS = sizeof FALL_WEIGHT / sizeof *FALL_WEIGHT };
+static const double FAR = 1e3;          /* deviation where there is no stress */
+static const double RIDGE = 1e-4;       /* holds what the tests do not determine near its median */
+static const double AT_BOUND = 1e-3;    /* of the range */
+static const double POOR = 0.1;         /* rms over the largest stress */
+static const double NO_FIT = 1;         /* the same */
+static const double UNDETERMINED = 1;   /* relative standard error */
+static const double AWAY = 1.5;         /* standard deviations of the prior, of the other starts */
+static const double LEAST_RATIO = 0.05; /* part of the largest W above which f is compared */
+static const double UNLOADING_LEAST[3] = {1e-4, 0.05, 0.1}, UNLOADING_RANGE[3] = {1 - 1e-4, 20, 4.9};
+
+static double logistic(double x) {
+    return 1 / (1 + exp(-x));
+}
+
+/* ---- loading ---- */
+
+typedef struct problem {
+    const sf_compression_config *config;
+    const sf_form_request *request;
+    int points;      /* of loading, of all tests */
+    double *strain;  /* [points] */
+    double *stress;  /* [points] Pa, of the form */
+    double *reduced; /* [points] deviations at the last evaluation */
+    double fall_weight;
+} problem;
+
+/* ln of a parameter between the bounds of its table, from the real line. */
+static double parameter_of(sf_foam_parameter p, double x) {
+    const sf_parameter_info *about = sf_parameter_get(p);
+    return exp(log(about->low) + log(about->high / about->low) * logistic(x));
+}
+
+static double real_of(sf_foam_parameter p, double value) {
+    const sf_parameter_info *about = sf_parameter_get(p);
+    double part = log(value / about->low) / log(about->high / about->low);
+    part = fmin(1 - 1e-6, fmax(1e-6, part));
+    return log(part / (1 - part));
+}
+
+static void take_values(const problem *p, const gsl_vector *x, double *value) {
+    memcpy(value, p->request->start, SF_PARAMETER_COUNT * sizeof *value);
+    for (int k = 0; k < p->request->unknown_count; k++)
+        value[p->request->unknown[k]] = parameter_of(p->request->unknown[k], gsl_vector_get(x, (size_t)k));
+}
+
+/* What the factor of the rate (theory, eq. O4) adds to the curve, over its stress, at point i of a test that
+ * began at rest: the rate is behind the low pass (eq. 22), rises in loading and fades in unloading. */
+static double rate_excess(const sf_form_request *r, const double *value, const sf_compression_test *t,
+                          int i) {
+    double time = r->form.base.rate_filter_time, strain = fmax(0, t->strain[i]), filtered = t->rate;
+    if (time > 0)
+        filtered *= -expm1(-(i < t->loading ? strain : t->largest_strain) / (t->rate * time));
+    if (i >= t->loading)
+        filtered *= time > 0 ? exp(-(t->largest_strain - strain) / (t->rate * time)) : 0;
+    return value[SF_PARAMETER_RATE_FACTOR] * fmax(0, log10(filtered / value[SF_PARAMETER_RATE_REFERENCE]));
+}
+
+/* Deviations of a test's loading; returns their number. */
+static int deviate_test(const problem *p, const double *value, const sf_compression_test *t,
+                        const double *stress, double *out) {
+    sf_compression_walk walk = {0};
+    double modulus = value[SF_PARAMETER_ED];
+    bool maxwell = p->request->rate & SF_FORM_RATE_MAXWELL;
+    for (int i = 0; i < t->loading; i++) {
+        double viscous = maxwell
+                             ? modulus * sf_compression_maxwell(value[SF_PARAMETER_BETA1], t->rate,
+                                                                t->largest_strain, t->strain[i], false, &walk)
+                             : 0;
+        double factor = 1 + rate_excess(p->request, value, t, i);
+        double deviation = (factor * stress[i] + viscous - t->stress[i]) / t->largest_stress;
+        out[i] = isfinite(deviation) ? fmin(FAR, fmax(-FAR, deviation)) : FAR;
+    }
+    return t->loading;
+}
+
+/* How far the curve falls, over the largest stress: it must rise to its pole. */
+static double fall(const problem *p, const double *value) {
+    const sf_curve_form *form = p->request->form.curve;
+    double strain[RISES], stress[RISES], sum = 0, end = RISE_END * form->pole(value),
+                                         size = p->config->test[0].largest_stress;
+    for (int k = 0; k < RISES; k++)
+        strain[k] = end * k / (RISES - 1);
+    form->stress(value, RISES, strain, stress);
+    for (int k = 1; k < RISES; k++)
+        sum += fmax(0, stress[k - 1] + LEAST_RISE * size - stress[k]);
+    double part = p->fall_weight * sum / size;
+    return isfinite(part) ? fmin(FAR, part) : FAR;
+}
+
+static int deviate(const gsl_vector *x, void *data, gsl_vector *out) {
+    problem *p = data;
+    const sf_form_request *r = p->request;
+    double value[SF_PARAMETER_COUNT];
+    size_t row = 0;
+    take_values(p, x, value);
+    r->form.curve->stress(value, p->points, p->strain, p->stress);
+    for (int k = 0, at = 0; k < p->config->test_count; k++)
+        at += deviate_test(p, value, &p->config->test[k], &p->stress[at], &p->reduced[at]);
+    for (int i = 0; i < p->points; i++)
+        gsl_vector_set(out, row++, p->reduced[i]);
+    gsl_vector_set(out, row++, fall(p, value));
+    for (int k = 0; k < r->unknown_count; k++)
+        gsl_vector_set(out, row++,
+                       RIDGE * log(value[r->unknown[k]] / r->start[r->unknown[k]]) /
+                           sf_foam_form_prior_sd(&r->form, r->unknown[k]));
+    return GSL_SUCCESS;
+}
+
+static sf_status init_problem(const sf_compression_config *config, problem *p, sf_error *err) {
+    *p = (problem){.config = config, .request = &config->form, .fall_weight = FALL_WEIGHT[0]};
+    for (int k = 0; k < config->test_count; k++)
+        p->points += config->test[k].loading;
+    p->strain = sf_alloc(err, (unsigned long)p->points, sizeof *p->strain, "form fit");
+    p->stress = sf_alloc(err, (unsigned long)p->points, sizeof *p->stress, "form fit");
+    p->reduced = sf_alloc(err, (unsigned long)p->points, sizeof *p->reduced, "form fit");
+    for (int k = 0, at = 0; k < config->test_count && err->status == SF_OK; k++)
+        for (int i = 0; i < config->test[k].loading; i++)
+            p->strain[at++] = fmax(0, config->test[k].strain[i]);
+    return err->status;
+}
+
+static void free_problem(problem *p) {
+    free(p->strain);
+    free(p->stress);
+    free(p->reduced);
+}
+
+/* Start 0: the medians; then each unknown up and down from there. */
+static void put_start(const sf_form_request *r, int start, gsl_vector *x) {
+    for (int k = 0; k < r->unknown_count; k++) {
+        sf_foam_parameter p = r->unknown[k];
+        double away = start == 2 * k + 1 ? AWAY : start == 2 * k + 2 ? -AWAY : 0;
+        gsl_vector_set(x, (size_t)k,
+                       real_of(p, r->start[p] * exp(away * sf_foam_form_prior_sd(&r->form, p))));
+    }
+}
+
+/* Variance factor of neighbouring deviations that correlate. */
+static double serial_factor(const problem *p) {
+    double top = 0, bottom = 0;
+    for (int i = 0; i < p->points; i++) {
+        bottom += p->reduced[i] * p->reduced[i];
+        top += i > 0 ? p->reduced[i] * p->reduced[i - 1] : 0;
+    }
+    double r = bottom > 0 ? fmin(0.98, top / bottom) : 0;
+    return r > 2 / sqrt(p->points) ? (1 + r) / (1 - r) : 1;
+}
+
+static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix *covariance, double sum,
+                        sf_form_fit *fit) {
+    const sf_form_request *r = p->request;
+    double variance = sum / fmax(1, p->points - r->unknown_count) * serial_factor(p);
+    for (int k = 0; k < r->unknown_count; k++) {
+        const sf_parameter_info *about = sf_parameter_get(r->unknown[k]);
+        double part = logistic(gsl_vector_get(x, (size_t)k)),
+               slope = log(about->high / about->low) * part * (1 - part);
+        fit->at_bound[k] = part < AT_BOUND || part > 1 - AT_BOUND;
+        fit->error[k] = fit->at_bound[k]
+                            ? NAN
+                            : slope * sqrt(variance * gsl_matrix_get(covariance, (size_t)k, (size_t)k));
+    }
+}
+
+static sf_status fit_loading(problem *p, sf_form_fit *fit, sf_error *err) {
+    size_t size = (size_t)p->request->unknown_count, count = (size_t)p->points + 1 + size;
+    gsl_vector *x = gsl_vector_alloc(size), *best = gsl_vector_alloc(size), *out = gsl_vector_alloc(count);
+    gsl_matrix *covariance = gsl_matrix_alloc(size, size);
+    double least = INFINITY;
+    for (int start = 0; start <= 2 * p->request->unknown_count; start++) {
+        put_start(p->request, start, x);
+        double sum = sf_least_squares(deviate, p, count, x, NULL);
+        if (sum < least) {
+            least = sum;
+            gsl_vector_memcpy(best, x);
+        }
+    }
+    for (int k = 0; k < FALL_WEIGHTS && isfinite(least); k++) {
+        p->fall_weight = FALL_WEIGHT[k];
+        least = sf_least_squares(deviate, p, count, best, covariance);
+    }
+    if (isfinite(least)) {
+        take_values(p, best, fit->value);
+        deviate(best, p, out);
+        double sum = 0;
+        for (int i = 0; i < p->points; i++)
+            sum += p->reduced[i] * p->reduced[i];
+        fit->loading_rms = sqrt(sum / p->points);
+        take_errors(p, best, covariance, least, fit);
+        if (!(fit->loading_rms < NO_FIT))
+            SF_FAIL(
+                err, SF_ERR_NUMERIC,
+                "the best curve of curve_form = \"%s\" deviates from the tests by more than their largest "
+                "stress (rms)",
+                p->request->form.curve->name);
+    } else {
+        SF_FAIL(err, SF_ERR_NUMERIC, "no search for the parameters of curve_form = \"%s\" converges",
+                p->request->form.curve->name);
+    }
+    gsl_vector_free(x);
+    gsl_vector_free(best);
+    gsl_vector_free(out);
+    gsl_matrix_free(covariance);
+    return err->status;
+}
+
+/* ---- unloading ---- */
+
+/* Points of unloading of all fitted tests. */
+typedef struct unloading {
+    int count;
+    bool one;                                     /* ALPHA = 1 */
+    double *measured, *loading, *viscous, *ratio; /* [count], stresses over their test's largest; W over its
+                                                     largest */
+} unloading;
+
+static void take_unloading(const unloading *u, const gsl_vector *x, double value[3]) {
+    for (size_t k = 0; k < 3; k++)
+        value[k] =
+            k == 2 && u->one ? 1 : UNLOADING_LEAST[k] + UNLOADING_RANGE[k] * logistic(gsl_vector_get(x, k));
+}
+
+static int deviate_unloading(const gsl_vector *x, void *data, gsl_vector *out) {
+    const unloading *u = data;
+    double value[3];
+    take_unloading(u, x, value);
+    for (int k = 0; k < u->count; k++)
+        gsl_vector_set(out, (size_t)k,
+                       sf_unloading_factor(value[0], value[1], value[2], u->ratio[k]) * u->loading[k] +
+                           u->viscous[k] - u->measured[k]);
+    return GSL_SUCCESS;
+}
+
+static double factor_rms(const unloading *u, const double value[3]) {
+    double sum = 0;
+    int count = 0;
+    for (int k = 0; k < u->count; k++) {
+        if (u->ratio[k] < LEAST_RATIO)
+            continue;
+        double factor = sf_unloading_factor(value[0], value[1], value[2], u->ratio[k]);
+        sum += pow(factor - (u->measured[k] - u->viscous[k]) / u->loading[k], 2);
+        count++;
+    }
+    return sqrt(sum / count);
+}
+
+static sf_form_unloading fit_unloading(unloading *u, bool one) {
+    static const double starts[][3] = {{-2, -3, -2}, {-3, -4, -3}, {-2, -1, -1.5}, {-5, -2, -3}};
+    sf_form_unloading out = {.rms = NAN};
+    gsl_vector *x = gsl_vector_alloc(one ? 2 : 3), *best = gsl_vector_alloc(one ? 2 : 3);
+    double least = INFINITY;
+    u->one = one;
+    for (size_t s = 0; s < sizeof starts / sizeof *starts; s++) {
+        for (size_t k = 0; k < x->size; k++)
+            gsl_vector_set(x, k, starts[s][k]);
+        double sum = sf_least_squares(deviate_unloading, u, (size_t)u->count, x, NULL);
+        if (sum < least) {
+            least = sum;
+            gsl_vector_memcpy(best, x);
+        }
+    }
+    if (isfinite(least)) {
+        take_unloading(u, best, out.value);
+        for (size_t k = 0; k < x->size; k++) {
+            double part = logistic(gsl_vector_get(best, k));
+            out.at_bound[k] = part < AT_BOUND || part > 1 - AT_BOUND;
+        }
+        out.rms = sqrt(least / u->count);
+        out.factor_rms = factor_rms(u, out.value);
+    }
+    gsl_vector_free(x);
+    gsl_vector_free(best);
+    return out;
+}
+
+/* ---- the law along a test ---- */
+
+/* Stress without rate (Pa) and W (J m-3) of the curve at a strain. */
+static double loading_at(const sf_curve *curve, double strain, double *energy) {
+    double stress, slope;
+    sf_curve_evaluate(curve, fmax(0, strain), &stress, &slope, energy);
+    return stress;
+}
+
+/* Maxwell branch and factor of the rate, beside the curve's `stress`. */
+static double viscous_at(const sf_form_fit *fit, const sf_compression_test *t, int i, double stress,
+                         sf_compression_walk *walk) {
+    double viscous = rate_excess(&fit->config->form, fit->value, t, i) * stress;
+    if (fit->config->form.rate & SF_FORM_RATE_MAXWELL)
+        viscous += fit->value[SF_PARAMETER_ED] * sf_compression_maxwell(fit->value[SF_PARAMETER_BETA1],
+                                                                        t->rate, t->largest_strain,
+                                                                        t->strain[i], i >= t->loading, walk);
+    return viscous;
+}
+
+static void list_unloading(const sf_form_fit *fit, const sf_curve *curve, unloading *u) {
+    for (int k = 0; k < fit->config->test_count; k++) {
+        const sf_compression_test *t = &fit->config->test[k];
+        sf_compression_walk walk = {0};
+        double peak, energy;
+        loading_at(curve, t->largest_strain, &peak);
+        for (int i = 0; i < t->count; i++) {
+            double stress = loading_at(curve, t->strain[i], &energy),
+                   viscous = viscous_at(fit, t, i, stress, &walk);
+            if (i < t->loading)
+                continue;
+            u->measured[u->count] = t->stress[i] / t->largest_stress;
+            u->loading[u->count] = stress / t->largest_stress;
+            u->viscous[u->count] = viscous / t->largest_stress;
+            u->ratio[u->count++] = fmin(1, energy / peak);
+        }
+    }
+}
+
+static sf_status fit_all_unloading(sf_form_fit *fit, const sf_curve *curve, sf_error *err) {
+    unloading u = {0};
+    unsigned long count = 0;
+    for (int k = 0; k < fit->config->test_count; k++)
+        count += (unsigned long)(fit->config->test[k].count - fit->config->test[k].loading);
+    fit->has_unloading = count > 3;
+    if (!fit->has_unloading)
+        return SF_OK;
+    u.measured = sf_alloc(err, count, sizeof(double), "unloading");
+    u.loading = sf_alloc(err, count, sizeof(double), "unloading");
+    u.viscous = sf_alloc(err, count, sizeof(double), "unloading");
+    u.ratio = sf_alloc(err, count, sizeof(double), "unloading");
+    if (err->status == SF_OK) {
+        list_unloading(fit, curve, &u);
+        fit->unloading_of_one = fit_unloading(&u, true);
+        fit->unloading = fit_unloading(&u, false);
+        if (!isfinite(fit->unloading.rms))
+            SF_FAIL(err, SF_ERR_NUMERIC, "no search for HU, SHAPE and ALPHA converges");
+    }
+    free(u.measured);
+    free(u.loading);
+    free(u.viscous);
+    free(u.ratio);
+    return err->status;
+}
+
+/* Energy (J m-3) below points, by trapezoids; positive for ascending strain. */
+static double area(const double *strain, const double *stress, int first, int last) {
+    double sum = 0;
+    for (int i = first + 1; i < last; i++)
+        sum += 0.5 * (stress[i] + stress[i - 1]) * (strain[i] - strain[i - 1]);
+    return sum;
+}
+
+static double rms(const sf_compression_test *t, const double *stress, int first, int last) {
+    double sum = 0;
+    for (int i = first; i < last; i++)
+        sum += pow((stress[i] - t->stress[i]) / t->largest_stress, 2);
+    return last > first ? sqrt(sum / (last - first)) : NAN;
+}
+
+static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, const sf_compression_test *t,
+                             sf_form_test *out, sf_error *err) {
+    const double *u = fit->unloading.value;
+    sf_compression_walk walk = {0};
+    double peak, energy;
+    bool back = fit->has_unloading && t->count > t->loading;
+    out->stress = sf_alloc(err, (unsigned long)t->count, sizeof(double), "test");
+    if (err->status != SF_OK)
+        return err->status;
+    loading_at(curve, t->largest_strain, &peak);
+    for (int i = 0; i < t->count; i++) {
+        double stress = loading_at(curve, t->strain[i], &energy),
+               viscous = viscous_at(fit, t, i, stress, &walk);
+        double by = i < t->loading       ? 1
+                    : fit->has_unloading ? sf_unloading_factor(u[0], u[1], u[2], fmin(1, energy / peak))
+                                         : NAN;
+        out->stress[i] = by * stress + viscous;
+    }
+    out->loading_rms = rms(t, out->stress, 0, t->loading);
+    out->unloading_rms = back ? rms(t, out->stress, t->loading, t->count) : NAN;
+    out->returned_measured = back ? -area(t->strain, t->stress, t->loading - 1, t->count) /
+                                        area(t->strain, t->stress, 0, t->loading)
+                                  : NAN;
+    out->returned_fitted = back ? -area(t->strain, out->stress, t->loading - 1, t->count) /
+                                      area(t->strain, out->stress, 0, t->loading)
+                                : NAN;
+    return SF_OK;
+}
+
+static sf_status follow_all(sf_form_fit *fit, const sf_curve *curve, sf_error *err) {
+    const sf_compression_config *c = fit->config;
+    for (int k = 0; k < c->test_count; k++)
+        SF_TRY(follow_test(fit, curve, &c->test[k], &fit->test[k], err));
+    for (int k = 0; k < c->predicted_count; k++)
+        SF_TRY(follow_test(fit, curve, &c->predicted[k], &fit->predicted[k], err));
+    return SF_OK;
+}
+
+/* ---- all ---- */
+
+static double largest_strain(const sf_compression_config *c) {
+    double largest = 0;
+    for (int k = 0; k < c->test_count; k++)
+        largest = fmax(largest, c->test[k].largest_strain);
+    return largest;
+}
+
+/* The material, without its unloading. */
+static sf_status make_card(sf_form_fit *fit, sf_error *err) {
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_foam_form_card(&fit->config->form.form, fit->value, &fit->card, &inner) != SF_OK)
+        return SF_FAIL(err, inner.status, "the tests lead to no foam of curve_form = \"%s\": %s",
+                       fit->config->form.form.curve->name, inner.text);
+    fit->card.informed_strain = largest_strain(fit->config);
+    return SF_OK;
+}
+
+static void take_hysteresis(sf_form_fit *fit) {
+    if (!fit->has_unloading)
+        return;
+    fit->value[SF_PARAMETER_HU] = fit->card.hysteresis_hu = fit->unloading.value[0];
+    fit->value[SF_PARAMETER_SHAPE] = fit->card.hysteresis_shape = fit->unloading.value[1];
+    fit->value[SF_PARAMETER_ALPHA] = fit->card.hysteresis_alpha = fit->unloading.value[2];
+}
+
+sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit, sf_error *err) {
+    problem p;
+    sf_curve curve = {0};
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    *fit = (sf_form_fit){.config = config};
+    if (init_problem(config, &p, err) == SF_OK && fit_loading(&p, fit, err) == SF_OK &&
+        make_card(fit, err) == SF_OK && sf_curve_build(&fit->card, 0, &curve, err) == SF_OK &&
+        fit_all_unloading(fit, &curve, err) == SF_OK && follow_all(fit, &curve, err) == SF_OK)
+        take_hysteresis(fit);
+    sf_curve_free(&curve);
+    free_problem(&p);
+    gsl_set_error_handler(handler);
+    if (err->status != SF_OK)
+        sf_form_fit_free(fit);
+    return err->status;
+}
+
+void sf_form_fit_free(sf_form_fit *fit) {
+    for (int k = 0; k < SF_COMPRESSION_TESTS; k++) {
+        free(fit->test[k].stress);
+        free(fit->predicted[k].stress);
+    }
+    sf_foam_card_free(&fit->card);
+    *fit = (sf_form_fit){0};
+}
+
+bool sf_form_fit_determines(const sf_form_fit *fit, int unknown) {
+    return fit->error[unknown] < UNDETERMINED; /* NaN: at its bound */
+}
+
+bool sf_form_fit_is_below_reference(const sf_form_fit *fit, const sf_compression_test *test) {
+    return fit->config->form.rate & SF_FORM_RATE_FACTOR &&
+           test->rate < fit->value[SF_PARAMETER_RATE_REFERENCE] * (1 - 1e-9);
+}
+
+bool sf_form_fit_is_poor(const sf_form_fit *fit) {
+    for (int k = 0; k < fit->config->test_count; k++)
+        if (fit->test[k].loading_rms > POOR || fit->test[k].unloading_rms > POOR)
+            return true;
+    return false;
+}

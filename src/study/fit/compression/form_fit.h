@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A form of the loading curve (fit/form) fitted to compression tests: its parameters and those of the rate
+ * from loading, by least squares of the deviations over each test's largest stress (every test and every
+ * point counts alike: a form's own misfit is far above the scatter of a machine); then HU, SHAPE and ALPHA
+ * from unloading. */
+#ifndef SF_FIT_COMPRESSION_FORM_FIT_H
+#define SF_FIT_COMPRESSION_FORM_FIT_H
+
+#include "study/fit/compression/compression_config.h"
+
+/* HU, SHAPE and ALPHA of unloading; NaN without unloading. */
+typedef struct sf_form_unloading {
+    double value[3];
+    bool at_bound[3];
+    double rms;        /* -, of the stress, over the largest of its test */
+    double factor_rms; /* -, of f = stress of unloading over that of loading by the form */
+} sf_form_unloading;
+
+/* A test against the law. NaN: it has no unloading. */
+typedef struct sf_form_test {
+    double loading_rms, unloading_rms;         /* -, over the test's largest stress */
+    double returned_measured, returned_fitted; /* -, part of the energy of loading that unloading returns */
+    double *stress;                            /* [count] Pa, of the law; owned */
+} sf_form_test;
+
+typedef struct sf_form_fit {
+    const sf_compression_config *config; /* borrowed */
+    double value[SF_PARAMETER_COUNT];    /* SI */
+    double error[SF_FORM_UNKNOWNS];      /* relative standard error of each unknown; NaN: at its bound */
+    bool at_bound[SF_FORM_UNKNOWNS];
+    double loading_rms; /* -, of all tests, over the largest stress of each */
+    bool has_unloading;
+    sf_form_unloading unloading_of_one; /* with ALPHA = 1 */
+    sf_form_unloading unloading;        /* ALPHA too */
+    sf_form_test test[SF_COMPRESSION_TESTS], predicted[SF_COMPRESSION_TESTS];
+    sf_foam_card card; /* the material; curves owned */
+} sf_form_fit;
+
+/* `config` is borrowed until sf_form_fit_free. SF_ERR_NUMERIC if no search converges, its curve is none, or
+ * it deviates by more than the tests' largest stress. */
+sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit, sf_error *err);
+void sf_form_fit_free(sf_form_fit *fit);
+
+/* Is the standard error of an unknown, by its number, below its own value? Not at a bound, where there is
+ * none. */
+bool sf_form_fit_determines(const sf_form_fit *fit, int unknown);
+
+/* Is the test slower than the reference rate of the rate factor, below which the law has no effect of the
+ * rate? */
+bool sf_form_fit_is_below_reference(const sf_form_fit *fit, const sf_compression_test *test);
+
+/* Is a deviation of the fitted tests above a tenth of the largest stress? */
+bool sf_form_fit_is_poor(const sf_form_fit *fit);
+
+#endif

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the file of `softfall-fit compression` says where it names a form of the loading curve (fit/form):
+ * the form, its start values, its unknown parameters, and how the stress depends on the rate. */
+#ifndef SF_FIT_COMPRESSION_FORM_REQUEST_H
+#define SF_FIT_COMPRESSION_FORM_REQUEST_H
+
+#include "study/config.h"
+#include "study/fit/compression/compression_test.h"
+#include "study/fit/drop/parameters.h"
+
+/* Keys of the file that belong to forms, and rate_model. */
+#define SF_FORM_REQUEST_KEYS "curve_form|solid_density|start|unknown|rate_model|rate_reference|predict"
+
+enum { SF_FORM_UNKNOWNS = 16 };
+
+/* Bits: the law has a factor on the curve, a Maxwell branch. */
+typedef enum sf_form_rate {
+    SF_FORM_RATE_NONE,
+    SF_FORM_RATE_FACTOR,
+    SF_FORM_RATE_MAXWELL,
+    SF_FORM_RATE_BOTH
+} sf_form_rate;
+
+typedef struct sf_form_request {
+    sf_foam_form form; /* its curve is NULL: none was asked for; the base has no curves */
+    sf_form_rate rate;
+    double start[SF_PARAMETER_COUNT]; /* SI */
+    int unknown_count;
+    sf_foam_parameter unknown[SF_FORM_UNKNOWNS];
+} sf_form_request;
+
+/* "none", "factor", "maxwell", "both" */
+const char *sf_form_rate_name(sf_form_rate rate);
+
+/* Does the file name a form other than "free"? SF_ERR_INPUT: it names one that does not exist, or "table". */
+sf_status sf_form_request_asked(const sf_config *file, const config_setting_t *root, bool *asked,
+                                sf_error *err);
+
+/* Reads the keys of a form. E begins as the slope of the slowest test's first points, up to the strain
+ * `range`. `predicted` are compared only. SF_ERR_INPUT also where the data cannot decide: a start value of a
+ * rate that the model does not have, a reference rate at or above the fastest test, two solid fractions, a
+ * test at the curve's pole or beyond, nothing unknown. */
+sf_status sf_form_request_read(const sf_config *file, const config_setting_t *root, double density,
+                               double damp, double range, int test_count, const sf_compression_test *test,
+                               int predicted_count, const sf_compression_test *predicted,
+                               sf_form_request *request, sf_error *err);
+
+#endif

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The foam law of material/foam.c at a material point in uniaxial compression at a constant nominal
+ * rate (lateral stretches 1), as a function of the parameters that compression tests identify, with its
+ * derivatives. The loading curve is a cubic spline whose coefficients ascend. What lies beyond it is the
+ * law's own: the densification (material/curve.h), the factor of unloading and the Maxwell branch
+ * (material/foam.h); only the derivatives by the parameters are added here. DAMP is left out: it is
+ * negligible at the rates of these tests.
+ *
+ * A parameter vector holds for every curve the logarithms of the coefficients' increments, then the other
+ * parameters mapped from their bounds to the real line. */
+#ifndef SF_FIT_COMPRESSION_MODEL_H
+#define SF_FIT_COMPRESSION_MODEL_H
+
+#include "study/fit/compression/compression_data.h"
+#include "study/fit/spline.h"
+#include <gsl/gsl_matrix.h>
+
+typedef enum sf_rule { SF_H1_AUTO, SF_H1_FREE, SF_H2, SF_RULES } sf_rule; /* theory, "Densification" */
+
+/* Parameters beside the curve. */
+typedef enum sf_number {
+    SF_NUMBER_HU,       /* - */
+    SF_NUMBER_SHAPE,    /* - */
+    SF_NUMBER_LOG_RATE, /* -, factor 1 + c ln(rate/slowest rate) */
+    SF_NUMBER_ED,       /* Pa */
+    SF_NUMBER_BETA1,    /* s-1 */
+    SF_NUMBER_EXPONENT, /* - */
+    SF_NUMBER_LIMIT,    /* - */
+    SF_NUMBERS
+} sf_number;
+
+typedef struct sf_compression_form {
+    sf_rate_model rate;
+    sf_rule rule;
+} sf_compression_form;
+
+/* A bounded parameter: logarithmic between positive bounds, else linear; high = INFINITY: not bounded. */
+typedef struct sf_number_range {
+    int index; /* in the parameter vector, -1: not fitted */
+    bool logarithmic;
+    double low, high;
+    double fixed; /* value when not fitted */
+} sf_number_range;
+
+typedef struct sf_compression_model {
+    const sf_compression_data *data; /* borrowed */
+    sf_compression_form form;
+    int curve_count;
+    int parameter_count;
+    sf_number_range range[SF_NUMBERS];
+    sf_spline spline;                            /* on [0, data->start] */
+    double *value_row;                           /* [data->count][spline.count] up to the start; owned */
+    double *area_row;                            /* [data->count][spline.count], of unloading points; owned */
+    double start_row[3][SF_SPLINE_COEFFICIENTS]; /* value, slope, integral at the start */
+    double peak_row[SF_COMPRESSION_TESTS][2][SF_SPLINE_COEFFICIENTS]; /* value, integral at the turn */
+} sf_compression_model;
+
+sf_status sf_compression_model_init(const sf_compression_data *data, sf_compression_form form,
+                                    sf_compression_model *model, sf_error *err);
+void sf_compression_model_free(sf_compression_model *model);
+
+/* Where a search begins; `decay` (0 to 1) places BETA1 within its bounds. */
+void sf_compression_guess(const sf_compression_model *model, double decay, gsl_vector *parameters);
+
+/* Stress (Pa) of every point; `jacobian` [count][parameter_count] or NULL. */
+void sf_compression_predict(const sf_compression_model *model, const gsl_vector *parameters, double *stress,
+                            gsl_matrix *jacobian);
+
+/* Value of a number, and in `slope` (or NULL) its derivative by its own entry of the vector. */
+double sf_compression_number(const sf_compression_model *model, const gsl_vector *parameters,
+                             sf_number number, double *slope);
+/* Exponent of the densification, also where A = 0 sets it, with its gradient [parameter_count]. */
+double sf_compression_exponent(const sf_compression_model *model, const gsl_vector *parameters,
+                               double *gradient);
+
+/* Stress (Pa) of the loading curve at the rate of a test, at 0 <= strain <= data->end, and its gradient
+ * [parameter_count] (or NULL). Without the Maxwell stress. */
+double sf_compression_curve(sf_compression_model *model, const gsl_vector *parameters, int test,
+                            double strain, double *gradient);
+
+/* A Maxwell branch of 1 Pa along a test; begins as zeros. */
+typedef struct sf_compression_walk {
+    double strain;  /* - */
+    double held;    /* Pa, second Piola-Kirchhoff stress */
+    bool unloading; /* the test has turned */
+} sf_compression_walk;
+
+/* Compressive nominal stress (Pa) of the branch at the next strain of a test that turns at `turn`. */
+double sf_compression_maxwell(double decay_rate, double rate, double turn, double strain, bool unloading,
+                              sf_compression_walk *walk);
+
+#endif

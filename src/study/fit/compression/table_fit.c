@@ -1,0 +1,432 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/fit/compression/table_fit.h"
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_fit.h>
+#include <gsl/gsl_multifit_nlinear.h>
+#include <gsl/gsl_statistics_double.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { ITERATIONS = 150, MAXWELL_STARTS = 4 };
+static const double STEP_TOLERANCE = 1e-7, GRADIENT_TOLERANCE = 1e-9;
+static const double RANK_TOLERANCE = 1e-7; /* columns of the Jacobian below it do not bear on the data */
+
+/* ---- one search ---- */
+
+typedef struct problem {
+    const sf_compression_model *model;
+    double *stress; /* scratch */
+} problem;
+
+static int deviations(const gsl_vector *x, void *context, gsl_vector *out) {
+    const problem *p = context;
+    const sf_compression_data *d = p->model->data;
+    sf_compression_predict(p->model, x, p->stress, NULL);
+    for (int i = 0; i < d->count; i++)
+        gsl_vector_set(out, (size_t)i, (p->stress[i] - d->stress[i]) / d->sigma[i]);
+    return GSL_SUCCESS;
+}
+
+static int derivatives(const gsl_vector *x, void *context, gsl_matrix *out) {
+    const problem *p = context;
+    const sf_compression_data *d = p->model->data;
+    sf_compression_predict(p->model, x, p->stress, out);
+    for (int i = 0; i < d->count; i++) {
+        gsl_vector_view row = gsl_matrix_row(out, (size_t)i);
+        gsl_vector_scale(&row.vector, 1 / d->sigma[i]);
+    }
+    return GSL_SUCCESS;
+}
+
+/* Searches from `x`, into which the minimum goes; returns chi2, INFINITY if the search fails. `covariance`
+ * may be NULL. */
+static double search(const sf_compression_model *model, gsl_vector *x, gsl_matrix *covariance,
+                     sf_error *err) {
+    size_t n = (size_t)model->data->count, p = (size_t)model->parameter_count;
+    problem context = {model, malloc(n * sizeof(double))};
+    gsl_multifit_nlinear_fdf fdf = {.f = deviations, .df = derivatives, .n = n, .p = p, .params = &context};
+    gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
+    how.solver = gsl_multifit_nlinear_solver_cholesky;
+    how.scale =
+        gsl_multifit_nlinear_scale_levenberg; /* parameters are logarithms: a flat one stays where it is */
+    gsl_multifit_nlinear_workspace *w =
+        n > p ? gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, n, p) : NULL;
+    double chi2 = INFINITY;
+    int info;
+    if (!context.stress || (n > p && !w)) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a fit of %zu parameters to %zu points", p, n);
+    } else if (w && gsl_multifit_nlinear_init(x, &fdf, w) == GSL_SUCCESS) {
+        gsl_multifit_nlinear_driver(ITERATIONS, STEP_TOLERANCE, GRADIENT_TOLERANCE, 0, NULL, NULL, &info, w);
+        gsl_blas_ddot(gsl_multifit_nlinear_residual(w), gsl_multifit_nlinear_residual(w), &chi2);
+        if (isfinite(chi2))
+            gsl_vector_memcpy(x, gsl_multifit_nlinear_position(w));
+        if (covariance)
+            gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), RANK_TOLERANCE, covariance);
+    }
+    gsl_multifit_nlinear_free(w);
+    free(context.stress);
+    return isfinite(chi2) ? chi2 : INFINITY;
+}
+
+/* Searches from the guess; the Maxwell branch from several decay rates, of which the best is gone on with. */
+static sf_status search_form(const sf_compression_model *model, gsl_vector *best, double *chi2,
+                             sf_error *err) {
+    int starts = model->form.rate == SF_RATE_MAXWELL ? MAXWELL_STARTS : 1;
+    gsl_vector *x = gsl_vector_alloc((size_t)model->parameter_count);
+    *chi2 = INFINITY;
+    if (!x)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", model->parameter_count);
+    for (int k = 0; k < starts && err->status == SF_OK; k++) {
+        sf_compression_guess(model, (k + 1.0) / (starts + 1), x);
+        double value = search(model, x, NULL, err);
+        if (value < *chi2) {
+            *chi2 = value;
+            gsl_vector_memcpy(best, x);
+        }
+    }
+    gsl_vector_free(x);
+    return err->status;
+}
+
+/* ---- choice ---- */
+
+static sf_status try_form(const sf_compression_data *data, sf_compression_form form, sf_candidate *candidate,
+                          sf_error *err) {
+    sf_compression_model model;
+    if (sf_compression_model_init(data, form, &model, err) != SF_OK)
+        return err->status;
+    gsl_vector *x = gsl_vector_alloc((size_t)model.parameter_count);
+    double n = data->count;
+    if (!x)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", model.parameter_count);
+    else if (search_form(&model, x, &candidate->chi2, err) == SF_OK)
+        *candidate = (sf_candidate){true, model.parameter_count, candidate->chi2,
+                                    n * log(candidate->chi2 / n) + model.parameter_count * log(n)};
+    gsl_vector_free(x);
+    sf_compression_model_free(&model);
+    return err->status;
+}
+
+static int lowest(const sf_candidate *candidates, int count, int otherwise) {
+    int best = otherwise;
+    for (int k = 0; k < count; k++)
+        if (candidates[k].tried && (!candidates[best].tried || candidates[k].bic < candidates[best].bic))
+            best = k;
+    return best;
+}
+
+/* First the rate dependence, with the prescribed densification or the free exponent of H1; then, unless it is
+ * prescribed, the densification. A = 0 is fitted for the report, but not chosen: with one parameter less it
+ * would win wherever the data do not determine A, with intervals that are too narrow. */
+static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_error *err) {
+    static const sf_rule prescribed[] = {[SF_RULE_AUTO] = SF_H1_FREE,
+                                         [SF_RULE_H1] = SF_H1_FREE,
+                                         [SF_RULE_H1_AUTOMATIC] = SF_H1_AUTO,
+                                         [SF_RULE_H2] = SF_H2};
+    const sf_compression_config *c = fit->data.config;
+    *form = (sf_compression_form){c->test_count == 1 ? SF_RATE_NONE : c->rate_model, prescribed[c->rule]};
+    if (form->rate == SF_RATE_AUTO) {
+        for (int k = 0; k < SF_RATE_MODELS; k++)
+            if (try_form(&fit->data, (sf_compression_form){(sf_rate_model)k, form->rule}, &fit->rate[k],
+                         err) != SF_OK)
+                return err->status;
+        form->rate = (sf_rate_model)lowest(fit->rate, SF_RATE_MODELS, SF_RATE_NONE);
+    }
+    if (c->rule != SF_RULE_AUTO)
+        return SF_OK;
+    for (int k = 0; k < SF_RULES; k++)
+        if (try_form(&fit->data, (sf_compression_form){form->rate, (sf_rule)k}, &fit->rule[k], err) != SF_OK)
+            return err->status;
+    form->rule = fit->rule[SF_H2].bic < fit->rule[SF_H1_FREE].bic ? SF_H2 : SF_H1_FREE;
+    return SF_OK;
+}
+
+/* ---- estimates with their intervals ---- */
+
+/* Correlation of neighbouring deviations of a branch. Independent ones have 0 +- 1/sqrt(count). */
+static double neighbour_correlation(const sf_compression_fit *fit) {
+    const sf_compression_data *d = &fit->data;
+    double product = 0, square = 0;
+    for (int i = 0; i < d->count; i++) {
+        double r = (d->stress[i] - fit->stress[i]) / d->sigma[i];
+        square += r * r;
+        if (i > 0 && d->test[i] == d->test[i - 1] && d->unloading[i] == d->unloading[i - 1])
+            product += r * (d->stress[i - 1] - fit->stress[i - 1]) / d->sigma[i - 1];
+    }
+    return square > 0 ? product / square : 0;
+}
+
+/* Deviations that hang together count for fewer points: the variance of a mean grows by (1 + r)/(1 - r). */
+static double serial_factor(double correlation, int count) {
+    double r = fmin(0.98, correlation);
+    return r > 2 / sqrt(count) ? (1 + r) / (1 - r) : 1;
+}
+
+double sf_compression_error(const sf_compression_fit *fit, const double *gradient) {
+    size_t p = (size_t)fit->model.parameter_count;
+    double variance = 0;
+    for (size_t i = 0; i < p; i++)
+        for (size_t j = 0; j < p; j++)
+            variance += gradient[i] * gradient[j] * gsl_matrix_get(fit->covariance, i, j);
+    return sqrt(fmax(0, variance));
+}
+
+/* Interval of value +- t error, or of its logarithm for a number that has no zero. */
+static void set_interval(const sf_compression_fit *fit, bool logarithmic, double low, double high,
+                         sf_estimate *e) {
+    double width = fit->quantile * e->error;
+    if (logarithmic) {
+        e->low = e->value * exp(-width / e->value);
+        e->high = e->value * exp(width / e->value);
+    } else {
+        e->low = e->value - width;
+        e->high = e->value + width;
+    }
+    e->low = fmax(e->low, low);
+    e->high = fmin(e->high, high);
+}
+
+static void estimate_number(const sf_compression_fit *fit, sf_number number, bool logarithmic,
+                            sf_estimate *e) {
+    const sf_number_range *r = &fit->model.range[number];
+    double slope = 0;
+    e->present = r->index >= 0;
+    e->value = sf_compression_number(&fit->model, fit->parameters, number, &slope);
+    if (!e->present)
+        return;
+    size_t index = (size_t)r->index;
+    double variance = gsl_matrix_get(fit->covariance, index, index), part;
+    e->error = slope * sqrt(variance);
+    part = r->logarithmic ? log(e->value / r->low) / log(r->high / r->low)
+                          : (e->value - r->low) / (r->high - r->low);
+    if (isfinite(r->high) && (part < 1e-4 || part > 1 - 1e-4)) {
+        e->note = "at the bound of the search: not identified by these tests";
+        e->error = NAN;
+    } else if (!(variance > 0)) {
+        e->note = "not identified by these tests";
+        e->error = NAN;
+    }
+    bool positive = number == SF_NUMBER_HU;
+    if (isfinite(e->error))
+        set_interval(fit, logarithmic,
+                     positive                    ? 0
+                     : number == SF_NUMBER_LIMIT ? r->low
+                                                 : -INFINITY,
+                     number == SF_NUMBER_HU || number == SF_NUMBER_LIMIT ? 1 : INFINITY, e);
+    if (isfinite(e->error) && number == SF_NUMBER_HU && e->low <= 0)
+        e->note = "not distinguishable from zero by these tests";
+}
+
+static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e, sf_error *err) {
+    double *gradient =
+        sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
+    if (!gradient)
+        return err->status;
+    e->present = true;
+    e->value = sf_compression_exponent(&fit->model, fit->parameters, gradient);
+    e->error = sf_compression_error(fit, gradient);
+    set_interval(fit, true, 0, INFINITY, e);
+    bool follows = fit->model.form.rule == SF_H1_AUTO;
+    if (!follows && (!(e->error > 0) || e->value > 59.9 || e->value < 0.0501)) {
+        e->note = "at the bound of the search: not identified by these tests";
+        e->error = e->low = e->high = NAN;
+    } else if (e->value < 1)
+        e->note =
+            "below 1: beyond the tests the foam takes little energy up to full compression; do not use it "
+            "for strains beyond theirs";
+    else if (follows)
+        e->note = "follows from value and slope where densification starts (A = 0)";
+    free(gradient);
+    return SF_OK;
+}
+
+/* Slope of the line through the loading of the slowest test below the strain E_range. Its variance is that of
+ * the scatter: the curve's own bend within the range is no uncertainty of the slope. */
+static void estimate_modulus(const sf_compression_fit *fit, sf_estimate *e) {
+    const sf_compression_data *d = &fit->data;
+    double weight[4096], c0, c00, c01, c11, chi2;
+    int first, count, used = 0;
+    sf_compression_branch(d, 0, false, &first, &count);
+    for (; used < count && used < 4096 && d->strain[first + used] <= d->config->modulus_range; used++)
+        weight[used] = 1 / (d->sigma[first + used] * d->sigma[first + used]);
+    gsl_fit_wlinear(&d->strain[first], 1, weight, 1, &d->stress[first], 1, (size_t)used, &c0, &e->value, &c00,
+                    &c01, &c11, &chi2);
+    e->present = true;
+    e->error = sqrt(c11 * fit->serial);
+    set_interval(fit, false, -INFINITY, INFINITY, e);
+    if (!(e->low > 0))
+        e->note = "not distinguishable from zero by these tests";
+}
+
+static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {
+    static const char *const names[SF_ESTIMATES] = {"E",  "HU",    "SHAPE",    "c (log rate)",
+                                                    "ED", "BETA1", "exponent", "limit"};
+    static const char *const units[SF_ESTIMATES] = {"Pa", "", "", "", "Pa", "1/s", "", ""};
+    for (int k = 0; k < SF_ESTIMATES; k++)
+        fit->estimate[k] = (sf_estimate){names[k], units[k], false, NAN, NAN, NAN, NAN, ""};
+    estimate_modulus(fit, &fit->estimate[SF_ESTIMATE_E]);
+    estimate_number(fit, SF_NUMBER_HU, false, &fit->estimate[SF_ESTIMATE_HU]);
+    estimate_number(fit, SF_NUMBER_SHAPE, true, &fit->estimate[SF_ESTIMATE_SHAPE]);
+    estimate_number(fit, SF_NUMBER_LOG_RATE, false, &fit->estimate[SF_ESTIMATE_LOG_RATE]);
+    estimate_number(fit, SF_NUMBER_ED, true, &fit->estimate[SF_ESTIMATE_ED]);
+    estimate_number(fit, SF_NUMBER_BETA1, true, &fit->estimate[SF_ESTIMATE_BETA1]);
+    estimate_number(fit, SF_NUMBER_LIMIT, false, &fit->estimate[SF_ESTIMATE_LIMIT]);
+    for (int k = SF_ESTIMATE_HU; k <= SF_ESTIMATE_SHAPE; k++)
+        if (!fit->estimate[k].present) {
+            fit->estimate[k].present = true;
+            fit->estimate[k].note = "not measured: no test unloads; 1 means no hysteresis";
+        }
+    return estimate_exponent(fit, &fit->estimate[SF_ESTIMATE_EXPONENT], err);
+}
+
+/* Strains of the table, graded as the knots, and three close together where densification starts, from whose
+ * slope the solver joins it. */
+static void place_table(sf_compression_fit *fit) {
+    enum { GRADED = SF_COMPRESSION_TABLE - 3 };
+    static const double BESIDE = 2e-4, CLEAR = 3e-3;
+    const double start = fit->data.start, end = fit->data.end;
+    bool placed = false;
+    fit->table_count = 0;
+    for (int k = 0; k < GRADED; k++) {
+        double strain = sf_spline_grade(SF_GRADING_FOAM, 0, end, k / (GRADED - 1.0));
+        for (int side = -1; side <= 1 && !placed && strain > start - CLEAR; side++)
+            fit->table_strain[fit->table_count++] = start + side * BESIDE;
+        placed = placed || strain > start - CLEAR;
+        if (fabs(strain - start) > CLEAR)
+            fit->table_strain[fit->table_count++] = strain;
+    }
+}
+
+static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
+    double *gradient =
+        sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
+    if (!gradient)
+        return err->status;
+    bool several = fit->model.form.rate == SF_RATE_LOG || fit->model.form.rate == SF_RATE_CURVES;
+    fit->rate_count = several ? fit->data.config->test_count : 1;
+    place_table(fit);
+    for (int r = 0; r < fit->rate_count; r++)
+        for (int k = 0; k < fit->table_count; k++) {
+            fit->table_stress[r][k] =
+                sf_compression_curve(&fit->model, fit->parameters, r, fit->table_strain[k], gradient);
+            fit->table_error[r][k] = sf_compression_error(fit, gradient);
+        }
+    free(gradient);
+    return SF_OK;
+}
+
+/* ---- everything ---- */
+
+static sf_status finish(sf_compression_fit *fit, sf_error *err) {
+    const sf_compression_config *c = fit->data.config;
+    size_t p = (size_t)fit->model.parameter_count;
+    fit->parameters = gsl_vector_alloc(p);
+    fit->covariance = gsl_matrix_alloc(p, p);
+    fit->stress = sf_alloc(err, (unsigned long)fit->data.count, sizeof *fit->stress, "fitted stresses");
+    if (!fit->parameters || !fit->covariance || !fit->stress)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit");
+    if (search_form(&fit->model, fit->parameters, &fit->chi2, err) != SF_OK)
+        return err->status;
+    if (isfinite(fit->chi2))
+        fit->chi2 = search(&fit->model, fit->parameters, fit->covariance, err);
+    double left = fit->data.count - fit->model.parameter_count;
+    if (err->status != SF_OK || !isfinite(fit->chi2) || !(left > 0))
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "the fit of %d parameters to %d points did not converge; fewer forms can be asked for "
+                       "with rate_model and densification",
+                       fit->model.parameter_count, fit->data.count);
+    sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
+    fit->misfit = fit->chi2 / left;
+    fit->correlation = neighbour_correlation(fit);
+    fit->serial = serial_factor(fit->correlation, fit->data.count);
+    fit->quantile = gsl_cdf_tdist_Pinv(0.5 + 0.5 * c->confidence, left / fit->serial);
+    gsl_matrix_scale(fit->covariance, fit->misfit * fit->serial);
+    if (estimate_all(fit, err) != SF_OK)
+        return err->status;
+    return fill_table(fit, err);
+}
+
+sf_status sf_compression_fit_run(const sf_compression_config *config, sf_compression_fit *fit,
+                                 sf_error *err) {
+    sf_compression_form form;
+    *fit = (sf_compression_fit){0};
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    if (sf_compression_data_init(config, &fit->data, err) == SF_OK && choose(fit, &form, err) == SF_OK &&
+        sf_compression_model_init(&fit->data, form, &fit->model, err) == SF_OK)
+        finish(fit, err);
+    gsl_set_error_handler(handler);
+    if (err->status != SF_OK)
+        sf_compression_fit_free(fit);
+    return err->status;
+}
+
+void sf_compression_fit_free(sf_compression_fit *fit) {
+    gsl_vector_free(fit->parameters);
+    gsl_matrix_free(fit->covariance);
+    free(fit->stress);
+    sf_compression_model_free(&fit->model);
+    sf_compression_data_free(&fit->data);
+    *fit = (sf_compression_fit){0};
+}
+
+/* ---- the card ---- */
+
+static void fill_card(const sf_compression_fit *fit, sf_foam_card *card) {
+    int count = fit->table_count;
+    for (int r = 0; r < fit->rate_count; r++) {
+        card->curve_rate[r] = fit->rate_count > 1 ? fit->data.config->test[r].rate : 0;
+        card->curve_ptr[r + 1] = (int64_t)(r + 1) * count;
+        for (int k = 0; k < count; k++) {
+            card->curve_strain[r * count + k] = fit->table_strain[k];
+            card->curve_stress[r * count + k] = fit->table_stress[r][k];
+        }
+    }
+}
+
+sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err) {
+    const sf_compression_config *c = fit->data.config;
+    const sf_estimate *e = fit->estimate;
+    unsigned long rates = (unsigned long)fit->rate_count, points = rates * (unsigned long)fit->table_count;
+    bool maxwell = e[SF_ESTIMATE_ED].present;
+    /* curves of their own each have an exponent of their own where A = 0: the solver finds them (0) */
+    bool own = fit->model.form.rule == SF_H1_AUTO && fit->model.form.rate == SF_RATE_CURVES;
+    *card =
+        (sf_foam_card){.density = c->density,
+                       .modulus = e[SF_ESTIMATE_E].value,
+                       .hysteresis_hu = e[SF_ESTIMATE_HU].value,
+                       .hysteresis_shape = e[SF_ESTIMATE_SHAPE].value,
+                       .hysteresis_alpha = 1,
+                       .damp = c->damp,
+                       .maxwell_modulus = maxwell ? e[SF_ESTIMATE_ED].value : 0,
+                       .maxwell_rate = maxwell ? e[SF_ESTIMATE_BETA1].value : 5000,
+                       .rate_filter_time = 1e-4,
+                       .tension_cutoff = 1e30,
+                       .densification_rule = e[SF_ESTIMATE_LIMIT].present && e[SF_ESTIMATE_LIMIT].value < 1
+                                                 ? SF_DENSIFICATION_H2
+                                                 : SF_DENSIFICATION_H1,
+                       .densification_start = fit->data.start,
+                       .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
+                       .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value,
+                       .curve_count = fit->rate_count,
+                       .curve_points = (int64_t)points};
+    card->curve_rate = sf_alloc(err, rates, sizeof *card->curve_rate, "curve rates");
+    card->curve_ptr = sf_alloc(err, rates + 1, sizeof *card->curve_ptr, "curve list");
+    card->curve_strain = sf_alloc(err, points, sizeof *card->curve_strain, "curve strains");
+    card->curve_stress = sf_alloc(err, points, sizeof *card->curve_stress, "curve stresses");
+    if (err->status == SF_OK)
+        fill_card(fit, card);
+    else
+        sf_compression_card_free(card);
+    return err->status;
+}
+
+void sf_compression_card_free(sf_foam_card *card) {
+    free(card->curve_rate);
+    free(card->curve_ptr);
+    free(card->curve_strain);
+    free(card->curve_stress);
+    *card = (sf_foam_card){0};
+}

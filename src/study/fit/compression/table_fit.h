@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The joint fit of all tests: weighted least squares of compression_model.h (GSL, Levenberg-Marquardt), the
+ * choice of rate dependence and densification by BIC, and the 95 % interval of every number. */
+#ifndef SF_FIT_COMPRESSION_FIT_H
+#define SF_FIT_COMPRESSION_FIT_H
+
+#include "material/foam_card.h"
+#include "study/fit/compression/point_model.h"
+#include <gsl/gsl_vector.h>
+
+enum { SF_COMPRESSION_TABLE = 60 };
+
+typedef enum sf_estimate_name {
+    SF_ESTIMATE_E,        /* Pa */
+    SF_ESTIMATE_HU,       /* - */
+    SF_ESTIMATE_SHAPE,    /* - */
+    SF_ESTIMATE_LOG_RATE, /* - */
+    SF_ESTIMATE_ED,       /* Pa */
+    SF_ESTIMATE_BETA1,    /* s-1 */
+    SF_ESTIMATE_EXPONENT, /* - */
+    SF_ESTIMATE_LIMIT,    /* - */
+    SF_ESTIMATES
+} sf_estimate_name;
+
+/* A number with its standard error and interval; all NaN but the value if the number was not fitted. */
+typedef struct sf_estimate {
+    const char *name, *unit; /* static storage */
+    bool present;            /* the material has it */
+    double value, error, low, high;
+    const char *note; /* why it is to be taken with care, or "" ; static storage */
+} sf_estimate;
+
+/* A form that was tried. */
+typedef struct sf_candidate {
+    bool tried;
+    int parameters;
+    double chi2, bic;
+} sf_candidate;
+
+typedef struct sf_compression_fit {
+    sf_compression_data data;
+    sf_compression_model model;
+    gsl_vector *parameters; /* of the chosen form; owned */
+    gsl_matrix *covariance; /* of the parameters, with both factors below in it; owned */
+    double chi2;            /* sum of squares of deviation over sigma */
+    double misfit;          /* chi2 over degrees of freedom: the variance factor */
+    double correlation;     /* of neighbouring deviations */
+    double serial;          /* variance factor for it, 1 or more */
+    double quantile;        /* of Student's t for the confidence */
+    double *stress;         /* [data.count] Pa, of the fit; owned */
+    sf_candidate rate[SF_RATE_MODELS];
+    sf_candidate rule[SF_RULES];
+    sf_estimate estimate[SF_ESTIMATES];
+    int table_count; /* points of the loading curves */
+    double table_strain[SF_COMPRESSION_TABLE];
+    int rate_count; /* loading curves: of the slowest test, or of each test */
+    double table_stress[SF_COMPRESSION_TESTS][SF_COMPRESSION_TABLE]; /* Pa */
+    double table_error[SF_COMPRESSION_TESTS][SF_COMPRESSION_TABLE];  /* Pa, standard error */
+} sf_compression_fit;
+
+/* Fits; `config` is borrowed until sf_compression_fit_free. SF_ERR_NUMERIC if no search converges. */
+sf_status sf_compression_fit_run(const sf_compression_config *config, sf_compression_fit *fit, sf_error *err);
+void sf_compression_fit_free(sf_compression_fit *fit);
+
+/* Standard error of a quantity with this gradient [model.parameter_count] by the parameters. */
+double sf_compression_error(const sf_compression_fit *fit, const double *gradient);
+
+/* The foam card of the fit: arrays from sf_alloc, released by the caller with sf_compression_card_free. */
+sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err);
+void sf_compression_card_free(sf_foam_card *card);
+
+#endif

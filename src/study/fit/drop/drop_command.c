@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/engine.h"
+#include "base/program.h"
+#include "study/fit/drop/drop_command.h"
+
+#include "study/fit/command_line.h"
+#include "study/fit/drop/inference_report.h"
+#include "study/fit/drop/drop_report.h"
+#include "io/folder.h"
+#include "io/process.h"
+#include <argp.h>
+#include <gsl/gsl_errno.h>
+#include <limits.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct options {
+    const char *input, *directory, *command;
+    bool force;
+    int threads, jobs;
+    sf_runner_engine engine;
+} options;
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+    options *o = state->input;
+    sf_error err = SF_ERROR_INIT;
+    switch (key) {
+    case 'o':
+        o->directory = arg;
+        return 0;
+    case 'f':
+        o->force = true;
+        return 0;
+    case 't':
+        if (sf_program_read_threads(arg, &o->threads, &err) != SF_OK)
+            argp_error(state, "%s", err.text);
+        return 0;
+    case 'j':
+        if (sf_program_read_threads(arg, &o->jobs, &err) != SF_OK)
+            argp_error(state, "--jobs takes a number from 1 on, as --threads does, not \"%s\"", arg);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->input)
+            argp_error(state, "one input at a time: \"%s\" is one too many", arg);
+        o->input = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->input || !o->directory)
+            argp_error(state, "give the input, and the output directory with -o");
+        return 0;
+    default:
+        if (!sf_engine_option(key, arg, &o->engine, &err))
+            return ARGP_ERR_UNKNOWN;
+        if (err.status != SF_OK)
+            argp_error(state, "%s", err.text);
+        return 0;
+    }
+}
+
+/* "<material>.cfg" and so on, for sf_staging. */
+typedef struct names {
+    char card[SF_FIT_NAME_SIZE + 8], curve[SF_FIT_NAME_SIZE + 8];
+    const char *list[10];
+} names;
+
+/* The models of the file, each with its fit and posterior. */
+typedef struct models {
+    int count;
+    sf_fit_input input[SF_FIT_MAX_MODELS];
+    sf_drop_fit fit[SF_FIT_MAX_MODELS];
+    sf_drop_inference inference[SF_FIT_MAX_MODELS];
+    sf_error failure[SF_FIT_MAX_MODELS]; /* of a model alone: the others go on */
+    sf_drop_average average;             /* without posterior: of no models */
+} models;
+
+static void name_files(const sf_fit_input *in, names *n) {
+    snprintf(n->card, sizeof n->card, "%s.cfg", in->material_name);
+    snprintf(n->curve, sizeof n->curve, "%s.csv", in->material_name);
+    const char *const list[] = {n->curve,  n->card,    "fit-curve.csv", "fit-drops.csv", "fit.gp",
+                                "fit.png", "fit.json", "report.html",   "posterior.csv", NULL};
+    memcpy(n->list, list, sizeof list);
+}
+
+/* The drops' folders are kept between runs of the command: DIR/runs. So is, until the fit has ended, what was
+ * computed between the drops: DIR/runs/columns.bin. */
+static sf_status make_runs(const char *directory, char *runs, sf_error *err) {
+    snprintf(runs, PATH_MAX, "%s/runs", directory);
+    return sf_folder_own(runs, err);
+}
+
+static void print_curves(const sf_fit_input *in) {
+    for (int k = 0; k < in->drop_count; k++)
+        if (in->drop[k].curve_path)
+            printf("reference %s: %s\n", in->drop[k].curve_path, in->drop[k].understood);
+    for (int t = 0; t < in->joint.test_count; t++)
+        printf("test %s\n", in->joint.test[t].understood);
+    for (int c = 0; c < in->joint.cushion_count; c++)
+        if (*in->joint.cushion[c].understood)
+            printf("cushion %s\n", in->joint.cushion[c].understood);
+    fflush(stdout);
+}
+
+static sf_status read_models(const char *path, models *all, sf_error *err) {
+    all->count = 1;
+    for (int m = 0; m < all->count && sf_fit_input_read(path, m, &all->input[m], err) == SF_OK; m++)
+        all->count = all->input[m].model_count;
+    return err->status;
+}
+
+static sf_status fit_model(models *all, int m, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
+    const sf_fit_input *in = &all->input[m];
+    sf_drop_fit *fit = &all->fit[m];
+    const sf_inference_options sampling = sf_inference_defaults(in->seed);
+    char text[96];
+    *fit = (sf_drop_fit){
+        .input = in, .runner = runner, .folder = runner->folder, .log = runner->log, .memory = memory};
+    for (int k = 0; k < m && !fit->earlier; k++)
+        if (all->failure[k].status == SF_OK)
+            fit->earlier = &all->fit[k];
+    if (all->count > 1)
+        printf("model %d of %d: %s, %d unknown parameters\n", m + 1, all->count,
+               sf_model_label(in, text, sizeof text), in->unknown_count);
+    if (sf_drop_fit_run(fit, err) != SF_OK || !in->posterior)
+        return err->status;
+    if (sf_drop_infer(fit, &sampling, &all->inference[m], err) == SF_OK)
+        sf_inference_print_chains(stdout, &all->inference[m]);
+    return err->status;
+}
+
+/* Is it the model's own, so that the others may go on? */
+static bool is_of_the_model(const sf_error *failure) {
+    return failure->status == SF_ERR_NUMERIC || failure->status == SF_ERR_MODEL ||
+           failure->status == SF_ERR_INPUT;
+}
+
+/* The failure of all of them, or none. */
+static sf_status check_any(const models *all, sf_error *err) {
+    for (int m = 0; m < all->count; m++)
+        if (all->failure[m].status == SF_OK)
+            return SF_OK;
+    if (all->count == 1)
+        *err = all->failure[0];
+    else
+        SF_FAIL(err, all->failure[0].status, "none of the %d models was fitted; the first: %.800s",
+                all->count, all->failure[0].text);
+    return err->status;
+}
+
+/* Of the models that have a posterior; the others are listed. */
+static sf_status average_models(models *all, sf_error *err) {
+    const sf_drop_inference *list[SF_FIT_MAX_MODELS];
+    sf_drop_average *a = &all->average;
+    int count = 0;
+    for (int m = 0; m < all->count; m++)
+        if (all->failure[m].status == SF_OK)
+            list[count++] = &all->inference[m];
+    if (sf_drop_average_build(count, list, all->input[0].seed, a, err) != SF_OK)
+        return err->status;
+    for (int m = 0; m < all->count; m++) {
+        sf_failed_model *failed = &a->failure[a->failed];
+        if (all->failure[m].status == SF_OK)
+            continue;
+        sf_model_label(&all->input[m], failed->label, sizeof failed->label);
+        snprintf(failed->sentence, sizeof failed->sentence, "%.500s", all->failure[m].text);
+        a->failed++;
+    }
+    return SF_OK;
+}
+
+static sf_status fit_models(models *all, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
+    char text[96];
+    for (int m = 0; m < all->count; m++) {
+        sf_error *failure = &all->failure[m];
+        *failure = (sf_error)SF_ERROR_INIT;
+        if (fit_model(all, m, runner, memory, failure) == SF_OK)
+            continue;
+        if (!is_of_the_model(failure)) {
+            *err = *failure;
+            return err->status;
+        }
+        if (all->count > 1)
+            printf("model %d of %d FAILED: %s: %s\n", m + 1, all->count,
+                   sf_model_label(&all->input[m], text, sizeof text), failure->text);
+        fflush(stdout);
+    }
+    if (check_any(all, err) == SF_OK && all->input[0].posterior)
+        average_models(all, err);
+    return err->status;
+}
+
+/* ---- DIR/posterior ---- */
+
+static void clear_posterior(const char *folder) {
+    static const char *const ends[] = {"cfg", "csv", "-1.csv", "-2.csv", "-3.csv"};
+    char path[PATH_MAX + 32];
+    for (int k = 1; k <= SF_POSTERIOR_DRAWS; k++)
+        for (size_t e = 0; e < sizeof ends / sizeof *ends; e++) {
+            snprintf(path, sizeof path, "%s/draw-%03d%s%s", folder, k, *ends[e] == '-' ? "" : ".", ends[e]);
+            sf_folder_remove_file(path);
+        }
+}
+
+/* Moves the files to their places. The draws of an earlier run go before, those of this one come after: they
+ * never stand beside another posterior. */
+static sf_status commit(const char *directory, const sf_drop_average *average, sf_staging *output,
+                        sf_error *err) {
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%s/posterior", directory);
+    if (sf_folder_own(folder, err) != SF_OK)
+        return err->status;
+    clear_posterior(folder);
+    if (sf_staging_commit(output, err) == SF_OK && average->models > 0)
+        sf_drop_average_write(average, folder, err);
+    if (average->models == 0)
+        sf_folder_leave(folder);
+    return err->status;
+}
+
+/* ---- the whole ---- */
+
+static sf_status report(const options *o, const models *all, sf_staging *output, char *warning, size_t size,
+                        sf_error *err) {
+    const sf_drop_average *average = all->average.models > 0 ? &all->average : NULL;
+    const sf_drop_fit *best = average ? average->model[sf_drop_average_best(average)]->fit : &all->fit[0];
+    if (sf_drop_report_write(best, average, o->input, o->command, output, warning, size, err) != SF_OK ||
+        commit(o->directory, &all->average, output, err) != SF_OK)
+        return err->status;
+    sf_drop_report_print(best, stdout);
+    return average ? sf_inference_print(stdout, average, err) : SF_OK;
+}
+
+static void warn(const models *all, const char *warning) {
+    const sf_sink sink = sf_program_sink("softfall-fit");
+    char text[96];
+    if (*warning)
+        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
+    for (int m = 0; m < all->count; m++)
+        if (all->failure[m].status != SF_OK)
+            sf_sink_tell(&sink, SF_WARNING, "model %s has no weight: %s",
+                         sf_model_label(&all->input[m], text, sizeof text), all->failure[m].text);
+        else if (!all->fit[m].result.converged)
+            sf_sink_tell(&sink, SF_WARNING, "%s%snot converged after %d iterations",
+                         all->count > 1 ? sf_model_label(&all->input[m], text, sizeof text) : "",
+                         all->count > 1 ? ": " : "", all->fit[m].result.iterations);
+}
+
+static sf_status run(const options *o, models *all, sf_fit_memory *memory, sf_staging *output,
+                     sf_error *err) {
+    char runs[PATH_MAX], warning[512] = "";
+    names n;
+    char columns[PATH_MAX + 16];
+    int lock = -1;                     /* until the program ends */
+    const char *const none[] = {NULL}; /* the names are in the input */
+    const sf_fit_input *in = &all->input[0];
+    if (sf_engine_check(&o->engine, err) != SF_OK ||
+        sf_staging_check(o->directory, none, o->force, err) != SF_OK ||
+        read_models(o->input, all, err) != SF_OK)
+        return err->status;
+    name_files(in, &n);
+    if (sf_staging_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
+        sf_folder_lock(o->directory, &lock, err) != SF_OK || make_runs(o->directory, runs, err) != SF_OK)
+        return err->status;
+    sf_runner runner = {
+        .folder = runs, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
+    runner.engine.lock = &lock;
+    if (!sf_engine_is_local(&o->engine) && runner.engine.per_job == 0) /* the few drops of a step are side by side */
+        runner.engine.per_job = 1;
+    snprintf(columns, sizeof columns, "%s/columns.bin", runs);
+    sf_fit_memory_open(columns, memory);
+    printf("softfall-fit drop: %d unknown parameters, %d drops; finished drops are kept in %s\n",
+           in->unknown_count, in->drop_count, runs);
+    print_curves(in);
+    omp_set_num_threads(o->threads);
+    if (fit_models(all, &runner, memory, err) != SF_OK ||
+        report(o, all, output, warning, sizeof warning, err) != SF_OK)
+        return err->status;
+    if (memory->file >= 0)
+        sf_folder_remove_file(columns);
+    printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.html, fit.json, fit.png%s\n",
+           (long long)runner.simulated, (long long)runner.reused, o->directory, in->material_name,
+           all->average.models > 0 ? ", posterior.csv, posterior/" : "");
+    fflush(stdout);
+    warn(all, warning);
+    return SF_OK;
+}
+
+int sf_fit_drop_main(int argc, char **argv) {
+    static const struct argp_option known[] = {
+        {"output", 'o', "DIR", 0,
+         "write everything there (required); drops that are there already are used again", 0},
+        {"force", 'f', 0, 0, "replace the results of an earlier fit in DIR", 0},
+        {"threads", 't', "N", 0, "threads of the simulations together (default: every core)", 0},
+        {"jobs", 'j', "N", 0,
+         "drops that run side by side, 64 at most, each with at least one thread (default: as many as threads)",
+         0},
+        SF_ENGINE_OPTIONS(1),
+        SF_ENGINE_RETRY(1),
+        {0},
+    };
+    static const struct argp parser = {.options = known,
+                                       .parser = parse,
+                                       .args_doc = "FIT.cfg -o DIR",
+                                       .doc = "Identifies a foam from measured drops, and predicts others."};
+    char *command = sf_fit_command_line(argc, argv);
+    options o = {.threads = (int)sysconf(_SC_NPROCESSORS_ONLN),
+                 .command = command ? command : "softfall-fit drop"};
+    sf_error err = SF_ERROR_INIT;
+    models *all = sf_alloc(&err, 1, sizeof *all, "the models");
+    sf_fit_memory memory = {.file = -1};
+    sf_staging output = {0};
+    static char name[] = "softfall-fit drop";
+    argv[0] = name;
+    gsl_set_error_handler_off(); /* statuses are looked at */
+    sf_process_handle_signals();
+    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    if (all)
+        run(&o, all, &memory, &output, &err);
+    sf_staging_end(&output);
+    sf_fit_memory_close(&memory);
+    for (int m = 0; all && m < SF_FIT_MAX_MODELS; m++) {
+        sf_drop_inference_free(&all->inference[m]);
+        sf_drop_fit_free(&all->fit[m]);
+        sf_fit_input_free(&all->input[m]);
+    }
+    free(all);
+    free(command);
+    return sf_error_report(&err, "softfall-fit");
+}

@@ -1,0 +1,697 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/fit/drop/drop_fit.h"
+
+#include "study/material_file.h"
+#include "base/hash.h"
+#include "io/process.h"
+#include "post/figures/compare.h"
+#include "material/foam.h"
+#include "material/foam_parameters.h"
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_ITERATIONS = 8 };
+static const double TOLERANCE = 0.1;  /* of a standard deviation: the last step */
+static const double BIN_WIDTH = 0.05; /* of strain */
+
+_Static_assert(SF_MAPPING_MAX_PARAMETERS >= SF_FIT_MAX_UNKNOWNS + SF_FIT_MAX_DROPS,
+               "the unknown parameters and the speed of every drop");
+
+/* ---- parameters and responses ---- */
+
+static void values_of(const sf_fit_input *in, const double *u, double value[SF_PARAMETER_COUNT]) {
+    memcpy(value, in->start, SF_PARAMETER_COUNT * sizeof *value);
+    for (int k = 0; k < in->unknown_count; k++)
+        value[in->unknown[k]] = exp(u[k]);
+}
+
+sf_status sf_drop_fit_card(const sf_fit_input *in, const double *u, sf_foam_card *card, sf_error *err) {
+    double value[SF_PARAMETER_COUNT];
+    values_of(in, u, value);
+    return sf_foam_form_card(&in->form, value, card, err);
+}
+
+/* What was measured must be defined. `by`: what does not give it, `remedy`: what to do. */
+static sf_status check_values(const sf_fit_drop *drop, const double *y, const char *by, const char *remedy,
+                              sf_error *err) {
+    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+        if (!isnan(drop->value[kind]) && !isfinite(y[kind]))
+            return SF_FAIL(
+                err, SF_ERR_NUMERIC, "%s of the drop %s was measured, but %s without %s within its time: %s",
+                sf_drop_kind_get(kind)->key, drop->name, by, sf_drop_kind_get(kind)->needs, remedy);
+    return SF_OK;
+}
+
+/* The curve, which has CFC 1000, with the lower class of the measured one. */
+static sf_status filter_like_measured(const sf_series *curve, double cfc, sf_series *filtered,
+                                      sf_error *err) {
+    sf_series uniform = {0};
+    if (sf_signal_resample(curve, sf_signal_rate(curve), &uniform, err) == SF_OK)
+        sf_signal_filter_cfc(&uniform, cfc, filtered, err);
+    sf_series_free(&uniform);
+    return err->status;
+}
+
+static sf_status take_samples(const sf_fit_drop *drop, const sf_series *curve, double *y, sf_error *err) {
+    double contact = 0, end = curve->time[curve->count - 1];
+    if (sf_contact_instant(curve, drop->name, &contact, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < drop->samples; k++) {
+        double time = contact + drop->sample_time[k];
+        y[k] = time <= end ? sf_series_at(curve, time) / drop->sample_scale : 0;
+    }
+    return SF_OK;
+}
+
+/* Scaled responses of one drop from its figures and its curve, which has CFC 1000. */
+static sf_status respond(const sf_fit_drop *drop, const sf_columns_figures *figures, const sf_series *curve,
+                         double *y, sf_error *err) {
+    sf_series filtered = {0};
+    sf_drop_values_scale(figures, y);
+    if (drop->samples == 0)
+        return SF_OK;
+    bool lower = drop->sample_class > 0 && drop->sample_class < 1000;
+    if (!lower || filter_like_measured(curve, drop->sample_class, &filtered, err) == SF_OK)
+        take_samples(drop, lower ? &filtered : curve, &y[SF_FIT_SAMPLES], err);
+    sf_series_free(&filtered);
+    return err->status;
+}
+
+static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
+    const sf_fit_input *in = fit->input;
+    fit->row[0] = in->joint.rows;
+    for (int d = 0; d < in->drop_count; d++) {
+        fit->row[d + 1] = fit->row[d] + SF_FIT_SAMPLES + in->drop[d].samples;
+        fit->measured_drops += !in->drop[d].predicted;
+    }
+    fit->parameters = in->unknown_count;
+    for (int d = 0; d < in->drop_count; d++)
+        fit->speed[d] = in->drop[d].speed_sd > 0 ? fit->parameters++ : -1;
+    unsigned long n = (unsigned long)fit->row[in->drop_count];
+    fit->y = sf_alloc(err, n, sizeof(double), "responses");
+    fit->gradient = sf_alloc(err, n * (unsigned long)fit->parameters, sizeof(double), "responses");
+    fit->measured = sf_alloc(err, n, sizeof(double), "responses");
+    fit->sd = sf_alloc(err, n, sizeof(double), "responses");
+    fit->without = sf_alloc(err, n, sizeof(double), "responses");
+    fit->response_sd = sf_alloc(err, n, sizeof(double), "responses");
+    if (err->status != SF_OK)
+        return err->status;
+    sf_joint_data(&in->joint, fit->measured, fit->sd);
+    for (int d = 0; d < in->drop_count; d++) {
+        const sf_fit_drop *drop = &in->drop[d];
+        double *measured = &fit->measured[fit->row[d]], *sd = &fit->sd[fit->row[d]];
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
+            bool known = !isnan(drop->value[kind]);
+            measured[kind] = known ? log(drop->value[kind]) : 0;
+            sd[kind] = known ? drop->sd[kind] : INFINITY;
+        }
+        for (int k = 0; k < drop->samples; k++) {
+            measured[SF_FIT_SAMPLES + k] = drop->sample_value[k] / drop->sample_scale;
+            sd[SF_FIT_SAMPLES + k] = drop->sample_sd;
+        }
+    }
+    return SF_OK;
+}
+
+/* ---- surrogate ---- */
+
+/* The joint data stand before the first drop. */
+static int first_row(const sf_drop_fit *fit, int first) {
+    return first == 0 ? 0 : fit->row[first];
+}
+
+/* No value of the drop. */
+static void forget(const sf_drop_fit *fit, int d, double *y) {
+    for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
+        y[k] = NAN;
+}
+
+sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
+                              const double *u, double *y, sf_error *err) {
+    const sf_material material = sf_foam_material(card);
+    sf_material_law law;
+    if (sf_material_law_build(&material, &law, err) != SF_OK)
+        return err->status;
+    if (first == 0)
+        sf_joint_respond(&fit->input->joint, &law, y, err);
+    for (int d = first; d < last && err->status == SF_OK; d++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
+        sf_series curve = {0};
+        sf_columns_figures figures;
+        sf_columns columns = fit->columns[d];
+        if (drop->predicted && columns.count == 0) { /* its simulation failed before the pad was touched */
+            forget(fit, d, y);
+            continue;
+        }
+        if (u && fit->speed[d] >= 0)
+            columns.speed *= exp(u[fit->speed[d]]);
+        if (sf_columns_respond(&columns, &law, &figures, &curve, err) == SF_OK &&
+            respond(drop, &figures, &curve, &y[fit->row[d]], err) == SF_OK)
+            check_values(drop, &y[fit->row[d]], "its columns end", "this foam does not let go", err);
+        sf_series_free(&curve);
+        if (drop->predicted && err->status == SF_ERR_NUMERIC) { /* the foam may be too soft for this one */
+            *err = (sf_error)SF_ERROR_INIT;
+            forget(fit, d, y);
+        }
+    }
+    sf_material_law_free(&law);
+    return err->status;
+}
+
+/* Of the program, the start material with the form of its curve, and the samples. */
+static uint64_t hash_inputs(const sf_drop_fit *fit) {
+    const sf_fit_input *in = fit->input;
+    sf_foam_card base = in->form.base;
+    const sf_material material = sf_foam_material(&base);
+    uint64_t hash = sf_hash(SF_HASH_START, &fit->memory->program, sizeof fit->memory->program);
+    hash = sf_material_hash(hash, &material);
+    hash = sf_hash(hash, in->form.curve->name, strlen(in->form.curve->name));
+    hash = sf_hash(hash, &in->form.solid_density, sizeof in->form.solid_density);
+    hash = sf_hash(hash, in->start, sizeof in->start);
+    hash = sf_hash(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
+    hash = sf_joint_hash(hash, &in->joint);
+    for (int d = 0; d < in->drop_count; d++) {
+        const sf_fit_drop *drop = &in->drop[d];
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) { /* which must be defined */
+            bool known = !isnan(drop->value[kind]);
+            hash = sf_hash(hash, &known, sizeof known);
+        }
+        hash = sf_hash(hash, &drop->samples, sizeof drop->samples);
+        hash = sf_hash(hash, &drop->sample_scale, sizeof drop->sample_scale);
+        hash = sf_hash(hash, &drop->sample_class, sizeof drop->sample_class);
+        hash = sf_hash(hash, drop->sample_time, (size_t)drop->samples * sizeof *drop->sample_time);
+    }
+    return hash;
+}
+
+static uint64_t hash_columns(uint64_t hash, const sf_columns *c) {
+    const double missile[] = {c->mass, c->speed, c->thickness};
+    hash = sf_hash(hash, missile, sizeof missile);
+    hash = sf_hash(hash, &c->count, sizeof c->count);
+    hash = sf_hash(hash, c->area, (size_t)c->count * sizeof *c->area);
+    return sf_hash(hash, c->gap, (size_t)c->count * sizeof *c->gap);
+}
+
+enum { AS_GIVEN = -2, NOWHERE = -1 }; /* in place of the bin in which the curve is raised */
+
+/* Key of the responses of drops `first` to `last` - 1; 0 without a memory. */
+static uint64_t key_of(const sf_drop_fit *fit, int first, int last, int bin, const double *u) {
+    const int which[] = {first, last, bin, fit->parameters};
+    if (!fit->memory)
+        return 0;
+    uint64_t hash = sf_hash(fit->inputs, which, sizeof which);
+    hash = sf_hash(hash, u, (size_t)fit->parameters * sizeof *u);
+    hash = sf_hash(hash, &fit->speed[first], (size_t)(last - first) * sizeof *fit->speed);
+    for (int d = first; d < last; d++)
+        hash = hash_columns(hash, &fit->columns[d]);
+    return hash;
+}
+
+static sf_status columns_at(const sf_drop_fit *fit, int first, int last, const double *u, double *y,
+                            sf_error *err) {
+    sf_foam_card card;
+    int begin = first_row(fit, first);
+    size_t count = (size_t)(fit->row[last] - begin);
+    uint64_t key = key_of(fit, first, last, AS_GIVEN, u);
+    if (sf_fit_memory_find(fit->memory, key, count, &y[begin]))
+        return SF_OK;
+    if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
+        return err->status;
+    if (sf_drop_fit_respond(fit, first, last, &card, u, y, err) == SF_OK)
+        sf_fit_memory_add(fit->memory, key, count, &y[begin]);
+    sf_foam_card_free(&card);
+    return err->status;
+}
+
+static sf_status surrogate(void *context, const double *u, double *y, sf_error *err) {
+    const sf_drop_fit *fit = context;
+    return columns_at(fit, 0, fit->measured_drops, u, y, err);
+}
+
+/* ---- simulation ---- */
+
+static sf_status find_columns(const char *path, sf_columns *columns, sf_error *err) {
+    sf_results r;
+    if (sf_results_open(path, &r, err) != SF_OK)
+        return err->status;
+    sf_columns_build(&r, columns, err);
+    sf_results_close(&r);
+    return err->status;
+}
+
+/* What a coarse drop tells is used for the drop: it must be the same but for the mesh. */
+static sf_status check_coarse(const sf_fit_drop *drop, const sf_columns *a, const sf_columns *b,
+                              sf_error *err) {
+    static const double SLACK = 0.01; /* a coarse surface of the missile begins a little elsewhere */
+    if (fabs(a->thickness / b->thickness - 1) < SLACK && fabs(a->mass / b->mass - 1) < SLACK &&
+        fabs(a->speed / b->speed - 1) < SLACK)
+        return SF_OK;
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "coarse_set makes another drop of %s: %.4g mm thick, %.4g kg and %.4g m/s, in place of %.4g "
+        "mm, %.4g kg and %.4g m/s; it is for a coarser mesh of the same drop",
+        drop->name, 1e3 * a->thickness, a->mass, a->speed, 1e3 * b->thickness, b->mass, b->speed);
+}
+
+/* Of the first simulation; after coarse ones once more. */
+static sf_status find_own_columns(sf_drop_fit *fit, int d, const char *path, sf_error *err) {
+    const sf_columns before = fit->columns[d];
+    bool replaced = fit->borrowed[d] && !fit->coarse;
+    if (before.count > 0 && !replaced)
+        return SF_OK;
+    fit->borrowed[d] = fit->coarse;
+    if (find_columns(path, &fit->columns[d], err) == SF_OK && replaced)
+        check_coarse(&fit->input->drop[d], &before, &fit->columns[d], err);
+    return err->status;
+}
+
+/* Responses of a simulated drop; takes its curve. */
+static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, double *y, sf_error *err) {
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    if (result->grade == SF_GRADE_DO_NOT_USE && !drop->predicted)
+        return SF_FAIL(err, SF_ERR_NUMERIC, "the fit does not go through the drop %s: %.800s", drop->name,
+                       result->verdict);
+    sf_fit_simulated *last = &fit->simulated[d];
+    if (find_own_columns(fit, d, result->path, err) != SF_OK)
+        return err->status;
+    const sf_columns_figures figures = {.a_max_g = result->a_max_g,
+                                        .hic = result->hic,
+                                        .hic_window = result->hic_window,
+                                        .v_rebound = result->v_rebound,
+                                        .contact_time = result->contact_time};
+    if (respond(drop, &figures, &result->curve, &y[fit->row[d]], err) == SF_OK)
+        check_values(drop, &y[fit->row[d]], "its simulation ends", "raise solver.end_time of its case", err);
+    sf_series_free(&last->curve);
+    *last = (sf_fit_simulated){.max_local_strain = result->max_local_strain,
+                               .energy_error = result->energy_error,
+                               .grade = result->grade,
+                               .curve = result->curve};
+    snprintf(last->verdict, sizeof last->verdict, "%s", result->verdict);
+    result->curve = (sf_series){0};
+    return err->status;
+}
+
+/* The columns of a drop whose simulation failed: of its first instants, as they are in every simulation. */
+static void find_columns_early(sf_drop_fit *fit, int d, const char *material) {
+    sf_runner_drop request = {.label = fit->input->drop[d].name,
+                              .case_path = fit->input->drop[d].case_path,
+                              .material = material,
+                              .override_count = 1,
+                              .overrides = {"solver.end_time=2 ms"}};
+    sf_runner quiet = *fit->runner;
+    sf_runner_result result = {0};
+    sf_error none = SF_ERROR_INIT;
+    quiet.log = NULL;
+    if (sf_runner_run(&quiet, &request, &result, &none) == SF_OK)
+        find_columns(result.path, &fit->columns[d], &none);
+    sf_runner_result_free(&result);
+}
+
+/* A predicted drop without a figure, and why. */
+static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const char *material, double *y) {
+    sf_fit_simulated *s = &fit->simulated[d];
+    if (!sf_process_stopped() && fit->columns[d].count == 0)
+        find_columns_early(fit, d, material);
+    if (s->curve.count == 0) /* it did not end */
+        *s = (sf_fit_simulated){.max_local_strain = NAN, .energy_error = NAN, .grade = SF_GRADE_DO_NOT_USE};
+    snprintf(s->failure, sizeof s->failure, "%s", sentence);
+    if (!*s->verdict)
+        snprintf(s->verdict, sizeof s->verdict, "%.400s", sentence);
+    forget(fit, d, y);
+    if (fit->log) {
+        fprintf(fit->log, "  %-24s no prediction by simulation: %s\n", fit->input->drop[d].name, sentence);
+        fflush(fit->log);
+    }
+}
+
+/* Predicted drops side by side with a material file: one that fails is marked, the others go on. */
+static sf_status predict_with(sf_drop_fit *fit, int first, int last, const char *material, double *y,
+                              sf_error *err) {
+    sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
+    sf_runner_result result[SF_FIT_MAX_DROPS];
+    sf_error failure[SF_FIT_MAX_DROPS];
+    for (int d = first; d < last; d++)
+        request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
+                                              .case_path = fit->input->drop[d].case_path,
+                                              .material = material};
+    sf_runner_run_each(fit->runner, last - first, request, result, failure, err);
+    for (int d = first; d < last; d++) {
+        sf_error *own = &failure[d - first];
+        if (err->status == SF_OK && own->status == SF_OK)
+            take_drop(fit, d, &result[d - first], y, own);
+        if (err->status == SF_OK && own->status == SF_OK && fit->simulated[d].grade == SF_GRADE_DO_NOT_USE)
+            mark_failure(fit, d, fit->simulated[d].verdict, material, y);
+        else if (err->status == SF_OK && (own->status == SF_ERR_NUMERIC || own->status == SF_ERR_MODEL))
+            mark_failure(fit, d, own->text, material, y);
+        else if (err->status == SF_OK)
+            *err = *own;
+        sf_runner_result_free(&result[d - first]);
+    }
+    return err->status;
+}
+
+/* Drops `first` to `last` - 1 side by side with a material file. */
+static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char *material, double *y,
+                               sf_error *err) {
+    sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
+    sf_runner_result result[SF_FIT_MAX_DROPS];
+    for (int d = first; d < last; d++) {
+        request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
+                                              .case_path = fit->input->drop[d].case_path,
+                                              .material = material,
+                                              .override_count = fit->coarse ? fit->input->coarse_count : 0};
+        memcpy(request[d - first].overrides, fit->input->coarse, sizeof fit->input->coarse);
+    }
+    sf_runner_run_batch(fit->runner, last - first, request, result, err);
+    for (int d = first; d < last; d++) {
+        if (err->status == SF_OK)
+            take_drop(fit, d, &result[d - first], y, err);
+        sf_runner_result_free(&result[d - first]);
+    }
+    return err->status;
+}
+
+/* What a case refuses is no foam to simulate: a step that leads there is too long. */
+static sf_status check_card(const sf_fit_input *in, const double *u, const sf_foam_card *card,
+                            sf_error *err) {
+    static const double ROUNDING = 1e-12;
+    sf_error inner = SF_ERROR_INIT;
+    double value[SF_PARAMETER_COUNT];
+    values_of(in, u, value);
+    value[SF_PARAMETER_HU] = card->hysteresis_hu; /* no more than 1 in the card */
+    for (int k = 0; k < in->unknown_count; k++) {
+        const sf_parameter_info *about = sf_parameter_get(in->unknown[k]);
+        double v = value[in->unknown[k]];
+        if (!(v >= about->low * (1 - ROUNDING) && v <= about->high * (1 + ROUNDING)))
+            return SF_FAIL(err, SF_ERR_NUMERIC, "%s is %g, outside %g to %g", about->name, v, about->low,
+                           about->high);
+    }
+    if (sf_foam_check_shared(card, &inner) != SF_OK)
+        return SF_FAIL(err, SF_ERR_NUMERIC, "%s", inner.text);
+    return SF_OK;
+}
+
+/* Drops `first` to `last` - 1 with the material of u, which is written beside the drops' folders. */
+static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const char *name, const double *u,
+                                double *y, sf_error *err) {
+    sf_foam_card card;
+    char path[PATH_MAX];
+    const sf_material_text text = {.title = "An iterate of softfall-fit drop.", .provenance = ""};
+    snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
+    if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
+        return err->status;
+    card.informed_strain = 0; /* that of the start says nothing about an iterate */
+    const sf_material material = sf_foam_material(&card);
+    if (check_card(fit->input, u, &card, err) == SF_OK)
+        sf_material_write(fit->folder, name, &material, &text, err);
+    sf_foam_card_free(&card);
+    if (err->status == SF_OK && last > first && fit->input->drop[first].predicted)
+        predict_with(fit, first, last, path, y, err);
+    else if (err->status == SF_OK && last > first)
+        simulate_with(fit, first, last, path, y, err);
+    if (err->status == SF_OK && first == 0) /* the joint data need no simulation */
+        columns_at(fit, 0, 0, u, y, err);
+    return err->status;
+}
+
+/* Adds the effect of the speeds in u, by columns. */
+static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, sf_error *err) {
+    double given[SF_MAPPING_MAX_PARAMETERS] = {0};
+    unsigned long n = (unsigned long)fit->row[fit->measured_drops];
+    double *with = sf_alloc(err, n, sizeof *with, "responses"),
+           *without = sf_alloc(err, n, sizeof *with, "responses");
+    memcpy(given, u, (size_t)fit->input->unknown_count * sizeof *u);
+    if (err->status == SF_OK && surrogate((void *)fit, u, with, err) == SF_OK &&
+        surrogate((void *)fit, given, without, err) == SF_OK)
+        for (unsigned long k = 0; k < n; k++)
+            y[k] += with[k] - without[k];
+    free(with);
+    free(without);
+    return err->status;
+}
+
+static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
+    sf_drop_fit *fit = context;
+    char name[SF_FIT_NAME_SIZE];
+    snprintf(name, sizeof name, "%s-%02d", fit->coarse ? "coarse" : "iterate", fit->iteration++);
+    if (simulate_drops(fit, 0, fit->measured_drops, name, u, y, err) != SF_OK)
+        return err->status;
+    return add_speeds(fit, u, y, err);
+}
+
+static void report_progress(void *context, int iteration, const double *u, const double *y,
+                            double objective) {
+    const sf_drop_fit *fit = context;
+    (void)y;
+    if (!fit->log)
+        return;
+    fprintf(fit->log, "%siteration %d: objective %.4g;", fit->coarse ? "coarse " : "", iteration, objective);
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        const sf_parameter_info *p = sf_parameter_get(fit->input->unknown[k]);
+        fprintf(fit->log, " %s %.4g%s%s", p->name, exp(u[k]) / p->per_unit, *p->unit ? " " : "", p->unit);
+    }
+    fputc('\n', fit->log);
+    fflush(fit->log);
+}
+
+/* ---- conclusions from the result ---- */
+
+/* Each measured drop predicted from the others with the corrected surrogate. */
+static sf_status leave_one_out(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_error *err) {
+    const sf_fit_input *in = fit->input;
+    size_t n = (size_t)problem->responses;
+    double u[SF_MAPPING_MAX_PARAMETERS];
+    double *sd = sf_alloc(err, n, sizeof *sd, "responses"), *y = sf_alloc(err, n, sizeof *y, "responses");
+    bool others = fit->measured_drops > 1 || in->joint.rows > 0;
+    for (int k = 0; k < fit->row[in->drop_count]; k++)
+        fit->without[k] = NAN;
+    for (int d = 0; d < fit->measured_drops && others && err->status == SF_OK; d++) {
+        memcpy(sd, fit->sd, n * sizeof *sd);
+        for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
+            sd[k] = INFINITY;
+        if (sf_mapping_refit(problem, &fit->result, sd, u, y, err) == SF_OK)
+            memcpy(&fit->without[fit->row[d]], &y[fit->row[d]],
+                   (size_t)(fit->row[d + 1] - fit->row[d]) * sizeof *y);
+    }
+    free(sd);
+    free(y);
+    return err->status;
+}
+
+/* sqrt(g^T C g); NaN of a response whose columns fail. */
+static double deviation(const sf_drop_fit *fit, const double *gradient) {
+    double sum = 0;
+    for (int j = 0; j < fit->parameters; j++)
+        for (int k = 0; k < fit->parameters; k++)
+            sum += gradient[j] * fit->result.covariance[j][k] * gradient[k];
+    return isnan(sum) ? NAN : sqrt(fmax(0, sum));
+}
+
+static double stress_at(const sf_foam_card *card, double strain) {
+    sf_error none = SF_ERROR_INIT;
+    sf_curve curve;
+    double stress = NAN, slope, energy;
+    if (sf_curve_build(card, 0, &curve, &none) == SF_OK)
+        sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
+    sf_curve_free(&curve);
+    return stress;
+}
+
+/* Standard deviations of the curve in the bins, from the parameters' after and before the data. */
+static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
+    static const double step = 1e-3;
+    const sf_fit_input *in = fit->input;
+    double gradient[SF_FIT_STRAIN_BINS][SF_MAPPING_MAX_PARAMETERS] = {{0}}, u[SF_MAPPING_MAX_PARAMETERS];
+    for (int j = 0; j < in->unknown_count; j++) {
+        sf_foam_card low, high;
+        memcpy(u, fit->result.u, sizeof u);
+        u[j] += step;
+        if (sf_drop_fit_card(in, u, &high, err) != SF_OK)
+            return err->status;
+        u[j] -= 2 * step;
+        if (sf_drop_fit_card(in, u, &low, err) == SF_OK)
+            for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+                double strain = (b + 0.5) * BIN_WIDTH;
+                gradient[b][j] = log(stress_at(&high, strain) / stress_at(&low, strain)) / (2 * step);
+            }
+        sf_foam_card_free(&low);
+        sf_foam_card_free(&high);
+        if (err->status != SF_OK)
+            return err->status;
+    }
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+        double prior = 0;
+        for (int j = 0; j < in->unknown_count; j++)
+            prior += pow(gradient[b][j] * in->prior_sd[j], 2);
+        fit->curve_sd[b] = deviation(fit, gradient[b]);
+        fit->curve_prior_sd[b] = sqrt(prior);
+    }
+    return err->status;
+}
+
+static const double RAISE = 0.05; /* of the stress, by a hat over one bin */
+
+/* Responses of the columns with the curve raised in bin `b`, or NOWHERE. */
+static sf_status respond_raised(const sf_drop_fit *fit, int b, double *y, sf_error *err) {
+    sf_foam_card card;
+    size_t count = (size_t)fit->row[fit->measured_drops];
+    uint64_t key = key_of(fit, 0, fit->measured_drops, b, fit->result.u);
+    if (sf_fit_memory_find(fit->memory, key, count, y))
+        return SF_OK;
+    if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) != SF_OK)
+        return err->status;
+    sf_foam_card_resample(&card, err);
+    for (int64_t k = 0; k < card.curve_points && b >= 0; k++) {
+        double away = fabs(card.curve_strain[k] - (b + 0.5) * BIN_WIDTH) / BIN_WIDTH;
+        card.curve_stress[k] *= 1 + RAISE * fmax(0, 1 - away);
+    }
+    if (err->status == SF_OK &&
+        sf_drop_fit_respond(fit, 0, fit->measured_drops, &card, NULL, y, err) == SF_OK)
+        sf_fit_memory_add(fit->memory, key, count, y);
+    sf_foam_card_free(&card);
+    return err->status;
+}
+
+/* How much do the measured responses change with the curve in each bin? */
+static sf_status locate_information(sf_drop_fit *fit, sf_error *err) {
+    size_t n = (size_t)fit->row[fit->measured_drops];
+    double *y = sf_alloc(err, n, sizeof *y, "responses"), *base = sf_alloc(err, n, sizeof *base, "responses");
+    if (err->status == SF_OK)
+        respond_raised(fit, NOWHERE, base, err);
+    for (int b = 0; b < SF_FIT_STRAIN_BINS && err->status == SF_OK; b++) {
+        respond_raised(fit, b, y, err);
+        for (size_t k = 0; k < n; k++)
+            fit->information[b] += isinf(fit->sd[k]) ? 0 : pow((y[k] - base[k]) / (RAISE * fit->sd[k]), 2);
+    }
+    free(y);
+    free(base);
+    return err->status;
+}
+
+/* Gradient of the predictions by central differences of the columns. */
+static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
+    static const double step = 1e-3;
+    const sf_fit_input *in = fit->input;
+    int first = fit->row[fit->measured_drops], last = fit->row[in->drop_count];
+    double u[SF_MAPPING_MAX_PARAMETERS];
+    double *high = sf_alloc(err, (unsigned long)last, sizeof *high, "responses"),
+           *low = sf_alloc(err, (unsigned long)last, sizeof *low, "responses");
+    for (int j = 0; j < in->unknown_count && err->status == SF_OK; j++) {
+        memcpy(u, fit->result.u, sizeof u);
+        u[j] += step;
+        if (columns_at(fit, fit->measured_drops, in->drop_count, u, high, err) != SF_OK)
+            break;
+        u[j] -= 2 * step;
+        if (columns_at(fit, fit->measured_drops, in->drop_count, u, low, err) != SF_OK)
+            break;
+        for (int k = first; k < last; k++)
+            fit->gradient[k * fit->parameters + j] = (high[k] - low[k]) / (2 * step);
+    }
+    free(high);
+    free(low);
+    return err->status;
+}
+
+/* The measured drops with the best parameters, which the runner still has, and the predicted ones. */
+static sf_status finish(sf_drop_fit *fit, sf_error *err) {
+    const sf_fit_input *in = fit->input;
+    int n = fit->parameters;
+    FILE *log = fit->runner->log;
+    fit->runner->log = NULL;
+    simulate_drops(fit, 0, fit->measured_drops, "result", fit->result.u, fit->y, err);
+    fit->runner->log = log;
+    if (err->status != SF_OK ||
+        simulate_drops(fit, fit->measured_drops, in->drop_count, "result", fit->result.u, fit->y, err) !=
+            SF_OK ||
+        differentiate_predictions(fit, err) != SF_OK)
+        return err->status;
+    memcpy(fit->gradient, fit->result.corrected,
+           (size_t)(fit->row[fit->measured_drops] * n) * sizeof *fit->gradient);
+    for (int k = 0; k < fit->row[in->drop_count]; k++)
+        fit->response_sd[k] = deviation(fit, &fit->gradient[k * n]);
+    return SF_OK;
+}
+
+static sf_status conclude(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_error *err) {
+    if (leave_one_out(fit, problem, err) != SF_OK || bound_curve(fit, err) != SF_OK)
+        return err->status;
+    return locate_information(fit, err);
+}
+
+/* The coarse drops cost little and differ from the drops by a correction that hardly changes with the foam:
+ * the fit through them tells `problem` where to begin. If they cannot be used it begins at the start. */
+static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_mapping_result *coarse,
+                              sf_error *err) {
+    sf_error failure = SF_ERROR_INIT;
+    fit->coarse = true;
+    sf_mapping_solve(problem, coarse, &failure);
+    fit->coarse = false;
+    fit->iteration = 0;
+    if (failure.status == SF_OK) {
+        fit->coarse_iterations = coarse->iterations;
+        problem->first_offset = coarse->offset;
+        problem->first_point = coarse->u;
+        problem->first_matrix = coarse->matrix;
+        return SF_OK;
+    }
+    if (failure.status != SF_ERR_NUMERIC && failure.status != SF_ERR_MODEL)
+        return SF_FAIL(err, failure.status, "coarse_set: %.800s", failure.text);
+    if (fit->log) {
+        fprintf(fit->log, "coarse_set is left out, its drops cannot be used: %s\n", failure.text);
+        fflush(fit->log);
+    }
+    return SF_OK;
+}
+
+sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
+    const sf_fit_input *in = fit->input;
+    double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS];
+    if (list_data(fit, err) != SF_OK)
+        return err->status;
+    fit->inputs = fit->memory ? hash_inputs(fit) : 0;
+    if (fit->earlier)
+        memcpy(fit->columns, fit->earlier->columns, sizeof fit->columns);
+    for (int k = 0; k < in->unknown_count; k++) {
+        start[k] = log(in->prior[k]);
+        prior_sd[k] = in->prior_sd[k];
+    }
+    for (int d = 0; d < in->drop_count; d++)
+        if (fit->speed[d] >= 0)
+            prior_sd[fit->speed[d]] = in->drop[d].speed_sd;
+    sf_mapping_result coarse = {0};
+    sf_mapping_problem problem = {.parameters = fit->parameters,
+                                  .responses = fit->row[fit->measured_drops],
+                                  .start = start,
+                                  .prior = start,
+                                  .prior_sd = prior_sd,
+                                  .first_offset = fit->earlier ? fit->earlier->result.offset : NULL,
+                                  .measured = fit->measured,
+                                  .sd = fit->sd,
+                                  .surrogate = surrogate,
+                                  .simulate = simulate,
+                                  .context = fit,
+                                  .max_iterations = MAX_ITERATIONS,
+                                  .tolerance = TOLERANCE,
+                                  .progress = report_progress};
+    if (in->coarse_count > 0 && !fit->earlier)
+        begin_coarse(fit, &problem, &coarse, err);
+    if (err->status == SF_OK && sf_mapping_solve(&problem, &fit->result, err) == SF_OK &&
+        finish(fit, err) == SF_OK)
+        conclude(fit, &problem, err);
+    sf_mapping_free(&coarse);
+    return err->status;
+}
+
+void sf_drop_fit_free(sf_drop_fit *fit) {
+    for (int d = 0; d < SF_FIT_MAX_DROPS; d++)
+        sf_series_free(&fit->simulated[d].curve);
+    sf_mapping_free(&fit->result);
+    free(fit->y);
+    free(fit->gradient);
+    free(fit->measured);
+    free(fit->sd);
+    free(fit->without);
+    free(fit->response_sd);
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Identification of a foam from drops: responses, surrogate and simulation of a sf_fit_input for space
+ * mapping, and the conclusions from the result.
+ *
+ * Scaled variables: u = ln(value / SI unit) of the unknown parameters; responses per drop: logarithms
+ * of the numbers of kinds.h, then the samples of a measured curve over its peak. Measured or not, every drop
+ * has the numbers; one that is not defined (no rebound within the end time) and was not measured is NaN. */
+#ifndef SF_FIT_DROP_FIT_H
+#define SF_FIT_DROP_FIT_H
+
+#include "study/runner.h"
+#include "study/column.h"
+#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/memory.h"
+#include "study/fit/space_mapping.h"
+
+enum { SF_FIT_STRAIN_BINS = 19 }; /* 0.05 wide, from 0 to 0.95 */
+
+/* The last simulation of each drop. */
+typedef struct sf_fit_simulated {
+    double max_local_strain, energy_error;
+    sf_grade grade;
+    char verdict[SF_VERDICT_LINE_SIZE]; /* its sentence */
+    /* of a predicted drop whose simulation ended without a result that may be used: why; its responses are
+     * NaN. Empty: none */
+    char failure[512];
+    sf_series curve; /* s, g; owned */
+} sf_fit_simulated;
+
+typedef struct sf_drop_fit {
+    const sf_fit_input *input;
+    sf_runner *runner;
+    const char *folder; /* for the materials of the iterates; borrowed */
+    FILE *log;          /* progress; NULL: silent */
+    /* a finished fit of another model to the same data, whose correction the first iterate takes; NULL: none
+     */
+    const struct sf_drop_fit *earlier;
+    sf_fit_memory *memory; /* of the columns' responses; borrowed; NULL: none */
+
+    /* out */
+    uint64_t inputs; /* hash of what all responses of columns depend on */
+    /* first response of each drop, and their number; before them those of the joint data, then measured
+     * drops */
+    int row[SF_FIT_MAX_DROPS + 1];
+    int measured_drops;
+    int parameters;              /* unknown parameters of the foam, then speeds */
+    int speed[SF_FIT_MAX_DROPS]; /* index of the drop's speed among them; -1: it is known */
+    double *measured, *sd;       /* [responses] scaled; sd INFINITY where nothing was measured; owned */
+    sf_columns columns[SF_FIT_MAX_DROPS];
+    bool borrowed[SF_FIT_MAX_DROPS]; /* columns of the coarse drop, until the drop itself was simulated */
+    sf_fit_simulated simulated[SF_FIT_MAX_DROPS];
+    bool coarse;           /* now: the drops have the input's coarse_set */
+    int coarse_iterations; /* of the first part; 0: there was none */
+    int iteration;
+    sf_mapping_result result; /* of the measured drops */
+    double *y;                /* [responses] of the simulations with the result; owned */
+    double *gradient; /* [responses][parameters] by the parameters: corrected columns, for predictions plain;
+                         owned */
+    double *response_sd; /* [responses] standard deviation by the parameters; owned */
+    /* [responses] each measured drop predicted by the others; NaN if there are none; owned */
+    double *without;
+    /* information of the drops about the curve, by strain bin: sum over the data of (d response / d ln sigma
+     * / sd)^2 */
+    double information[SF_FIT_STRAIN_BINS];
+    double curve_sd[SF_FIT_STRAIN_BINS];       /* of ln sigma in the bin's middle */
+    double curve_prior_sd[SF_FIT_STRAIN_BINS]; /* the same before the data */
+} sf_drop_fit;
+
+/* Fits. `fit` holds input, runner, folder, log and memory. Release with sf_drop_fit_free, also on failure. */
+sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err);
+void sf_drop_fit_free(sf_drop_fit *fit);
+
+/* Responses of drops `first` to `last` - 1 by columns of this foam into y [responses]; `u` has the speeds,
+ * NULL: as given. Reads the fit only: for several threads at a time. */
+sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
+                              const double *u, double *y, sf_error *err);
+
+/* The card of scaled parameters u, for every other parameter the start. */
+sf_status sf_drop_fit_card(const sf_fit_input *input, const double *u, sf_foam_card *card, sf_error *err);
+
+#endif

@@ -1,0 +1,508 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/program.h"
+#include "study/fit/drop/fit_input.h"
+
+#include "study/config.h"
+#include "io/plain_file.h"
+#include "case/case.h"
+#include "material/foam.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- drops ---- */
+
+static sf_status read_drops(const sf_config *config, const config_setting_t *root, const char *name,
+                            bool predicted, sf_fit_input *in, sf_error *err) {
+    const config_setting_t *list;
+    bool required = !predicted && in->joint.rows == 0;
+    if (sf_config_list(config, root, name, required, SF_FIT_MAX_DROPS - in->drop_count, &list, err) != SF_OK)
+        return err->status;
+    for (int k = 0; list && k < config_setting_length(list); k++) {
+        const config_setting_t *group = config_setting_get_elem(list, (unsigned)k);
+        int count = in->drop_count++; /* it is released with the input, read or not */
+        SF_TRY(sf_drop_input_read(config, group, predicted, count, in->drop, err));
+    }
+    return SF_OK;
+}
+
+/* What the first iterations change: keys of the discretisation. */
+static sf_status read_coarse(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                             sf_error *err) {
+    static const char *const groups[] = {"geometry.", "pad.", "solver."};
+    const config_setting_t *list = config_setting_get_member(root, "coarse_set");
+    SF_TRY(
+        sf_config_overrides(config, "coarse_set", SF_RUNNER_OVERRIDES, in->coarse, &in->coarse_count, err));
+    if (in->coarse_count > 0 && in->drop_count == 0)
+        return sf_config_refuse(config, list, err, "coarse_set is given, but no measured drop to simulate");
+    for (int k = 0; k < in->coarse_count; k++) {
+        bool allowed = false;
+        for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
+            allowed = allowed || strncmp(in->coarse[k], groups[g], strlen(groups[g])) == 0;
+        if (!allowed)
+            return sf_config_refuse(config, config_setting_get_elem(list, (unsigned)k), err,
+                                    "coarse_set: \"%.80s\" is no key of geometry, pad or solver: the first "
+                                    "iterations have a coarser mesh, and nothing else",
+                                    in->coarse[k]);
+    }
+    return SF_OK;
+}
+
+/* ---- material and parameters ---- */
+
+/* Where the material has no rate factor: the slowest compression test, as below the reference the law has no
+ * effect of the rate. */
+static void start_reference(sf_fit_input *in) {
+    double *reference = &in->start[SF_PARAMETER_RATE_REFERENCE];
+    for (int t = 0; t < in->joint.test_count && !(in->form.base.rate_factor > 0); t++)
+        *reference = fmin(*reference, in->joint.test[t].rate);
+}
+
+/* The density of the solid, and with it the start values. */
+static sf_status read_solid(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                            sf_error *err) {
+    sf_error inner = SF_ERROR_INIT;
+    SF_TRY(sf_config_quantity(config, root, "solid_density", SF_DENSITY, false, 0, &in->form.solid_density,
+                              err));
+    if (in->form.solid_density > 0 && sf_foam_form_check_solid(&in->form, &inner) != SF_OK)
+        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err, "%s",
+                                inner.text);
+    sf_foam_form_start(&in->form, in->start);
+    start_reference(in);
+    return SF_OK;
+}
+
+/* The group that describes the model: an entry of `forms`, or the whole file. */
+static const config_setting_t *model_of(const config_setting_t *root, const sf_fit_input *in) {
+    const config_setting_t *list = config_setting_get_member(root, "forms");
+    return list ? config_setting_get_elem(list, (unsigned)in->model) : root;
+}
+
+static bool starts_solid_fraction(const config_setting_t *holder) {
+    const config_setting_t *start = config_setting_get_member(holder, "start");
+    return start && config_setting_get_member(start, "solid_fraction");
+}
+
+/* gas_solid needs the solid fraction: by density, given, or sought. */
+static sf_status check_solid_fraction(const sf_config *config, const config_setting_t *root,
+                                      const sf_fit_input *in, sf_error *err) {
+    const config_setting_t *model = model_of(root, in);
+    bool dense = in->form.solid_density > 0,
+         given = starts_solid_fraction(root) || starts_solid_fraction(model), known = dense || given;
+    for (int k = 0; k < in->unknown_count; k++)
+        known = known || in->unknown[k] == SF_PARAMETER_SOLID_FRACTION;
+    if (dense && given)
+        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err,
+                                "the solid fraction is given twice: by solid_density, and as solid_fraction "
+                                "in start");
+    if (dense && model == root && !sf_curve_form_entry(in->form.curve, SF_PARAMETER_SOLID_FRACTION))
+        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err,
+                                "solid_density is given, but curve_form = \"%s\" has no solid fraction",
+                                in->form.curve->name);
+    if (in->form.curve == &sf_form_gas_solid && !known)
+        return sf_config_refuse(config,
+                                config_setting_get_member(model, model == root ? "curve_form" : "curve"), err,
+                                "%s = \"gas_solid\" needs solid_density, the density of the solid in the "
+                                "cell walls, or solid_fraction as an unknown",
+                                model == root ? "curve_form" : "curve");
+    return SF_OK;
+}
+
+/* Only this law's parameters are identified; `first`: the input takes the card with its curves. */
+static sf_status take_material(sf_material *material, bool first, sf_fit_input *in, sf_error *err) {
+    if (material->law != &sf_low_density_foam)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s is of the law %s; the parameters that drops identify are those of %s",
+                       in->material_path, material->law->name, sf_low_density_foam.name);
+    if (first) {
+        in->form.base = *sf_foam_card_of(material);
+        sf_foam_card_of(material)->curves = (sf_law_curves){0};
+    }
+    return SF_OK;
+}
+
+static sf_status read_material_alone(sf_fit_input *in, sf_error *err) {
+    sf_material material;
+    if (sf_case_read_material(in->material_path, &material, err) == SF_OK)
+        take_material(&material, true, in, err);
+    sf_material_free(&material);
+    return err->status;
+}
+
+/* `first`: the input takes its material. */
+static sf_status read_case(const sf_fit_drop *drop, const char *material, bool first, sf_fit_input *in,
+                           sf_error *err) {
+    const sf_sink sink = sf_program_sink("softfall-fit");
+    sf_case c;
+    if (sf_case_read(drop->case_path, 1, &material, &sink, &c, err) == SF_OK) {
+        take_material(&c.material, first, in, err);
+        sf_case_free(&c);
+    }
+    return err->status;
+}
+
+/* As the runner will: the material, then the keys. */
+static sf_status check_coarse(const sf_fit_drop *drop, const char *material, const sf_fit_input *in,
+                              sf_error *err) {
+    sf_error inner = SF_ERROR_INIT;
+    sf_case c;
+    const char *overrides[1 + SF_RUNNER_OVERRIDES] = {material};
+    memcpy(&overrides[1], in->coarse, sizeof in->coarse);
+    if (sf_case_read(drop->case_path, 1 + in->coarse_count, overrides, NULL, &c, &inner) != SF_OK)
+        return SF_FAIL(err, inner.status, "coarse_set: %.800s", inner.text);
+    sf_case_free(&c);
+    return SF_OK;
+}
+
+/* The start material, read as the first drop's case would. */
+static sf_status read_material(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                               sf_error *err) {
+    const char *form = "gas", *name = "material", *title = "Identified foam";
+    const config_setting_t *model = model_of(root, in);
+    char override[4096];
+    if (sf_config_text(config, model, model == root ? "curve_form" : "curve", model != root, &form, err) !=
+            SF_OK ||
+        sf_config_text(config, root, "name", false, &name, err) != SF_OK ||
+        sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
+        sf_config_file(config, root, "material", true, &in->material_path, err) != SF_OK)
+        return err->status;
+    in->form.curve = sf_curve_form_find(form);
+    if (!in->form.curve)
+        return sf_config_refuse(config,
+                                config_setting_get_member(model, model == root ? "curve_form" : "curve"), err,
+                                "%s is \"%.80s\": one of %s is expected",
+                                model == root ? "curve_form" : "curve", form, sf_curve_form_words());
+    if (strpbrk(name, "/\"'\\\n\r") || strncmp(name, "fit", 3) == 0)
+        return sf_config_refuse(
+            config, config_setting_get_member(root, "name"), err,
+            "the name \"%s\" names files: no slashes or quotes, and not fit..., which other files are called",
+            name);
+    if (strlen(name) >= sizeof in->material_name || strlen(title) >= sizeof in->title)
+        return sf_config_refuse(config, root, err, "name or title is longer than %zu and %zu characters",
+                                sizeof in->material_name - 1, sizeof in->title - 1);
+    snprintf(in->material_name, sizeof in->material_name, "%s", name);
+    snprintf(in->title, sizeof in->title, "%s", title);
+    snprintf(override, sizeof override, "material=@%s", in->material_path);
+    if (in->drop_count == 0 && read_material_alone(in, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
+        SF_TRY(read_case(&in->drop[k], override, k == 0, in, err));
+        if (in->coarse_count > 0 && !in->drop[k].predicted)
+            SF_TRY(check_coarse(&in->drop[k], override, in, err));
+    }
+    return read_solid(config, root, in, err);
+}
+
+/* By the model, or, of a start of all models, by one of them. An unknown form is refused by its model. */
+static bool is_used(const config_setting_t *root, const config_setting_t *holder, const sf_fit_input *in,
+                    sf_foam_parameter p) {
+    const config_setting_t *list = config_setting_get_member(root, "forms");
+    bool used = sf_curve_form_uses(in->form.curve, p);
+    for (int m = 0; list && holder == root && m < in->model_count; m++) {
+        const char *name = NULL;
+        config_setting_lookup_string(config_setting_get_elem(list, (unsigned)m), "curve", &name);
+        const sf_curve_form *form = name ? sf_curve_form_find(name) : NULL;
+        used = used || !form || sf_curve_form_uses(form, p);
+    }
+    return used;
+}
+
+static sf_status check_used(const sf_config *config, const config_setting_t *holder,
+                            const config_setting_t *item, const sf_fit_input *in, sf_foam_parameter p,
+                            sf_error *err) {
+    const config_setting_t *root = config_root_setting(&config->config),
+                           *list = config_setting_get_member(root, "forms");
+    const char *name = sf_parameter_get(p)->name;
+    if (is_used(root, holder, in, p))
+        return SF_OK;
+    if (list && holder == root)
+        return sf_config_refuse(config, item, err, "start: %s is a parameter of none of the forms", name);
+    return sf_config_refuse(config, item, err, "start: %s is no parameter of %s = \"%s\"", name,
+                            list ? "curve" : "curve_form", in->form.curve->name);
+}
+
+static sf_status read_start(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
+                            sf_error *err) {
+    const config_setting_t *group = config_setting_get_member(holder, "start");
+    if (!group)
+        return SF_OK;
+    if (!config_setting_is_group(group))
+        return sf_config_refuse(config, group, err, "start must be a group: start: { p0 = \"101 kPa\"; }");
+    for (int k = 0; k < config_setting_length(group); k++) {
+        const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
+        sf_foam_parameter p = sf_parameter_find(config_setting_name(item));
+        if (p == SF_PARAMETER_COUNT)
+            return sf_config_refuse(config, item, err, "\"%.80s\" is no parameter of the foam",
+                                    config_setting_name(item));
+        const sf_parameter_info *about = sf_parameter_get(p);
+        SF_TRY(check_used(config, holder, item, in, p, err));
+        if (about->quantity == SF_QUANTITY_COUNT)
+            sf_config_number(config, group, about->name, true, about->low, about->high, &in->start[p], err);
+        else
+            sf_config_quantity(config, group, about->name, about->quantity, true, about->low, &in->start[p],
+                               err);
+        if (err->status == SF_OK && !(in->start[p] <= about->high))
+            sf_config_refuse(config, item, err, "%s is above %g", about->name, about->high);
+        if (err->status != SF_OK)
+            return err->status;
+    }
+    return SF_OK;
+}
+
+/* The start must make a curve. */
+static sf_status check_start(const sf_config *config, const config_setting_t *root, const sf_fit_input *in,
+                             sf_error *err) {
+    sf_foam_card card;
+    sf_error inner = SF_ERROR_INIT;
+    const config_setting_t *group = config_setting_get_member(root, "start");
+    if (sf_foam_form_card(&in->form, in->start, &card, &inner) != SF_OK)
+        return sf_config_refuse(config, group ? group : root, err, "start: %s", inner.text);
+    sf_foam_card_free(&card);
+    return SF_OK;
+}
+
+/* ---- rate terms ---- */
+
+enum { FACTOR = 1, MAXWELL = 2 };
+
+static const char RATE_WORDS[] = "none|factor|maxwell|both";
+
+/* The term of the rate that the parameter belongs to; 0: none. */
+static int term_of(sf_foam_parameter p) {
+    if (p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE)
+        return FACTOR;
+    return p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1 ? MAXWELL : 0;
+}
+
+/* A parameter of a term that the model's `rate` does not name has no effect. `what`: "start: ED". */
+static sf_status check_term(const sf_config *config, const config_setting_t *item,
+                            const config_setting_t *model, sf_foam_parameter p, const char *what,
+                            sf_error *err) {
+    int rate = -1, term = term_of(p);
+    const char *name = NULL;
+    if (sf_config_choice(config, model, "rate", RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
+        (rate & term) == term)
+        return err->status;
+    SF_TRY(sf_config_text(config, model, "rate", true, &name, err));
+    return sf_config_refuse(config, item, err,
+                            "%s is of the %s, which a model with rate = \"%s\" does not have", what,
+                            term == FACTOR ? "rate factor" : "Maxwell branch", name);
+}
+
+/* The start values of the model alone; those of all models may be for other models. */
+static sf_status check_terms(const sf_config *config, const config_setting_t *model, sf_error *err) {
+    const config_setting_t *group = config_setting_get_member(model, "start");
+    for (int k = 0; group && k < config_setting_length(group); k++) {
+        const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
+        char what[64];
+        snprintf(what, sizeof what, "start: %s", config_setting_name(item));
+        SF_TRY(check_term(config, item, model, sf_parameter_find(config_setting_name(item)), what, err));
+    }
+    return SF_OK;
+}
+
+/* ---- unknowns ---- */
+
+/* One more unknown, with its usual prior; SF_ERR_INPUT names `where` if there are too many. */
+static sf_status put_unknown(const sf_config *config, const config_setting_t *where, sf_fit_input *in,
+                             sf_foam_parameter p, sf_error *err) {
+    int k = in->unknown_count;
+    if (k == SF_FIT_MAX_UNKNOWNS)
+        return sf_config_refuse(config, where, err,
+                                "%s would be one more than %d unknown parameters, which is the most",
+                                sf_parameter_get(p)->name, SF_FIT_MAX_UNKNOWNS);
+    const sf_parameter_info *about = sf_parameter_get(p);
+    if (!(in->start[p] >= about->low && in->start[p] <= about->high))
+        return sf_config_refuse(config, where, err,
+                                "%s is unknown, and starts at %g%s%s; it can be sought from %g to %g",
+                                about->name, in->start[p] / about->per_unit, *about->unit ? " " : "",
+                                about->unit, about->low / about->per_unit, about->high / about->per_unit);
+    in->unknown[k] = p;
+    in->prior[k] = in->start[p];
+    in->prior_sd[k] = sf_foam_form_prior_sd(&in->form, p);
+    in->unknown_count++;
+    return SF_OK;
+}
+
+static sf_status read_unknown(const sf_config *config, const config_setting_t *entry, sf_fit_input *in,
+                              sf_error *err) {
+    const char *name = NULL;
+    if (sf_config_names(config, entry, "name|prior_sd", err) != SF_OK ||
+        sf_config_text(config, entry, "name", true, &name, err) != SF_OK)
+        return err->status;
+    sf_foam_parameter p = sf_parameter_find(name);
+    if (p == SF_PARAMETER_COUNT)
+        return sf_config_refuse(config, entry, err, "\"%.80s\" is no parameter of the foam", name);
+    if (!sf_curve_form_uses(in->form.curve, p))
+        return sf_config_refuse(config, entry, err, "%s is no parameter of curve_form = \"%s\"", name,
+                                in->form.curve->name);
+    for (int k = 0; k < in->unknown_count; k++)
+        if (in->unknown[k] == p)
+            return sf_config_refuse(config, entry, err, "%s is unknown twice", name);
+    SF_TRY(check_term(config, entry, model_of(config_root_setting(&config->config), in), p, name, err));
+    if (p == SF_PARAMETER_RATE_FACTOR)
+        sf_foam_form_start_rate(in->start);
+    if (!(in->start[p] > 0))
+        return sf_config_refuse(config, entry, err,
+                                "%s is 0 in the start material: give a start value, start: { %s = ...; }",
+                                name, name);
+    SF_TRY(put_unknown(config, entry, in, p, err));
+    return sf_config_number(config, entry, "prior_sd", false, 1e-3, 10, &in->prior_sd[in->unknown_count - 1],
+                            err);
+}
+
+static sf_status read_list(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
+                           bool *given, sf_error *err) {
+    const config_setting_t *list;
+    if (sf_config_list(config, holder, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err) != SF_OK)
+        return err->status;
+    *given = list;
+    for (int k = 0; list && k < config_setting_length(list) && err->status == SF_OK; k++)
+        read_unknown(config, config_setting_get_elem(list, (unsigned)k), in, err);
+    return err->status;
+}
+
+static sf_status add_unknown(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+                             sf_foam_parameter p, sf_error *err) {
+    for (int k = 0; k < in->unknown_count; k++)
+        if (in->unknown[k] == p)
+            return SF_OK;
+    if (!(in->start[p] > 0)) /* a material without the branch */
+        return SF_OK;
+    return put_unknown(config, model, in, p, err);
+}
+
+/* Without a list: those that are usual for the form. */
+static sf_status add_usual(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+                           sf_error *err) {
+    sf_foam_parameter usual[SF_PARAMETER_COUNT];
+    int count = sf_foam_form_usual(&in->form, usual);
+    for (int k = 0; k < count; k++)
+        SF_TRY(add_unknown(config, model, in, usual[k], err));
+    return SF_OK;
+}
+
+/* The rate terms of an entry of `forms`: those that it names are unknown, the others are not there. */
+static sf_status read_rate(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+                           sf_error *err) {
+    int rate = -1;
+    if (sf_config_choice(config, model, "rate", RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
+        check_terms(config, model, err) != SF_OK)
+        return err->status;
+    if (rate & MAXWELL && !(in->start[SF_PARAMETER_ED] > 0 && in->start[SF_PARAMETER_BETA1] > 0))
+        return sf_config_refuse(config, model, err,
+                                "a Maxwell branch needs ED and BETA1 in the start material or in start");
+    if (rate & FACTOR)
+        sf_foam_form_start_rate(in->start);
+    else
+        in->start[SF_PARAMETER_RATE_FACTOR] = 0;
+    if (!(rate & MAXWELL))
+        in->start[SF_PARAMETER_ED] = 0;
+    return SF_OK;
+}
+
+static sf_status add_rate(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+                          sf_error *err) {
+    SF_TRY(add_unknown(config, model, in, SF_PARAMETER_ED, err));
+    return add_unknown(config, model, in, SF_PARAMETER_RATE_FACTOR, err);
+}
+
+/* The law refuses it too, but only when the material is simulated. */
+static sf_status check_rate_factor(const sf_config *config, const config_setting_t *model,
+                                   const sf_fit_input *in, sf_error *err) {
+    if (in->start[SF_PARAMETER_RATE_FACTOR] > 0 && !in->form.curve->stress && in->form.base.curve_count > 1)
+        return sf_config_refuse(
+            config, model, err,
+            "a rate factor cannot act on the form \"table\" of %s, which has %lld curves at "
+            "several rates; a foam has one or the other",
+            in->material_path, (long long)in->form.base.curve_count);
+    return SF_OK;
+}
+
+/* Of an entry of `forms`: those that the file lists for all models, and its own or those usual for the form,
+ * with the rate terms that it names. */
+static sf_status read_unknowns(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                               sf_error *err) {
+    const config_setting_t *model = model_of(root, in);
+    bool common = false, own = false;
+    if (read_list(config, root, in, &common, err) != SF_OK ||
+        (model != root && read_list(config, model, in, &own, err) != SF_OK))
+        return err->status;
+    if (model == root ? !common : !own)
+        SF_TRY(add_usual(config, model, in, err));
+    if (config_setting_get_member(model, "rate"))
+        SF_TRY(add_rate(config, model, in, err));
+    SF_TRY(check_rate_factor(config, model, in, err));
+    return check_solid_fraction(config, root, in, err);
+}
+
+static sf_status read_options(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                              sf_error *err) {
+    double seed = 1;
+    const config_setting_t *list;
+    in->posterior = true;
+    if (sf_config_number(config, root, "seed", false, 0, 1e9, &seed, err) != SF_OK ||
+        sf_config_flag(config, root, "posterior", &in->posterior, err) != SF_OK ||
+        sf_config_list(config, root, "forms", false, SF_FIT_MAX_MODELS, &list, err) != SF_OK)
+        return err->status;
+    in->seed = (uint64_t)seed;
+    in->model_count = list ? config_setting_length(list) : 1;
+    if (list && config_setting_get_member(root, "curve_form"))
+        return sf_config_refuse(config, list, err, "give either forms or curve_form");
+    if (list && !in->posterior)
+        return sf_config_refuse(config, list, err,
+                                "several forms are compared by their posteriors: posterior must be true");
+    for (int k = 0; k < in->model_count && list && err->status == SF_OK; k++)
+        sf_config_names(config, config_setting_get_elem(list, (unsigned)k), "curve|rate|start|unknown", err);
+    return err->status;
+}
+
+/* Start values of all models, then the model's own. The curve's medians follow the modulus and the solid
+ * fraction, so where these are given the others are read again. */
+static sf_status read_starts(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                             sf_error *err) {
+    const config_setting_t *model = model_of(root, in);
+    for (int pass = 0; pass < 2; pass++) {
+        if (pass == 1)
+            in->form.curve->start(in->start);
+        SF_TRY(read_start(config, root, in, err));
+        if (model != root)
+            SF_TRY(read_start(config, model, in, err));
+    }
+    if (model != root)
+        SF_TRY(read_rate(config, model, in, err));
+    return check_start(config, model, in, err);
+}
+
+sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_error *err) {
+    sf_config config;
+    *in = (sf_fit_input){.model = model};
+    if (sf_config_open(path, &config, err) == SF_OK &&
+        sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err) == SF_OK) {
+        const config_setting_t *root = config_root_setting(&config.config);
+        if (sf_config_names(&config, root,
+                            "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
+                            "seed|posterior|compressions|cushions|coarse_set",
+                            err) == SF_OK &&
+            read_options(&config, root, in, err) == SF_OK &&
+            sf_joint_read(&config, root, &in->joint, err) == SF_OK &&
+            read_drops(&config, root, "drops", false, in, err) == SF_OK &&
+            read_coarse(&config, root, in, err) == SF_OK &&
+            read_drops(&config, root, "predict", true, in, err) == SF_OK &&
+            read_material(&config, root, in, err) == SF_OK && read_starts(&config, root, in, err) == SF_OK)
+            read_unknowns(&config, root, in, err);
+    }
+    sf_config_close(&config);
+    return err->status;
+}
+
+void sf_fit_input_free(sf_fit_input *in) {
+    for (int k = 0; k < in->drop_count; k++)
+        sf_drop_input_free(&in->drop[k]);
+    for (int k = 0; k < in->coarse_count; k++)
+        free(in->coarse[k]);
+    sf_foam_card_free(&in->form.base);
+    free(in->material_path);
+    free(in->text);
+    *in = (sf_fit_input){0};
+}

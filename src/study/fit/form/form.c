@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/fit/form/form.h"
+
+#include "material/curve.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const sf_curve_form *const forms[SF_CURVE_FORMS] = {
+#define SF_CURVE_FORM(form) &sf_form_##form,
+#include "study/fit/form/forms.def"
+#undef SF_CURVE_FORM
+};
+
+const sf_curve_form *sf_curve_form_get(int index) {
+    return forms[index];
+}
+
+const sf_curve_form *sf_curve_form_find(const char *name) {
+    for (int k = 0; k < SF_CURVE_FORMS; k++)
+        if (strcmp(forms[k]->name, name) == 0)
+            return forms[k];
+    return NULL;
+}
+
+const char *sf_curve_form_words(void) {
+#define SF_CURVE_FORM(form) "|" #form
+    static const char words[] =
+#include "study/fit/form/forms.def"
+        ;
+#undef SF_CURVE_FORM
+    return words + 1;
+}
+
+const sf_form_entry *sf_curve_form_entry(const sf_curve_form *form, sf_foam_parameter parameter) {
+    for (int k = 0; k < form->entry_count; k++)
+        if (form->entry[k].parameter == parameter)
+            return &form->entry[k];
+    return NULL;
+}
+
+bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter) {
+    bool of_a_form = false;
+    for (int k = 0; k < SF_CURVE_FORMS; k++)
+        of_a_form = of_a_form || sf_curve_form_entry(forms[k], parameter);
+    return !of_a_form || sf_curve_form_entry(form, parameter);
+}
+
+double sf_curve_form_stress(const sf_curve_form *form, const double *value, double strain) {
+    double stress;
+    form->stress(value, 1, &strain, &stress);
+    return stress;
+}
+
+/* ---- tabulation ---- */
+
+/* Strains of the table: close together in the knee, and by equal ratios of the distance to the pole where the
+ * stress rises steeply. So dense that the solver's interpolant has the stress to 1e-4. */
+enum { KNEE = 160, MIDDLE = 100, END = 200, POINTS = KNEE + MIDDLE + END + 1 };
+static const double MIDDLE_START = 0.1, END_START = 0.55, LAST = 0.975; /* parts of the pole */
+static const double MOST_STRESS = 1e9;                                  /* Pa */
+
+/* Part of the pole at which the table ends: before the stress is beyond all that a foam bears, where the
+ * slope would be one that no card may have. */
+static double last_part(const sf_curve_form *form, const double *value, double pole) {
+    double low = END_START, high = LAST;
+    if (sf_curve_form_stress(form, value, pole * LAST) <= MOST_STRESS)
+        return LAST;
+    for (int k = 0; k < 40; k++) {
+        double middle = 0.5 * (low + high);
+        *(sf_curve_form_stress(form, value, pole * middle) <= MOST_STRESS ? &low : &high) = middle;
+    }
+    return fmax(low, END_START + 0.05);
+}
+
+static double part_of(int k, double last) {
+    if (k <= KNEE)
+        return MIDDLE_START * k * k / (KNEE * KNEE);
+    if (k <= KNEE + MIDDLE)
+        return MIDDLE_START + (END_START - MIDDLE_START) * (k - KNEE) / MIDDLE;
+    return 1 - (1 - END_START) * pow((1 - last) / (1 - END_START), (double)(k - KNEE - MIDDLE) / END);
+}
+
+/* The stress must rise, which the solver's law needs. */
+static sf_status check_table(const sf_curve_form *form, const double *strain, const double *stress,
+                             sf_error *err) {
+    for (int k = 1; k < POINTS; k++)
+        if (!(stress[k] > stress[k - 1]) || !isfinite(stress[k]))
+            return SF_FAIL(err, SF_ERR_NUMERIC, "the curve of the form %s does not rise at a strain of %.3g",
+                           form->name, strain[k]);
+    return SF_OK;
+}
+
+/* The law beyond the table. */
+static void set_densification(const sf_curve_form *form, const double *value, double pole, double end,
+                              sf_foam_card *card) {
+    double h = 1e-4 * (pole - end), at[3] = {end - h, end, end + h}, stress[3];
+    form->stress(value, 3, at, stress);
+    card->densification_start = 0; /* at the table's end */
+    card->densification_rule = pole < 1 ? SF_DENSIFICATION_H2 : SF_DENSIFICATION_H1;
+    card->densification_limit = pole;
+    card->densification_exponent =
+        pole < 1 ? sf_densification_steep_exponent(end, pole, stress[1], (stress[2] - stress[0]) / (2 * h))
+                 : 0;
+}
+
+static void replace_curves(sf_foam_card *card, double *strain, double *stress, double *rate, int64_t *ptr) {
+    free(card->curve_strain);
+    free(card->curve_stress);
+    free(card->curve_rate);
+    free(card->curve_ptr);
+    card->curve_strain = strain;
+    card->curve_stress = stress;
+    card->curve_rate = rate;
+    card->curve_ptr = ptr;
+    card->curve_count = 1;
+    card->curve_points = ptr[1] = POINTS;
+}
+
+sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value, sf_foam_card *card,
+                                 sf_error *err) {
+    if (form->check(value, err) != SF_OK)
+        return err->status;
+    double pole = form->pole(value), *strain = sf_alloc(err, POINTS, sizeof *strain, "curve"),
+           *stress = sf_alloc(err, POINTS, sizeof *stress, "curve"),
+           *rate = sf_alloc(err, 1, sizeof *rate, "curve");
+    int64_t *ptr = sf_alloc(err, 2, sizeof *ptr, "curve");
+    if (err->status == SF_OK) {
+        double last = last_part(form, value, pole);
+        for (int k = 0; k < POINTS; k++)
+            strain[k] = pole * part_of(k, last);
+        form->stress(value, POINTS, strain, stress);
+        check_table(form, strain, stress, err);
+    }
+    if (err->status != SF_OK) {
+        free(strain);
+        free(stress);
+        free(rate);
+        free(ptr);
+        return err->status;
+    }
+    set_densification(form, value, pole, strain[POINTS - 1], card);
+    replace_curves(card, strain, stress, rate, ptr);
+    return SF_OK;
+}

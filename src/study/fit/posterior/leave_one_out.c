@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/fit/posterior/leave_one_out.h"
+
+#include "study/fit/posterior/evidence.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_GROUPS = 32 };
+static const double USABLE = 0.5, WIDER = 2; /* of the variances, where the chains without a group start */
+
+/* The target without one group. */
+typedef struct without {
+    const sf_grouped *grouped;
+    int group;
+} without;
+
+static double density_without_of(const void *context, const double *u, const double *y) {
+    const without *w = context;
+    double conditional[MOST_GROUPS], all = w->grouped->split(w->grouped->target.context, u, y, conditional);
+    return all - conditional[w->group];
+}
+
+static double density_without(const void *context, const double *u) {
+    return density_without_of(context, u, NULL);
+}
+
+static bool respond(const void *context, const double *u, double *y) {
+    const sf_target *target = &((const without *)context)->grouped->target;
+    return target->respond(target->context, u, y);
+}
+
+/* log p(y_g | others, u) of every sample: [samples][groups]. */
+static double *split_all(const sf_grouped *g, const double *sample, int count, sf_error *err) {
+    double *all = sf_alloc(err, (unsigned long)(count * g->groups), sizeof *all, "leave-one-out densities");
+    if (all) {
+#pragma omp parallel for schedule(dynamic, 8)
+        for (int s = 0; s < count; s++)
+            g->split(g->target.context, &sample[s * g->target.parameters], NULL, &all[s * g->groups]);
+    }
+    return all;
+}
+
+/* By weights 1 / p(y_g | others, u); `scratch` [count]. */
+static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
+                       sf_error *err) {
+    double *sum = sf_alloc(err, (unsigned long)count, sizeof *sum, "weights");
+    if (!sum)
+        return err->status;
+    for (int s = 0; s < count; s++)
+        scratch[s] = -all[s * groups + g];
+    out->pareto_k = sf_pareto_smooth(count, scratch, err);
+    out->converged = out->pareto_k < USABLE;
+    for (int s = 0; s < count; s++)
+        sum[s] = scratch[s] + all[s * groups + g];
+    out->log_density = sf_log_mean(count, sum) - sf_log_mean(count, scratch);
+    free(sum);
+    return err->status;
+}
+
+/* Where the chains without the group start: mean and widened covariance of those with it. */
+static void find_start(const sf_chains *c, double *mean, double *covariance) {
+    int n = c->parameters, count = c->chains * c->kept;
+    memset(mean, 0, (size_t)n * sizeof *mean);
+    memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            mean[i] += c->sample[k * n + i] / count;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                covariance[i * n + j] +=
+                    WIDER * (c->sample[k * n + i] - mean[i]) * (c->sample[k * n + j] - mean[j]) / count;
+}
+
+static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
+                        const sf_chains_options *options, sf_left_out *out, sf_error *err) {
+    double mean[SF_POSTERIOR_MOST], covariance[SF_POSTERIOR_MOST * SF_POSTERIOR_MOST];
+    const without context = {g, group};
+    const sf_target target = {.parameters = g->target.parameters,
+                              .log_density = density_without,
+                              .context = &context,
+                              .responses = g->target.responses,
+                              .shape = g->target.shape,
+                              .respond = respond,
+                              .log_density_of = density_without_of};
+    sf_chains_options own = *options;
+    sf_chains chains;
+    own.seed = sf_seed_of(options->seed, (uint64_t)(500 + group));
+    find_start(whole, mean, covariance);
+    if (sf_chains_run(&target, mean, covariance, &own, &chains, err) == SF_OK) {
+        int count = chains.chains * chains.kept;
+        double *all = split_all(g, chains.sample, count, err);
+        if (all) {
+            for (int s = 0; s < count; s++)
+                all[s] = all[s * g->groups + group];
+            out->log_density = sf_log_mean(count, all);
+            out->sampled = true;
+            out->converged = chains.converged;
+        }
+        free(all);
+    }
+    sf_chains_free(&chains);
+    return err->status;
+}
+
+/* ---- draws of a wider mixture ---- */
+
+static const double STRETCH = 1.4; /* of the posterior's scale */
+
+/* Draws with their weights: log density of the target over that of the mixture, and the conditionals. */
+typedef struct wide {
+    int count;
+    double *weight, *conditional; /* [count], [count][groups] */
+} wide;
+
+static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const sf_leave_options *options,
+                           wide *w, sf_error *err) {
+    static const double FREEDOM = 5;
+    int n = chains->parameters, draws = options->draws;
+    sf_mixture m;
+    *w = (wide){.weight = sf_alloc(err, (unsigned long)draws, sizeof(double), "draws"),
+                .conditional = sf_alloc(err, (unsigned long)(draws * g->groups), sizeof(double), "draws")};
+    double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws");
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    if (!random)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
+    if (err->status == SF_OK &&
+        sf_mixture_fit(n, chains->chains * chains->kept, chains->sample, FREEDOM, &m, err) == SF_OK) {
+        gsl_rng_set(random, (unsigned long)sf_seed_of(options->chains.seed, 700) & 0xffffffffu);
+        for (int p = 0; p < m.parts; p++) {
+            for (int i = 0; i < n; i++)
+                for (int j = 0; j <= i; j++)
+                    m.part[p].factor[i][j] *= STRETCH;
+            m.part[p].log_norm -= n * log(STRETCH);
+        }
+        for (int k = 0; k < draws; k++)
+            sf_mixture_draw(&m, random, &u[k * n]);
+#pragma omp parallel for schedule(dynamic, 8)
+        for (int k = 0; k < draws; k++)
+            w->weight[k] = g->split(g->target.context, &u[k * n], NULL, &w->conditional[k * g->groups]) -
+                           sf_mixture_log_density(&m, &u[k * n]);
+        w->count = draws;
+    }
+    if (random)
+        gsl_rng_free(random);
+    free(u);
+    return err->status;
+}
+
+/* log p(group | others) by the weights; true if enough draws count. */
+static bool take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out) {
+    double most = -INFINITY, most_all = -INFINITY, sum = 0, squares = 0, all = 0;
+    for (int k = 0; k < w->count; k++)
+        if (isfinite(w->weight[k])) {
+            most = fmax(most, w->weight[k] - w->conditional[k * groups + group]);
+            most_all = fmax(most_all, w->weight[k]);
+        }
+    for (int k = 0; k < w->count && isfinite(most); k++)
+        if (isfinite(w->weight[k])) {
+            double weight = exp(w->weight[k] - w->conditional[k * groups + group] - most);
+            sum += weight;
+            squares += weight * weight;
+            all += exp(w->weight[k] - most_all);
+        }
+    if (!(squares > 0) || sum * sum / squares < effective)
+        return false;
+    out->log_density = log(all) + most_all - log(sum) - most;
+    out->drawn = out->converged = true;
+    return true;
+}
+
+sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const sf_leave_options *options,
+                           sf_left_out *out, sf_error *err) {
+    int count = chains->chains * chains->kept;
+    wide w = {0};
+    if (g->groups > MOST_GROUPS)
+        return SF_FAIL(err, SF_ERR_INPUT, "%d groups of data: at most %d are left out one by one", g->groups,
+                       MOST_GROUPS);
+    double *all = split_all(g, chains->sample, count, err),
+           *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");
+    for (int k = 0; k < g->groups && err->status == SF_OK; k++) {
+        out[k] = (sf_left_out){.converged = false};
+        if (weigh(all, g->groups, k, count, scratch, &out[k], err) != SF_OK || out[k].converged)
+            continue;
+        if (options->draws > 0 && w.count == 0 && draw_wide(g, chains, options, &w, err) != SF_OK)
+            break;
+        if (!take_wide(&w, g->groups, k, options->effective, &out[k]))
+            sample(g, k, chains, &options->chains, &out[k], err);
+    }
+    free(w.weight);
+    free(w.conditional);
+    free(all);
+    free(scratch);
+    return err->status;
+}

@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/fit/posterior/mixture.h"
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_sf_gamma.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROUNDS = 25, N = SF_POSTERIOR_MOST };
+static const double RIDGE = 1e-6; /* of the samples' own variances, added to a part's */
+
+/* ---- density and draws ---- */
+
+/* Squared distance from the part's centre in its scale. */
+static double distance(const sf_mixture_part *part, int n, const double *u) {
+    double z[N], sum = 0;
+    for (int i = 0; i < n; i++) {
+        z[i] = u[i] - part->centre[i];
+        for (int j = 0; j < i; j++)
+            z[i] -= part->factor[i][j] * z[j];
+        z[i] /= part->factor[i][i];
+        sum += z[i] * z[i];
+    }
+    return sum;
+}
+
+static double part_log_density(const sf_mixture *m, const sf_mixture_part *part, const double *u) {
+    return part->log_norm -
+           0.5 * (m->freedom + m->parameters) * log1p(distance(part, m->parameters, u) / m->freedom);
+}
+
+double sf_mixture_log_density(const sf_mixture *m, const double *u) {
+    double value[SF_MIXTURE_MOST], largest = -INFINITY, sum = 0;
+    for (int k = 0; k < m->parts; k++) {
+        value[k] = log(m->part[k].weight) + part_log_density(m, &m->part[k], u);
+        largest = fmax(largest, value[k]);
+    }
+    for (int k = 0; k < m->parts; k++)
+        sum += exp(value[k] - largest);
+    return largest + log(sum);
+}
+
+void sf_mixture_draw(const sf_mixture *m, gsl_rng *random, double *u) {
+    double z[N], choice = gsl_rng_uniform(random);
+    int k = 0;
+    while (k < m->parts - 1 && choice >= m->part[k].weight)
+        choice -= m->part[k++].weight;
+    for (int i = 0; i < m->parameters; i++)
+        z[i] = gsl_ran_ugaussian(random);
+    double stretch = sqrt(m->freedom / gsl_ran_chisq(random, m->freedom));
+    for (int i = 0; i < m->parameters; i++) {
+        u[i] = m->part[k].centre[i];
+        for (int j = 0; j <= i; j++)
+            u[i] += stretch * m->part[k].factor[i][j] * z[j];
+    }
+}
+
+/* Factor and norm of a part from its scale matrix [n][n]. */
+static sf_status set_scale(const sf_mixture *m, const double *scale, sf_mixture_part *part, sf_error *err) {
+    int n = m->parameters;
+    double copy[N * N], log_determinant = 0;
+    memcpy(copy, scale, (size_t)(n * n) * sizeof *copy);
+    gsl_matrix_view a = gsl_matrix_view_array(copy, (size_t)n, (size_t)n);
+    if (gsl_linalg_cholesky_decomp1(&a.matrix) != GSL_SUCCESS)
+        return SF_FAIL(err, SF_ERR_NUMERIC, "a covariance of %d parameters is not positive definite", n);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++)
+            part->factor[i][j] = copy[i * n + j];
+        log_determinant += log(copy[i * n + i]);
+    }
+    part->log_norm = gsl_sf_lngamma((m->freedom + n) / 2) - gsl_sf_lngamma(m->freedom / 2) -
+                     0.5 * n * log(m->freedom * M_PI) - log_determinant;
+    return isfinite(part->log_norm)
+               ? SF_OK
+               : SF_FAIL(err, SF_ERR_NUMERIC, "a covariance of %d parameters is not finite", n);
+}
+
+sf_status sf_mixture_single(int n, const double *centre, const double *scale, double freedom, sf_mixture *m,
+                            sf_error *err) {
+    if (n < 1 || n > N)
+        return SF_FAIL(err, SF_ERR_INPUT, "%d parameters: 1 to %d are expected", n, N);
+    *m = (sf_mixture){.parameters = n, .parts = 1, .freedom = freedom};
+    m->part[0].weight = 1;
+    memcpy(m->part[0].centre, centre, (size_t)n * sizeof *centre);
+    return set_scale(m, scale, &m->part[0], err);
+}
+
+/* ---- matched to samples ---- */
+
+typedef struct samples {
+    int n, count;
+    const double *u;  /* [count][n] */
+    double *share;    /* [parts][count] of a sample in a part */
+    double ridge[N];  /* added to the variances */
+    double axis[N];   /* first principal axis of the samples in their deviations */
+    double *position; /* [count] along it */
+} samples;
+
+/* Mean and covariance [n][n] of all samples. */
+static void moments(const samples *s, double *mean, double *covariance) {
+    int n = s->n;
+    memset(mean, 0, (size_t)n * sizeof *mean);
+    memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
+    for (int k = 0; k < s->count; k++)
+        for (int i = 0; i < n; i++)
+            mean[i] += s->u[k * n + i] / s->count;
+    for (int k = 0; k < s->count; k++)
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                covariance[i * n + j] += (s->u[k * n + i] - mean[i]) * (s->u[k * n + j] - mean[j]) / s->count;
+}
+
+/* Positions of the samples along the first principal axis of the correlation matrix. */
+static sf_status find_axis(samples *s, sf_error *err) {
+    int n = s->n;
+    double mean[N], c[N * N], sd[N];
+    moments(s, mean, c);
+    for (int i = 0; i < n; i++) {
+        sd[i] = sqrt(c[i * n + i]);
+        s->ridge[i] = RIDGE * c[i * n + i];
+        if (!(sd[i] > 0))
+            return SF_FAIL(err, SF_ERR_NUMERIC, "the samples of a parameter are all alike");
+    }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            c[i * n + j] /= sd[i] * sd[j];
+    gsl_matrix_view a = gsl_matrix_view_array(c, (size_t)n, (size_t)n);
+    gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc((size_t)n);
+    gsl_vector *value = gsl_vector_alloc((size_t)n);
+    gsl_matrix *vector = gsl_matrix_alloc((size_t)n, (size_t)n);
+    if (w && value && vector) {
+        gsl_eigen_symmv(&a.matrix, value, vector, w);
+        size_t first = gsl_vector_max_index(value);
+        for (int k = 0; k < s->count; k++) {
+            s->position[k] = 0;
+            for (int i = 0; i < n; i++)
+                s->position[k] += gsl_matrix_get(vector, (size_t)i, first) * s->u[k * n + i] / sd[i];
+        }
+    } else {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", n);
+    }
+    gsl_eigen_symmv_free(w);
+    gsl_vector_free(value);
+    gsl_matrix_free(vector);
+    return err->status;
+}
+
+static int compare(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* First shares: equal slices along the axis. */
+static sf_status slice(const samples *s, int parts, sf_error *err) {
+    double *sorted = sf_alloc(err, (unsigned long)s->count, sizeof *sorted, "samples");
+    if (!sorted)
+        return err->status;
+    memcpy(sorted, s->position, (size_t)s->count * sizeof *sorted);
+    qsort(sorted, (size_t)s->count, sizeof *sorted, compare);
+    for (int k = 0; k < s->count; k++)
+        for (int p = 0; p < parts; p++) {
+            bool above = p == 0 || s->position[k] >= sorted[s->count * p / parts];
+            bool below = p == parts - 1 || s->position[k] < sorted[s->count * (p + 1) / parts];
+            s->share[p * s->count + k] = above && below;
+        }
+    free(sorted);
+    return SF_OK;
+}
+
+/* One part from its shares, each sample with the t-distribution's weight about the part before. */
+static sf_status match_part(const sf_mixture *m, const samples *s, const double *share, bool first,
+                            sf_mixture_part *part, sf_error *err) {
+    int n = s->n;
+    double sum = 0, weights = 0, centre[N] = {0}, scale[N * N] = {0};
+    for (int pass = 0; pass < 2; pass++)
+        for (int k = 0; k < s->count; k++) {
+            const double *u = &s->u[k * n];
+            double w = share[k] * (first ? 1 : (m->freedom + n) / (m->freedom + distance(part, n, u)));
+            if (pass == 0) {
+                sum += share[k];
+                weights += w;
+                for (int i = 0; i < n; i++)
+                    centre[i] += w * u[i];
+                continue;
+            }
+            for (int i = 0; i < n; i++)
+                for (int j = 0; j <= i; j++)
+                    scale[i * n + j] += w * (u[i] - centre[i] / weights) * (u[j] - centre[j] / weights) / sum;
+        }
+    for (int i = 0; i < n; i++) {
+        part->centre[i] = centre[i] / weights;
+        scale[i * n + i] += s->ridge[i];
+        for (int j = 0; j < i; j++)
+            scale[j * n + i] = scale[i * n + j];
+    }
+    part->weight = sum / s->count;
+    return set_scale(m, scale, part, err);
+}
+
+static void share_out(const sf_mixture *m, const samples *s) {
+    for (int k = 0; k < s->count; k++) {
+        double all = sf_mixture_log_density(m, &s->u[k * s->n]);
+        for (int p = 0; p < m->parts; p++)
+            s->share[p * s->count + k] =
+                exp(log(m->part[p].weight) + part_log_density(m, &m->part[p], &s->u[k * s->n]) - all);
+    }
+}
+
+static sf_status match(const samples *s, int parts, double freedom, sf_mixture *m, sf_error *err) {
+    *m = (sf_mixture){.parameters = s->n, .parts = parts, .freedom = freedom};
+    if (slice(s, parts, err) != SF_OK)
+        return err->status;
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int p = 0; p < parts; p++)
+            if (match_part(m, s, &s->share[p * s->count], round == 0, &m->part[p], err) != SF_OK)
+                return err->status;
+        share_out(m, s);
+    }
+    return SF_OK;
+}
+
+/* Mean log density of samples. */
+static double score(const sf_mixture *m, int count, const double *u) {
+    double sum = 0;
+    for (int k = 0; k < count; k++)
+        sum += sf_mixture_log_density(m, &u[k * m->parameters]);
+    return sum / count;
+}
+
+/* The number of parts, by the first half of the samples, that describes the other half best. */
+static int choose_parts(samples *half, int rest, double freedom) {
+    int best = 1;
+    double highest = -INFINITY;
+    sf_error err = SF_ERROR_INIT;
+    sf_mixture m;
+    for (int parts = 1; parts <= SF_MIXTURE_MOST && half->count >= 8 * (half->n + 1) * parts; parts++) {
+        if (match(half, parts, freedom, &m, &err) != SF_OK)
+            break;
+        double value = score(&m, rest, &half->u[half->count * half->n]);
+        if (value > highest + 0.02) {
+            highest = value;
+            best = parts;
+        }
+    }
+    return best;
+}
+
+sf_status sf_mixture_fit(int n, int count, const double *u, double freedom, sf_mixture *m, sf_error *err) {
+    if (n < 1 || n > N || count < 2 * (n + 1))
+        return SF_FAIL(err, SF_ERR_NUMERIC, "%d samples are too few to describe %d parameters", count, n);
+    double *share = sf_alloc(err, (unsigned long)count * SF_MIXTURE_MOST, sizeof *share, "samples"),
+           *position = sf_alloc(err, (unsigned long)count, sizeof *position, "samples");
+    if (err->status == SF_OK) {
+        samples all = {.n = n, .count = count, .u = u, .share = share, .position = position}, half = all;
+        int parts = 1;
+        half.count = count / 2;
+        if (find_axis(&half, err) == SF_OK)
+            parts = choose_parts(&half, count - half.count, freedom);
+        if (err->status == SF_OK && find_axis(&all, err) == SF_OK)
+            match(&all, parts, freedom, m, err);
+    }
+    free(share);
+    free(position);
+    return err->status;
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Parameter identification with an expensive simulation and a cheap surrogate (output space mapping; Bandler
+ * et al. 2004, doi:10.1109/TMTT.2003.820904). At each iterate u_k the surrogate s is corrected so that it
+ * agrees with the simulation y there and, by a Broyden update of the matrix M, at the iterate before:
+ *
+ *     y_c(u) = s(u) + [y(u_k) - s(u_k)] + M (u - u_k),
+ *
+ * and the next iterate minimises   sum ((y_c - measured) / sd)^2 + sum ((u - prior) / prior_sd)^2   (GSL's
+ * Levenberg-Marquardt). If the simulation does not confirm a step, the next one starts from the best point
+ * and is held back. Everything is in the caller's scaled variables: logarithms of parameters and of
+ * responses. */
+#ifndef SF_FIT_SPACE_MAPPING_H
+#define SF_FIT_SPACE_MAPPING_H
+
+#include "base/error.h"
+#include <stdbool.h>
+#include <stdio.h>
+
+enum { SF_MAPPING_MAX_PARAMETERS = 44 };
+
+typedef struct sf_mapping_problem {
+    int parameters, responses;
+    const double *start;    /* [parameters] */
+    const double *prior;    /* [parameters] mean */
+    const double *prior_sd; /* [parameters] > 0 */
+    const double *measured; /* [responses] */
+    const double *sd;       /* [responses] > 0; INFINITY: predicted only, no datum */
+    /* [responses] y - s of a similar problem: the first simulation is then at the minimum of s with it; NULL:
+     * at the start */
+    const double *first_offset;
+    /* Of one with the same parameters and responses: [parameters] the point at which first_offset is its y -
+     * s (NULL: the start), and [responses][parameters] its M, with which this one begins (NULL: 0) */
+    const double *first_point, *first_matrix;
+    sf_status (*surrogate)(void *context, const double *u, double *y, sf_error *err);
+    sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
+    void *context;
+    int max_iterations; /* simulations at most */
+    double tolerance; /* in standard deviations. Converged: the free next step is below it in every parameter,
+                         or would lower the objective by less than its square, or two steps in a row, taken or
+                         not, changed it by less than twice the tolerance. With a first_matrix a short step
+                         must lower it by less than that, too */
+    /* called after each simulation; may be NULL */
+    void (*progress)(void *context, int iteration, const double *u, const double *y, double objective);
+} sf_mapping_problem;
+
+typedef struct sf_mapping_result {
+    double u[SF_MAPPING_MAX_PARAMETERS]; /* best simulated point */
+    double *y;                           /* [responses] of the simulation there; owned */
+    double *corrected;                   /* [responses][parameters] Jacobian of y_c there; owned */
+    double *offset;                      /* [responses] y - s there; owned */
+    double *matrix;                      /* [responses][parameters] M; owned */
+    double covariance[SF_MAPPING_MAX_PARAMETERS][SF_MAPPING_MAX_PARAMETERS];
+    double misfit;    /* sum over the data of ((y - measured) / sd)^2 */
+    double objective; /* misfit and prior */
+    double freedom;   /* number of data less the effective number of parameters that they determine */
+    double scale;     /* factor on the data's standard deviations in `covariance`: sqrt(misfit / freedom) if
+                         chi-squared     contradicts them (5 %), else 1 */
+    double gain;      /* by which y_c says that the objective could still fall */
+    int iterations;
+    bool converged;
+} sf_mapping_result;
+
+/* Finds the minimum. Release with sf_mapping_free, also on failure. */
+sf_status sf_mapping_solve(const sf_mapping_problem *problem, sf_mapping_result *result, sf_error *err);
+void sf_mapping_free(sf_mapping_result *result);
+
+/* Minimises once more with the corrected surrogate of `result` and other standard deviations `sd` (INFINITY
+ * leaves a datum out); `u` [parameters] and `y` [responses] get the minimum and y_c there. */
+sf_status sf_mapping_refit(const sf_mapping_problem *problem, const sf_mapping_result *result,
+                           const double *sd, double *u, double *y, sf_error *err);
+
+#endif

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/manifest.h"
+
+#include "base/hash.h"
+#include "io/plain_file.h"
+#include "io/replace.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char HEAD[] = "softfall-manifest 1";
+enum { USUAL = 20, FEW_GROUPS = 200, MOST_FIELDS = 5 + SF_RUNNER_OVERRIDES };
+static const double JOB_SECONDS = 180;
+#define LARGEST (UINT64_C(1) << 32) /* bytes of a manifest: millions of drops */
+
+int sf_manifest_group_size(int count, double seconds) {
+    int least = (count + SF_MANIFEST_GROUPS - 1) / SF_MANIFEST_GROUPS,
+        most = (count + FEW_GROUPS - 1) / FEW_GROUPS;
+    most = most > USUAL ? most : USUAL;
+    double wanted = seconds > 0 ? ceil(JOB_SECONDS / seconds) : USUAL;
+    int size = wanted < most ? (int)wanted : most;
+    return size > least ? size : least;
+}
+
+/* ---- writing ---- */
+
+static sf_status check_text(const char *text, sf_error *err) {
+    return !text || !strpbrk(text, "\t\n")
+               ? SF_OK
+               : SF_FAIL(err, SF_ERR_INPUT, "a batch cannot hold \"%.200s\": it has a tab or a line end",
+                         text);
+}
+
+static sf_status check_drop(const sf_runner_drop *drop, sf_error *err) {
+    check_text(drop->label, err);
+    check_text(drop->case_path, err);
+    check_text(drop->material, err);
+    for (int k = 0; k < drop->override_count; k++)
+        check_text(drop->overrides[k], err);
+    return err->status;
+}
+
+/* What follows the group in the line of a drop. */
+static void print_drop(FILE *out, const sf_runner_drop *drop) {
+    fprintf(out, "\t%s\t%s\t%s", drop->label, drop->case_path, drop->material ? drop->material : "");
+    for (int k = 0; k < drop->override_count; k++)
+        fprintf(out, "\t%s", drop->overrides[k]);
+    fputc('\n', out);
+}
+
+static void name_group(int number, int count, const int *index, const uint64_t *key,
+                       char name[SF_MANIFEST_GROUP_SIZE]) {
+    uint64_t hash = SF_HASH_START;
+    for (int k = 0; k < count; k++)
+        hash = sf_hash_bytes(hash, &key[index[k]], sizeof key[index[k]]);
+    snprintf(name, SF_MANIFEST_GROUP_SIZE, "%05d-%016" PRIx64, number, hash);
+}
+
+sf_status sf_manifest_write(const char *path, const char *runs, int count, const int *index,
+                            const sf_runner_drop *drop, const uint64_t *key, int group_size, sf_error *err) {
+    char here[SF_PATH_SIZE], group[SF_MANIFEST_GROUP_SIZE] = "";
+    sf_replacement file;
+    if (!getcwd(here, sizeof here))
+        return SF_FAIL(err, SF_ERR_IO, "the present folder is not known");
+    check_text(here, err);
+    check_text(runs, err);
+    for (int k = 0; k < count; k++)
+        check_drop(&drop[index[k]], err);
+    if (err->status != SF_OK || !sf_replace_open(path, &file, err))
+        return err->status;
+    fprintf(file.file, "%s\nfolder\t%s\nruns\t%s\ncount\t%d\n", HEAD, here, runs, count);
+    for (int k = 0; k < count; k++) {
+        int left = count - k;
+        if (k % group_size == 0)
+            name_group(k / group_size + 1, left < group_size ? left : group_size, &index[k], key, group);
+        fprintf(file.file, "%016" PRIx64 "\t%s", key[index[k]], group);
+        print_drop(file.file, &drop[index[k]]);
+    }
+    return sf_replace_close(&file, err);
+}
+
+/* ---- reading ---- */
+
+/* The value of a line "name\tvalue"; NULL if it is another one. */
+static char *take_value(char **rest, const char *name) {
+    char *line = *rest ? strsep(rest, "\n") : NULL;
+    size_t length = strlen(name);
+    return line && strncmp(line, name, length) == 0 && line[length] == '\t' ? line + length + 1 : NULL;
+}
+
+static bool take_run(char *line, sf_manifest_run *run) {
+    char *field[MOST_FIELDS], *end = NULL;
+    int n = 0;
+    while (line && n < MOST_FIELDS)
+        field[n++] = strsep(&line, "\t");
+    if (n < 5 || line || strlen(field[0]) != 16 || strlen(field[1]) >= sizeof run->group ||
+        strchr(field[1], '/') || !*field[1])
+        return false;
+    *run = (sf_manifest_run){.key = strtoull(field[0], &end, 16)};
+    snprintf(run->group, sizeof run->group, "%s", field[1]);
+    run->drop.label = field[2];
+    run->drop.case_path = field[3];
+    run->drop.material = *field[4] ? field[4] : NULL;
+    for (int k = 5; k < n; k++)
+        run->drop.overrides[run->drop.override_count++] = field[k];
+    return *end == '\0' && !strchr(run->drop.label, '/');
+}
+
+sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
+    *m = (sf_manifest){0};
+    if (sf_plain_read(path, "manifest", LARGEST, &m->text, NULL, err) != SF_OK)
+        return err->status;
+    char *rest = m->text, *head = strsep(&rest, "\n");
+    m->folder = take_value(&rest, "folder");
+    m->runs = take_value(&rest, "runs");
+    const char *count = take_value(&rest, "count");
+    long wanted = count ? strtol(count, NULL, 10) : -1;
+    if (strcmp(head, HEAD) != 0 || !m->folder || !m->runs || wanted < 0 || !rest ||
+        (size_t)wanted > strlen(rest))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s is no manifest of a batch", path);
+    m->run = sf_alloc(err, (unsigned long)wanted, sizeof *m->run, "runs");
+    for (; err->status == SF_OK && m->count < wanted; m->count++)
+        if (!rest || !take_run(strsep(&rest, "\n"), &m->run[m->count]))
+            return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: this is no line of a run: the manifest is damaged",
+                           path, m->count + 5);
+    return err->status;
+}
+
+void sf_manifest_free(sf_manifest *m) {
+    free(m->run);
+    free(m->text);
+    *m = (sf_manifest){0};
+}
+
+int sf_manifest_group_end(const sf_manifest *m, int k) {
+    int end = k + 1;
+    while (end < m->count && strcmp(m->run[end].group, m->run[k].group) == 0)
+        end++;
+    return end;
+}
+
+/* ---- outcomes ---- */
+
+void sf_manifest_outcome_path(const char *manifest, const char *group, char *path, size_t size) {
+    const char *slash = strrchr(manifest, '/');
+    snprintf(path, size, "%.*s%s.done", slash ? (int)(slash - manifest + 1) : 0, manifest, group);
+}
+
+sf_status sf_manifest_write_outcome(const char *path, int count, const sf_manifest_run *run,
+                                    const sf_error *failure, sf_error *err) {
+    sf_replacement file;
+    if (!sf_replace_open(path, &file, err))
+        return err->status;
+    for (int k = 0; k < count; k++)
+        if (failure[k].status != SF_OK)
+            fprintf(file.file, "%016" PRIx64 "\t%d\t%s\n", run[k].key, (int)failure[k].status,
+                    failure[k].text);
+    return sf_replace_close(&file, err);
+}
+
+static void take_failure(const char *line, int count, const sf_manifest_run *run, sf_error *failure) {
+    uint64_t key = 0;
+    int status = 0, begin = 0;
+    if (sscanf(line, "%16" SCNx64 "\t%d\t%n", &key, &status, &begin) != 2 || begin == 0 || status <= 0)
+        return;
+    for (int k = 0; k < count; k++)
+        if (run[k].key == key)
+            SF_FAIL(&failure[k], (sf_status)status, "%s", line + begin);
+}
+
+bool sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure) {
+    sf_error none = SF_ERROR_INIT;
+    char *text = NULL, *line;
+    if (!sf_replace_exists(path) || sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
+        return false;
+    for (char *rest = text; (line = strsep(&rest, "\n"));)
+        take_failure(line, count, run, failure);
+    free(text);
+    return true;
+}
+
+int sf_manifest_count_failed(const char *path) {
+    sf_error none = SF_ERROR_INIT;
+    char *text = NULL;
+    int lines = 0;
+    if (!sf_replace_exists(path) || sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
+        return -1;
+    for (const char *c = text; (c = strchr(c, '\n')); c++)
+        lines++;
+    free(text);
+    return lines;
+}

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/run_folder.h"
+
+#include "study/key.h"
+#include "study/record.h"
+#include "case/case.h"
+#include "io/folder.h"
+#include "io/plain_file.h"
+#include "io/process.h"
+#include "io/replace.h"
+#include "post/results/results.h"
+#include "pre/mesh/geometry_files.h"
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MAX_ARGUMENTS = 64 };
+
+/* The folder of a file; "" of none. */
+static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err) {
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    const char *folder = !path ? "" : !slash ? "." : path;
+    int length = slash ? (int)(slash - path) + (slash == path) : (int)strlen(folder);
+    if (snprintf(out, PATH_MAX, "%.*s", length, folder) >= PATH_MAX)
+        return SF_FAIL(err, SF_ERR_INPUT, "the name of the geometry is too long: %.100s...", path);
+    return SF_OK;
+}
+
+void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *at) {
+    at->key = key;
+    at->pad_folder[0] = at->missile_folder[0] = '\0';
+    snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
+    snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
+    snprintf(at->results, sizeof at->results, "%s/results.h5", at->path);
+    snprintf(at->checkpoint, sizeof at->checkpoint, "%s/results.h5.restart", at->path);
+    snprintf(at->log, sizeof at->log, "%s/log.txt", at->path);
+    snprintf(at->failed, sizeof at->failed, "%s/failed.txt", at->path);
+    snprintf(at->figures, sizeof at->figures, "%s/figures.txt", at->path);
+}
+
+sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
+                             const char *const *overrides, sf_run_folder *at, sf_error *err) {
+    sf_case c;
+    uint64_t key = 0;
+    if (sf_case_read(case_path, count, overrides, NULL, &c, err) != SF_OK)
+        return err->status;
+    sf_campaign_key(&c, &key, err);
+    sf_run_folder_name_key(parent, label, key, at);
+    if (err->status == SF_OK && name_folder(c.pad.path, at->pad_folder, err) == SF_OK)
+        name_folder(c.missile.path, at->missile_folder, err);
+    sf_case_free(&c);
+    return err->status;
+}
+
+static bool is_geometry_same(const sf_run_folder *at, const char *path, const char *text, bool unlisted) {
+    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    return sf_campaign_geometry_is_same(folder, path, text, unlisted);
+}
+
+/* By the record of its figures: only of a drop that ran to its end. */
+static bool is_recorded(const sf_run_folder *at) {
+    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    sf_run_record record;
+    bool recorded = sf_run_record_read(at->figures, at->results, &record) &&
+                    sf_geometry_files_are_same(folder, record.geometry);
+    sf_run_record_free(&record);
+    return recorded;
+}
+
+bool sf_run_folder_is_finished(const sf_run_folder *at) {
+    sf_error none = SF_ERROR_INIT;
+    sf_results r;
+    if (is_recorded(at))
+        return true;
+    if (access(at->results, R_OK) != 0 || sf_results_open(at->results, &r, &none) != SF_OK)
+        return false;
+    bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;
+    sf_results_close(&r);
+    return finished && is_geometry_same(at, at->results, "/provenance/model/geometry_files", false);
+}
+
+/* ---- failures ---- */
+
+/* failed.txt: the status, the sentence, the list of what the geometry read (geometry_files). */
+static void keep_failure(const sf_run_folder *at, const char *files, const sf_error *failure) {
+    sf_replacement text;
+    sf_error none = SF_ERROR_INIT;
+    if (!sf_replace_open(at->failed, &text, &none))
+        return;
+    fprintf(text.file, "%d\n%s\n%s", (int)failure->status, failure->text, files);
+    sf_replace_close(&text, &none);
+}
+
+bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
+    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    sf_error none = SF_ERROR_INIT;
+    char *text = NULL;
+    if (access(at->failed, R_OK) != 0 ||
+        sf_plain_read(at->failed, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
+        return false;
+    char *rest = text, *status = strsep(&rest, "\n"), *sentence = rest ? strsep(&rest, "\n") : NULL;
+    bool failed = rest && atoi(status) == SF_ERR_NUMERIC && sf_geometry_files_are_same(folder, rest);
+    if (failed)
+        SF_FAIL(failure, SF_ERR_NUMERIC, "%s", sentence);
+    free(text);
+    return failed;
+}
+
+void sf_run_folder_forget_failure(const sf_run_folder *at) {
+    sf_folder_remove_file(at->failed);
+}
+
+/* The last line of a log that says something, for an error's sentence. */
+static void last_line(const char *path, char *out, size_t size) {
+    sf_error ignored = SF_ERROR_INIT;
+    char *text = NULL, *line;
+    snprintf(out, size, "it said nothing");
+    sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &ignored);
+    for (char *rest = text; rest && (line = strsep(&rest, "\n"));)
+        if (*line)
+            snprintf(out, size, "%s", line);
+    free(text);
+}
+
+sf_status sf_run_folder_interrupted(sf_error *err) {
+    return SF_FAIL(err, SF_INTERRUPTED,
+                   "interrupted; finished drops are kept: run the same command again to resume");
+}
+
+/* Runs a program with its words appended to `log`; its exit code decides. */
+static sf_status run_program(const char *const *arguments, const char *log, sf_error *err) {
+    const sf_process process = {.arguments = arguments, .log = log, .stoppable = true};
+    int code = 0, reason = sf_process_run(&process, &code);
+    if (reason != 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s cannot be run: %s", arguments[0], strerror(reason));
+    if (code == 0)
+        return SF_OK;
+    if (sf_process_stopped() || code == SF_INTERRUPTED || code == 128 + SIGTERM)
+        return sf_run_folder_interrupted(err);
+    if (code == 128 + SIGKILL) /* by the kernel without memory, or by somebody: no fault of the drop */
+        return SF_FAIL(err, SF_ERR_LIBRARY, SF_PROCESS_KILLED " %d (see %s)", SIGKILL, log);
+    char said[800];
+    last_line(log, said, sizeof said);
+    if (code == 126 || code == 127) /* of the loader: a library is missing here, for every drop */
+        return SF_FAIL(err, SF_ERR_IO, "%s does not start: %s (exit code %d; see %s)", arguments[0], said,
+                       code, log);
+    return SF_FAIL(err, code <= SF_ERR_LIBRARY ? (sf_status)code : SF_ERR_LIBRARY,
+                   "%s (exit code %d; see %s)", said, code, log);
+}
+
+/* Is the folder of its run locked (solver/run/output.c)? */
+bool sf_run_folder_is_running(const sf_run_folder *at) {
+    char folder[SF_RUN_PATH_SIZE + 8];
+    snprintf(folder, sizeof folder, "%s.run", at->results);
+    int handle = open(folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    bool locked = handle >= 0 && flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (handle >= 0)
+        close(handle); /* and the lock with it */
+    return locked;
+}
+
+/* A campaign that was killed may have left its solver at work: its drop is waited for. */
+static sf_status wait_for_orphan(const sf_run_folder *at, sf_error *err) {
+    const struct timespec pause = {0, 100000000};
+    while (!sf_process_stopped() && sf_run_folder_is_running(at))
+        nanosleep(&pause, NULL);
+    return sf_process_stopped() ? sf_run_folder_interrupted(err) : SF_OK;
+}
+
+/* Resumes a drop of which a model, whole because softfall-pre moves it into its place, and perhaps a
+ * checkpoint are there. False if there is none or it cannot be resumed: then the drop starts anew. */
+static bool resume(const char *const *run, const char *const *restart, const sf_run_folder *at,
+                   sf_error *err) {
+    sf_error trial = SF_ERROR_INIT;
+    if (access(at->model, R_OK) != 0 || !is_geometry_same(at, at->model, "/provenance/geometry_files", true))
+        return false;
+    run_program(access(at->checkpoint, R_OK) == 0 ? restart : run, at->log, &trial);
+    if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC &&
+        !strstr(trial.text, SF_PROCESS_KILLED))
+        return false;
+    if (trial.status != SF_OK)
+        SF_FAIL(err, trial.status, "%s", trial.text);
+    return true;
+}
+
+void sf_run_folder_clean(const sf_run_folder *at) {
+    sf_folder_remove_file(at->model);
+    sf_folder_remove_file(at->checkpoint);
+}
+
+static sf_status simulate(const sf_run_folder *at, const char *case_path, int count,
+                          const char *const *overrides, int threads, sf_error *err) {
+    char pre[PATH_MAX], solve[PATH_MAX], thread_text[16], share[SF_RUN_PATH_SIZE];
+    const char *build[MAX_ARGUMENTS] = {pre, case_path, "-o", at->model, "--force", "--share", share};
+    assert(7 + 2 * count < MAX_ARGUMENTS);
+    int n = 7;
+    snprintf(share, sizeof share, "%.*s" SF_RUN_SHARED, (int)(strrchr(at->path, '/') + 1 - at->path),
+             at->path);
+    for (int k = 0; k < count; k++) {
+        build[n++] = "--set";
+        build[n++] = overrides[k];
+    }
+    snprintf(thread_text, sizeof thread_text, "%d", threads);
+    const char *run[] = {solve, at->model, "-o", at->results, "--force", "-t", thread_text, NULL};
+    const char *restart[] = {solve, "--restart", at->results, at->model, "-t", thread_text, NULL};
+    if (sf_process_find("softfall-pre", pre, sizeof pre, err) != SF_OK ||
+        sf_process_find("softfall-solve", solve, sizeof solve, err) != SF_OK ||
+        wait_for_orphan(at, err) != SF_OK)
+        return err->status;
+    if (!sf_run_folder_is_finished(at) && !resume(run, restart, at, err) &&
+        wait_for_orphan(at, err) == SF_OK &&
+        !sf_run_folder_is_finished(at)) { /* it may have begun meanwhile */
+        sf_folder_remove_file(at->log);
+        sf_folder_remove_file(at->model); /* the failure of softfall-pre is none of an earlier model */
+        if (run_program(build, at->log, err) == SF_OK)
+            run_program(run, at->log, err);
+    }
+    if (err->status == SF_ERR_NUMERIC && access(at->model, R_OK) == 0) {
+        char *files = sf_campaign_geometry_list(at->model, "/provenance/geometry_files");
+        if (files)
+            keep_failure(at, files, err);
+        free(files);
+    }
+    bool resumes = err->status == SF_INTERRUPTED || strstr(err->text, SF_PROCESS_KILLED);
+    if (!resumes)
+        sf_run_folder_clean(at);
+    return err->status;
+}
+
+/* A scheduler may start a job again whose first process has not ended yet: one of them waits for the other.
+ */
+sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path, int count,
+                                 const char *const *overrides, int threads, sf_error *err) {
+    int lock = -1;
+    if (sf_folder_own(at->path, err) != SF_OK)
+        return err->status;
+    if (sf_folder_wait_lock(at->path, &lock))
+        simulate(at, case_path, count, overrides, threads, err);
+    else
+        sf_run_folder_interrupted(err);
+    if (lock >= 0)
+        close(lock);
+    return err->status;
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The folder of one drop: it holds the log, the model and the checkpoint while the drop is not finished, and
+ * the results. */
+#ifndef SF_CAMPAIGN_RUN_FOLDER_H
+#define SF_CAMPAIGN_RUN_FOLDER_H
+
+#include "base/error.h"
+#include <limits.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Beside the folders of the drops: meshes and domains that they share (io/store.h). */
+#define SF_RUN_SHARED "shared"
+
+enum { SF_RUN_PATH_SIZE = PATH_MAX + 128 };
+
+typedef struct sf_run_folder {
+    uint64_t key; /* of the case with its overrides */
+    char path[PATH_MAX];
+    char model[SF_RUN_PATH_SIZE], results[SF_RUN_PATH_SIZE], checkpoint[SF_RUN_PATH_SIZE],
+        log[SF_RUN_PATH_SIZE], failed[SF_RUN_PATH_SIZE], figures[SF_RUN_PATH_SIZE];
+    char pad_folder[PATH_MAX], missile_folder[PATH_MAX]; /* of the geometries; "": no geometry of a missile */
+} sf_run_folder;
+
+/* The names, "parent/label-<key of the case with its overrides>" and the names of its files; nothing is
+ * created. */
+sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
+                             const char *const *overrides, sf_run_folder *folder, sf_error *err);
+
+/* Only the names, of a key that is known: pad_folder and missile_folder are left "". */
+void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *folder);
+
+/* True if the folder holds a drop that ran to its end, and every file that its geometry read is as it was
+ * then. */
+bool sf_run_folder_is_finished(const sf_run_folder *folder);
+
+/* True if the drop failed in softfall-solve (SF_ERR_NUMERIC), and every file that its geometry read is as it
+ * was then: `*failure` is as it was. A failure of softfall-pre is not kept: it costs little, and what else
+ * its geometry would have read is not known. */
+bool sf_run_folder_has_failed(const sf_run_folder *folder, sf_error *failure);
+/* Forgets that. */
+void sf_run_folder_forget_failure(const sf_run_folder *folder);
+
+/* True if softfall-solve is at work in the folder. */
+bool sf_run_folder_is_running(const sf_run_folder *folder);
+
+/* Removes model and checkpoint, which an orphan may have left in the folder of a finished drop. */
+void sf_run_folder_clean(const sf_run_folder *folder);
+
+/* Simulates the drop by softfall-pre and softfall-solve on `threads` threads, with their output in the log. A
+ * drop that was interrupted or killed resumes from its model and its checkpoint, or starts anew if it cannot;
+ * one whose campaign was killed, but whose solver still runs, is waited for, as is another process that
+ * simulates it. Errors: the last line that the
+ * program printed, with its exit code and the log; SF_INTERRUPTED (io/process.h), which keeps model and
+ * checkpoint. */
+sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,
+                                 const char *const *overrides, int threads, sf_error *err);
+
+/* Records SF_INTERRUPTED. */
+sf_status sf_run_folder_interrupted(sf_error *err);
+
+#endif

@@ -1,0 +1,627 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/runner.h"
+
+#include "study/engine.h"
+#include "study/manifest.h"
+#include "study/record.h"
+#include "study/key.h"
+#include "study/run_folder.h"
+#include "base/hash.h"
+#include "base/units.h"
+#include "io/folder.h"
+#include "io/process.h"
+#include "post/figures/figures.h"
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+enum { MATERIAL_SIZE = PATH_MAX + 64 };
+
+/* A campaign needs the curve and the figures, not the fields. */
+static const char *const lean_output[] = {"output.fields=[\"displacement\"]", "output.frame_interval=1000 s"};
+enum { LEAN = sizeof lean_output / sizeof lean_output[0] };
+
+bool sf_runner_sets_key(const char *key) {
+    size_t length = strlen(key);
+    for (int k = 0; k < LEAN; k++)
+        if (strncmp(lean_output[k], key, length) == 0 && lean_output[k][length] == '=')
+            return true;
+    return false;
+}
+
+/* Every override of the drop, ours included; `material` is the buffer of the first. */
+static int list_overrides(const sf_runner_drop *drop, char *material, const char **list) {
+    int count = 0;
+    if (drop->material) {
+        snprintf(material, MATERIAL_SIZE, "material=@%s", drop->material);
+        list[count++] = material;
+    }
+    for (int k = 0; k < drop->override_count; k++)
+        list[count++] = drop->overrides[k];
+    for (int k = 0; k < LEAN; k++)
+        list[count++] = lean_output[k];
+    return count;
+}
+
+static sf_status result_path(const char *path, sf_runner_result *out, sf_error *err) {
+    out->path = strdup(path);
+    if (!out->path) {
+        sf_runner_result_free(out);
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    }
+    return SF_OK;
+}
+
+static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *out) {
+    sf_verdict verdict;
+    const sf_limits limits = SF_DEFAULT_LIMITS; /* no part of the grade */
+    sf_verdict_compute(r, f, &limits, &verdict);
+    out->grade = verdict.grade;
+    sf_verdict_line(&verdict, out->verdict, sizeof out->verdict);
+}
+
+static sf_status take_layers(const sf_results *r, const sf_figures *f, sf_runner_result *out, sf_error *err) {
+    if (r->layer_count == 0 || !f->layers)
+        return SF_OK;
+    out->layer_strain = sf_alloc(err, (unsigned long)r->layer_count, sizeof *out->layer_strain, "layers");
+    if (!out->layer_strain)
+        sf_runner_result_free(out);
+    else
+        out->layer_count = r->layer_count;
+    for (int k = 0; k < out->layer_count; k++)
+        out->layer_strain[k] = f->layers[k].max_local_strain;
+    return err->status;
+}
+
+static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runner_result *out,
+                              sf_error *err) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    out->figure = sf_alloc(err, count, sizeof *out->figure, "figures");
+    for (size_t k = 0; out->figure && k < count; k++)
+        out->figure[k] = sf_figure_number(&list[k], r, f);
+    snprintf(out->status, sizeof out->status, "%.*s", (int)sizeof out->status - 1, r->status);
+    if (!out->figure)
+        sf_runner_result_free(out);
+    return err->status;
+}
+
+/* For the next time, if it is the results of a drop that ran to its end. */
+static void write_record(const sf_run_folder *at, const sf_results *r, const sf_figures *f,
+                         const sf_runner_result *result) {
+    bool finished = strcmp(r->status, "finished") == 0 || strcmp(r->status, "rebound") == 0;
+    char *geometry =
+        finished ? sf_campaign_geometry_list(at->results, "/provenance/model/geometry_files") : NULL;
+    if (geometry)
+        sf_run_record_write(at->figures, at->results, r, f, result->grade, result->verdict, geometry);
+    free(geometry);
+}
+
+/* `keep`: writes the record of the figures, too. */
+static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_result *out, sf_error *err) {
+    const char *path = at->results;
+    sf_results r;
+    sf_figures f = {0};
+    if (sf_results_open(path, &r, err) != SF_OK)
+        return err->status;
+    if (sf_figures_compute(&r, 1000, &f, err) == SF_OK && !f.touched)
+        SF_FAIL(err, SF_ERR_INPUT, "the missile of %s never touched the pad", path);
+    if (err->status == SF_OK) {
+        *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
+                                  .hic = f.injury.hic.value,
+                                  .hic_window = f.injury.hic.t2 - f.injury.hic.t1,
+                                  .contact_time = f.rebound_time - r.contact_time,
+                                  .v0 = f.v0,
+                                  .v_rebound = f.v_rebound,
+                                  .max_indentation = f.max_indentation,
+                                  .max_local_strain = f.max_local_strain,
+                                  .energy_error = f.energy_error,
+                                  .nodes = r.node_count,
+                                  .steps = r.steps,
+                                  .curve = f.filtered};
+        judge(&r, &f, out);
+        if (keep)
+            write_record(at, &r, &f, out);
+        f.filtered = (sf_series){0};
+        if (take_layers(&r, &f, out, err) == SF_OK && take_figures(&r, &f, out, err) == SF_OK)
+            result_path(path, out, err);
+    }
+    sf_figures_free(&f);
+    sf_results_close(&r);
+    return err->status;
+}
+
+static double figure_of(const sf_run_record *record, const char *key) {
+    size_t count;
+    return record->figure[sf_figure_find(key) - sf_figure_list(&count)];
+}
+
+/* Without the results: what has no figure is NaN or 0. False if there is no record of them. */
+static bool read_recorded(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
+    sf_run_record record;
+    bool there = sf_run_record_read(at->figures, at->results, &record);
+    if (there) {
+        *out = (sf_runner_result){.a_max_g = figure_of(&record, "a_max_g"),
+                                  .hic = figure_of(&record, "hic"),
+                                  .hic_window = NAN,
+                                  .contact_time = NAN,
+                                  .v0 = figure_of(&record, "v0_m_s"),
+                                  .v_rebound = figure_of(&record, "v_rebound_m_s"),
+                                  .max_indentation = 1e-3 * figure_of(&record, "max_indentation_mm"),
+                                  .max_local_strain = figure_of(&record, "max_local_strain"),
+                                  .energy_error = figure_of(&record, "energy_error"),
+                                  .nodes = (int64_t)figure_of(&record, "nodes"),
+                                  .steps = (int64_t)figure_of(&record, "steps"),
+                                  .grade = record.grade,
+                                  .figure = record.figure};
+        record.figure = NULL;
+        snprintf(out->verdict, sizeof out->verdict, "%s", record.verdict);
+        snprintf(out->status, sizeof out->status, "%s", record.status);
+        result_path(at->results, out, err);
+    }
+    sf_run_record_free(&record);
+    return there;
+}
+
+/* ---- drops ---- */
+
+/* A drop with its overrides and its folder. */
+typedef struct located {
+    char material[MATERIAL_SIZE];
+    int count;
+    const char *overrides[SF_RUNNER_OVERRIDES + 1 + LEAN];
+    sf_run_folder at;
+} located;
+
+static sf_status locate(const sf_runner *runner, const sf_runner_drop *drop, located *l, sf_error *err) {
+    l->count = list_overrides(drop, l->material, l->overrides);
+    return sf_run_folder_name(runner->folder, drop->label, drop->case_path, l->count, l->overrides, &l->at,
+                              err);
+}
+
+sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
+                         sf_error *failure, sf_error *err) {
+    located l;
+    if (locate(runner, drop, &l, err) != SF_OK)
+        return err->status;
+    *state = sf_run_folder_is_finished(&l.at)           ? SF_DROP_DONE
+             : sf_run_folder_is_running(&l.at)          ? SF_DROP_RUNNING
+             : sf_run_folder_has_failed(&l.at, failure) ? SF_DROP_FAILED
+                                                        : SF_DROP_OPEN;
+    return SF_OK;
+}
+
+const char *sf_runner_state_name(sf_runner_state state) {
+    static const char *const names[] = {"open", "running", "done", "failed"};
+    return names[state];
+}
+
+sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uint64_t *key, sf_error *err) {
+    located l;
+    if (locate(runner, drop, &l, err) == SF_OK)
+        *key = l.at.key;
+    return err->status;
+}
+
+sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
+                         sf_error *err) {
+    located l;
+    memset(result, 0, sizeof *result);
+    return locate(runner, drop, &l, err) == SF_OK ? read_result(&l.at, false, result, err) : err->status;
+}
+
+/* ---- batches ---- */
+
+/* What is known of a drop of a batch; small, as there may be very many. */
+typedef struct request {
+    uint64_t key;
+    bool reused;
+    uint64_t geometry; /* hash of the folders that the geometries' other files are in */
+    int first;         /* the first drop of the batch with the same folder */
+} request;
+
+typedef struct batch {
+    const sf_runner *runner;
+    int count;
+    const sf_runner_drop *drop;
+    request *request;
+    int *pending; /* those that must be simulated */
+    int pending_count, threads /* of each */, failed, ended;
+    double start, told; /* s */
+} batch;
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Damaged results of unchanged size and time have a record all the same: it goes, and the drop is simulated
+ * again. */
+static bool is_readable(const sf_run_folder *at) {
+    sf_error none = SF_ERROR_INIT;
+    sf_results r;
+    if (sf_results_open(at->results, &r, &none) == SF_OK) {
+        sf_results_close(&r);
+        return true;
+    }
+    sf_folder_remove_file(at->figures);
+    return false;
+}
+
+/* Finds the drop's folder and whether it is finished, or has failed earlier. A drop that its case refuses has
+ * failed: the others go on. */
+static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request *r, sf_error *failure) {
+    located l;
+    if (locate(runner, drop, &l, failure) != SF_OK)
+        return;
+    r->key = l.at.key;
+    r->geometry = sf_hash_bytes(SF_HASH_START, l.at.pad_folder, strlen(l.at.pad_folder) + 1);
+    r->geometry = sf_hash_bytes(r->geometry, l.at.missile_folder, strlen(l.at.missile_folder) + 1);
+    r->reused = sf_run_folder_is_finished(&l.at) && (runner->figures_only || is_readable(&l.at));
+    if (r->reused)
+        sf_run_folder_clean(&l.at);
+    else if (runner->engine.retry)
+        sf_run_folder_forget_failure(&l.at);
+    else
+        sf_run_folder_has_failed(&l.at, failure);
+}
+
+/* By the process that simulated the drop, so that nobody reads the results of many drops one by one. */
+static void record(const sf_run_folder *at) {
+    sf_error none = SF_ERROR_INIT;
+    sf_runner_result result;
+    if (read_result(at, true, &result, &none) == SF_OK)
+        sf_runner_result_free(&result);
+}
+
+static sf_status simulate(void *context, int index, sf_error *err) {
+    const batch *b = context;
+    const sf_runner_drop *drop = &b->drop[b->pending[index]];
+    located l;
+    if (locate(b->runner, drop, &l, err) != SF_OK)
+        return err->status;
+    if (l.at.key != b->request[b->pending[index]].key)
+        return SF_FAIL(err, SF_ERR_IO, "a file that %s leads to " SF_RUNNER_CHANGED "; repeat the command",
+                       drop->case_path);
+    if (sf_run_folder_simulate(&l.at, drop->case_path, l.count, l.overrides, b->threads, err) == SF_OK)
+        record(&l.at);
+    return err->status;
+}
+
+static int compare(const void *p, const void *q, void *context) {
+    const batch *b = context;
+    int j = *(const int *)p, k = *(const int *)q;
+    uint64_t one = b->request[j].key, other = b->request[k].key;
+    int order = one != other ? (one > other) - (one < other) : strcmp(b->drop[j].label, b->drop[k].label);
+    return order ? order : j - k;
+}
+
+/* The key knows a geometry by its own text. What it merges lies beside it: the same text in two folders may
+ * be two geometries, and both would have one folder of results. */
+static void refuse_double(const batch *b, int one, int other, sf_error *failure) {
+    if (b->request[one].geometry != b->request[other].geometry && failure->status == SF_OK)
+        SF_FAIL(failure, SF_ERR_INPUT, "the drops %s and %s read geometry files of " SF_CAMPAIGN_SAME_TEXT,
+                b->drop[one].label, b->drop[other].label);
+}
+
+/* The drops that are not there, each once, in the order of the batch. */
+static void list_pending(batch *b, sf_error *failure) {
+    int *order = b->pending; /* its room serves the sorting first */
+    for (int k = 0; k < b->count; k++)
+        order[k] = k;
+    qsort_r(order, (size_t)b->count, sizeof *order, compare, b);
+    for (int k = 0; k < b->count; k++) {
+        const request *before = k > 0 ? &b->request[order[k - 1]] : NULL;
+        bool same = before && before->key == b->request[order[k]].key &&
+                    strcmp(b->drop[order[k - 1]].label, b->drop[order[k]].label) == 0;
+        b->request[order[k]].first = same ? before->first : order[k];
+        if (same)
+            refuse_double(b, before->first, order[k], &failure[order[k]]);
+    }
+    for (int k = 0; k < b->count; k++)
+        if (!b->request[k].reused && failure[k].status == SF_OK && b->request[k].first == k)
+            b->pending[b->pending_count++] = k;
+}
+
+/* The failure that decides: an interruption, another that is not numerical, the first. */
+static sf_status decide(int count, const sf_error *failure, sf_error *err) {
+    const sf_error *worst = NULL;
+    for (int k = 0; k < count; k++) {
+        if (failure[k].status == SF_OK)
+            continue;
+        bool worse = !worst || (worst->status == SF_ERR_NUMERIC && failure[k].status != SF_ERR_NUMERIC) ||
+                     (worst->status != SF_INTERRUPTED && failure[k].status == SF_INTERRUPTED);
+        worst = worse ? &failure[k] : worst;
+    }
+    if (worst && worst->status == SF_INTERRUPTED)
+        return sf_run_folder_interrupted(err);
+    return worst ? SF_FAIL(err, worst->status, "%s", worst->text) : SF_OK;
+}
+
+/* Which drop, and what to do about it. */
+static void name_killed(const batch *b, sf_error *failure) {
+    for (int k = 0; k < b->pending_count; k++) {
+        sf_error before = failure[k];
+        sf_run_folder at;
+        if (strncmp(before.text, SF_PROCESS_KILLED, strlen(SF_PROCESS_KILLED)) != 0)
+            continue;
+        failure[k] = (sf_error)SF_ERROR_INIT;
+        sf_run_folder_name_key(b->runner->folder, b->drop[b->pending[k]].label, b->request[b->pending[k]].key,
+                               &at);
+        SF_FAIL(&failure[k], before.status,
+                "%.500s: %.400s; finished drops are kept: run the same command again to resume", at.path,
+                before.text);
+    }
+}
+
+/* How many drops run side by side; says where that is not what was asked for. */
+static int count_abreast(const sf_runner *runner, int pending) {
+    int jobs = runner->jobs > 0 ? runner->jobs : runner->threads, most = SF_PROCESS_JOBS;
+    int abreast = jobs < most ? jobs : most;
+    abreast = pending < abreast ? pending : abreast;
+    if (runner->log && runner->simulated == 0 && abreast < jobs && abreast < pending)
+        fprintf(runner->log, "  %d drops side by side, not %d: no more are possible\n", abreast, jobs);
+    if (runner->log && runner->simulated == 0 && abreast > runner->threads)
+        fprintf(runner->log, "  %d drops side by side, one thread each: more than %d thread%s together\n",
+                abreast, runner->threads, runner->threads > 1 ? "s" : "");
+    return abreast;
+}
+
+/* The time that is left at the pace so far. */
+static void tell_pace(const batch *b, int ended) {
+    double spent = now() - b->start, left = spent / ended * (b->pending_count - ended);
+    fprintf(b->runner->log, "  %d of %d drops, %d failed, %.3g drops per hour, %d h %02d min to go\n", ended,
+            b->pending_count, b->failed, 3600 * ended / spent, (int)(left / 3600), (int)fmod(left / 60, 60));
+    fflush(b->runner->log);
+}
+
+/* A line every ten seconds. */
+static void tell_progress(void *context, int index, int ended, const sf_error *result) {
+    enum { EVERY = 10 };
+    batch *b = context;
+    double time = now();
+    (void)index;
+    b->failed += result->status != SF_OK;
+    if (!b->runner->log || time < b->told + EVERY || ended == b->pending_count)
+        return;
+    b->told = time;
+    tell_pace(b, ended);
+}
+
+/* One drop alone has all threads and needs no process of its own. `failure` by the pending ones. */
+static sf_status simulate_here(batch *b, sf_error *failure, sf_error *err) {
+    int threads = b->runner->threads, abreast = count_abreast(b->runner, b->pending_count);
+    b->threads = threads > abreast ? threads / abreast : 1;
+    b->start = b->told = now();
+    if (b->pending_count == 1)
+        simulate(b, 0, failure);
+    else if (sf_process_pool_watched(b->pending_count, abreast, simulate, tell_progress, b, failure, err) ==
+             SF_OK)
+        name_killed(b, failure);
+    return err->status;
+}
+
+/* What the engine left: a drop without results and without a sentence was not run to its end. `complaint`: of
+ * the engine. */
+static void look_again(const batch *b, const sf_manifest *m, const char *manifest, int code,
+                       const char *complaint, sf_error *failure) {
+    char path[SF_RUN_PATH_SIZE];
+    for (int k = 0, last; k < m->count; k = last) {
+        last = sf_manifest_group_end(m, k);
+        sf_manifest_outcome_path(manifest, m->run[k].group, path, sizeof path);
+        bool done = sf_manifest_read_outcome(path, last - k, &m->run[k], &failure[k]);
+        for (int j = k; j < last && !done; j++) {
+            located l;
+            if (locate(b->runner, &m->run[j].drop, &l, &failure[j]) == SF_OK &&
+                !sf_run_folder_is_finished(&l.at))
+                SF_FAIL(
+                    &failure[j], SF_ERR_IO,
+                    "snakemake (exit code %d) left the drop in %.300s undone%s; see %.300s/" SF_MANIFEST_FOLDER
+                    "/log.txt; run the same command again to resume",
+                    code, l.at.path, complaint, b->runner->folder);
+        }
+        sf_folder_remove_file(path);
+    }
+}
+
+typedef struct elsewhere {
+    batch *b;
+    const sf_manifest *m;
+    const char *manifest;
+} elsewhere;
+
+/* The drops of the groups that have ended, if there are more than the last time. */
+static void tell_groups(void *context) {
+    const elsewhere *e = context;
+    batch *b = e->b;
+    char path[SF_RUN_PATH_SIZE];
+    int ended = 0;
+    b->failed = 0;
+    for (int k = 0, last; k < e->m->count; k = last) {
+        last = sf_manifest_group_end(e->m, k);
+        sf_manifest_outcome_path(e->manifest, e->m->run[k].group, path, sizeof path);
+        int failed = sf_manifest_count_failed(path);
+        ended += failed >= 0 ? last - k : 0;
+        b->failed += failed > 0 ? failed : 0;
+    }
+    if (ended > b->ended && ended < b->pending_count)
+        tell_pace(b, ended);
+    b->ended = ended;
+}
+
+/* Drops of a job: what was asked for, or else what takes some minutes; on the processors of this machine
+ * alone, as few as keep them all at work. */
+static int choose_group_size(const batch *b) {
+    const sf_runner_engine *engine = &b->runner->engine;
+    int processors = b->runner->threads > 0 ? b->runner->threads : 1,
+        size = sf_manifest_group_size(b->pending_count, engine->drop_seconds),
+        shared = (b->pending_count + processors - 1) / processors;
+    if (engine->per_job > 0)
+        return engine->per_job;
+    return engine->profile || size < shared ? size : shared;
+}
+
+/* By the engine, group by group. `failure` by the pending ones. */
+static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) {
+    const sf_runner *runner = b->runner;
+    char folder[SF_RUN_PATH_SIZE], path[SF_RUN_PATH_SIZE + 32], log[SF_RUN_PATH_SIZE + 32], complaint[320];
+    struct stat before = {0}; /* of the log, which goes on */
+    sf_manifest m = {0};
+    uint64_t *key = sf_alloc(err, (unsigned long)b->count, sizeof *key, "keys");
+    int code = 0, size = choose_group_size(b);
+    for (int k = 0; key && k < b->count; k++)
+        key[k] = b->request[k].key;
+    snprintf(folder, sizeof folder, "%s/" SF_MANIFEST_FOLDER, runner->folder);
+    snprintf(path, sizeof path, "%s/" SF_MANIFEST_NAME, folder);
+    snprintf(log, sizeof log, "%s/log.txt", folder);
+    if (err->status == SF_OK && sf_folder_own(folder, err) == SF_OK &&
+        sf_manifest_write(path, runner->folder, b->pending_count, b->pending, b->drop, key, size, err) ==
+            SF_OK &&
+        sf_manifest_read(path, &m, err) == SF_OK) {
+        for (int k = 0; k < m.count; k++) { /* of an earlier try: what they say is not so */
+            char outcome[SF_RUN_PATH_SIZE];
+            sf_manifest_outcome_path(path, m.run[k].group, outcome, sizeof outcome);
+            if (k == 0 || strcmp(m.run[k].group, m.run[k - 1].group) != 0)
+                sf_folder_remove_file(outcome);
+        }
+        if (runner->log) {
+            fprintf(runner->log, "  %d drops in jobs of %d by snakemake; its words are in %s\n",
+                    b->pending_count, size, log);
+            fflush(runner->log);
+        }
+        elsewhere watched = {b, &m, path};
+        b->start = now();
+        stat(log, &before);
+        if (sf_engine_run(&runner->engine, runner->threads, path, runner->log ? tell_groups : NULL, &watched,
+                          &code, err) == SF_OK) {
+            sf_engine_complaint(log, (size_t)before.st_size, complaint, sizeof complaint);
+            look_again(b, &m, path, code, complaint, failure);
+        }
+    }
+    sf_manifest_free(&m);
+    free(key);
+    return err->status;
+}
+
+static sf_status simulate_pending(batch *b, sf_error *failure, sf_error *err) {
+    if (b->pending_count == 0)
+        return SF_OK;
+    if (sf_folder_own(b->runner->folder, err) != SF_OK)
+        return err->status;
+    sf_error *own = sf_alloc(err, (unsigned long)b->pending_count, sizeof *own, "failures");
+    for (int k = 0; own && k < b->pending_count; k++)
+        own[k] = (sf_error)SF_ERROR_INIT;
+    if (own && sf_engine_is_local(&b->runner->engine))
+        simulate_here(b, own, err);
+    else if (own)
+        simulate_elsewhere(b, own, err);
+    for (int k = 0; k < b->pending_count && own && err->status == SF_OK; k++)
+        failure[b->pending[k]] = own[k];
+    free(own);
+    return err->status;
+}
+
+static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, const request *r,
+                             sf_runner_result *result, sf_error *err) {
+    sf_run_folder at;
+    sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
+    if (!(runner->figures_only && read_recorded(&at, result, err)))
+        read_result(&at, true, result, err);
+    if (err->status != SF_OK)
+        return err->status;
+    result->reused = r->reused;
+    *(r->reused ? &runner->reused : &runner->simulated) += 1;
+    if (runner->log) {
+        fprintf(runner->log, "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s\n",
+                drop->label, result->v0, result->a_max_g, result->hic, result->max_local_strain,
+                result->reused ? "  (was there)" : "");
+        fflush(runner->log);
+    }
+    return SF_OK;
+}
+
+/* `b` holds runner, count and drop; what it gets here is released by release_batch. */
+static sf_status run_held(batch *b, sf_error *failure, sf_error *err) {
+    unsigned long n = (unsigned long)b->count;
+    b->request = sf_alloc(err, n, sizeof *b->request, "drops");
+    b->pending = sf_alloc(err, n, sizeof *b->pending, "drops");
+    for (int k = 0; k < b->count; k++)
+        failure[k] = (sf_error)SF_ERROR_INIT;
+    if (err->status == SF_OK)
+        sf_engine_check(&b->runner->engine, err);
+    for (int k = 0; k < b->count && err->status == SF_OK; k++)
+        prepare(b->runner, &b->drop[k], &b->request[k], &failure[k]);
+    if (err->status == SF_OK && sf_process_stopped())
+        sf_run_folder_interrupted(err);
+    if (err->status == SF_OK) {
+        list_pending(b, failure);
+        simulate_pending(b, failure, err);
+    }
+    for (int k = 0; k < b->count && err->status == SF_OK; k++) {
+        if (failure[k].status == SF_OK)
+            failure[k] = failure[b->request[k].first];
+        if (failure[k].status == SF_INTERRUPTED)
+            sf_run_folder_interrupted(err);
+    }
+    return err->status;
+}
+
+static sf_status run_batch(batch *b, sf_error *failure, sf_error *err) {
+    if (sf_units_hold(err) == SF_OK) {
+        run_held(b, failure, err);
+        sf_units_let_go();
+    }
+    return err->status;
+}
+
+static void release_batch(batch *b) {
+    free(b->request);
+    free(b->pending);
+}
+
+sf_status sf_runner_simulate_each(sf_runner *runner, int count, const sf_runner_drop *drop, sf_error *failure,
+                                  sf_error *err) {
+    batch b = {.runner = runner, .count = count, .drop = drop};
+    run_batch(&b, failure, err);
+    release_batch(&b);
+    return err->status;
+}
+
+sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
+                             sf_runner_result *result, sf_error *failure, sf_error *err) {
+    batch b = {.runner = runner, .count = count, .drop = drop};
+    memset(result, 0, (size_t)count * sizeof *result);
+    run_batch(&b, failure, err);
+    for (int k = 0; k < count && err->status == SF_OK; k++)
+        if (failure[k].status == SF_OK)
+            take_result(runner, &drop[k], &b.request[k], &result[k], &failure[k]);
+    release_batch(&b);
+    return err->status;
+}
+
+sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
+                              sf_runner_result *result, sf_error *err) {
+    sf_error *failure = sf_alloc(err, (unsigned long)count, sizeof *failure, "failures");
+    memset(result, 0, (size_t)count * sizeof *result);
+    if (failure && sf_runner_run_each(runner, count, drop, result, failure, err) == SF_OK)
+        decide(count, failure, err);
+    free(failure);
+    return err->status;
+}
+
+sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
+                        sf_error *err) {
+    return sf_runner_run_batch(runner, 1, drop, result, err);
+}
+
+void sf_runner_result_free(sf_runner_result *result) {
+    sf_series_free(&result->curve);
+    free(result->path);
+    free(result->figure);
+    free(result->layer_strain);
+    *result = (sf_runner_result){0};
+}

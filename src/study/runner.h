@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Drops simulated by softfall-pre and softfall-solve, each in a folder of its own that stays: a campaign (a
+ * fit, a series of drop heights) that was interrupted reuses its finished drops and resumes an interrupted
+ * drop from its checkpoint.
+ *
+ * The programs are those in the folder of the running program, or in SF_BIN_DIR if that is set. */
+#ifndef SF_CAMPAIGN_RUNNER_H
+#define SF_CAMPAIGN_RUNNER_H
+
+#include "study/drop.h"
+#include "base/error.h"
+#include "post/figures/signal.h"
+#include "post/figures/verdict.h"
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef struct sf_runner {
+    const char *folder; /* holds the drops' folders; made if need be; borrowed */
+    int threads;        /* of softfall-solve, together, but at least one of each drop that runs */
+    int jobs;           /* drops of a batch that run side by side, at most SF_PROCESS_JOBS; 0: as many as
+                           threads. More than threads: the log says so */
+    bool figures_only;  /* of the results neither curve nor layers are wanted: figures.txt is enough */
+    FILE *log;          /* a line for each drop; borrowed; NULL: silent */
+    int64_t simulated;  /* drops so far, out */
+    int64_t reused;     /* drops whose results were there, out */
+    sf_runner_engine engine;
+} sf_runner;
+
+/* The results of a drop for a campaign; figures of the CFC 1000 curve. */
+typedef struct sf_runner_result {
+    double a_max_g, hic;                /* g, - */
+    double hic_window;                  /* s, length of its window */
+    double contact_time;                /* s, of contact, from the first; NaN if it had not ended */
+    double v0, v_rebound;               /* m s-1; v_rebound NaN if contact had not ended */
+    double max_indentation;             /* m */
+    double max_local_strain;            /* - */
+    int layer_count;                    /* 0: one material */
+    double *layer_strain;               /* [layer_count] -, largest, NaN: not known; owned */
+    double energy_error;                /* - */
+    sf_grade grade;                     /* of the run, as softfall-post gives it */
+    char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */
+    int64_t nodes, steps;
+    double *figure;  /* [of sf_figure_list] sf_figure_number; owned */
+    char status[80]; /* how the run ended: the figure that is a text */
+    sf_series curve; /* s, g: filtered; owned */
+    char *path;      /* of its results.h5; owned */
+    bool reused;
+} sf_runner_result;
+
+/* Does a campaign set this key ("output.fields") itself, whatever the drop says? */
+bool sf_runner_sets_key(const char *key);
+
+/* Simulates the drop unless a finished run of the same inputs is there: the same values of every key of the
+ * case and the material, the same curves and geometry files, and programs of the same revision. Release with
+ * sf_runner_result_free. Errors: the message of the program that failed, with the path of its log; a drop
+ * that never touched the pad; SF_INTERRUPTED when a program was interrupted. */
+sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
+                        sf_error *err);
+/* In the sentence of a drop whose files are no longer those of its key (SF_ERR_IO): it was not simulated, and
+ * other drops of its batch may be of either. */
+#define SF_RUNNER_CHANGED "has changed while the batch ran"
+/* Several drops, side by side: the threads are shared among those that must be simulated, the bits are the
+ * same. A finished drop is kept whatever happens to the others; a drop that is in the batch twice is
+ * simulated once. result [count]: release each with sf_runner_result_free, also on failure. Errors: of the
+ * first drop that failed, other than numerically if there is one. */
+sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
+                              sf_runner_result *result, sf_error *err);
+/* The same, but a drop that fails does not end the others: failure [count] holds each one's status and
+ * sentence; a drop without one has its result. Errors: of what all drops need, and interruptions. */
+sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
+                             sf_runner_result *result, sf_error *failure, sf_error *err);
+void sf_runner_result_free(sf_runner_result *result);
+
+/* The same as sf_runner_run_each, but no results are read: for many drops. Counts neither simulated nor
+ * reused. sf_runner_read then reads those of one drop. */
+sf_status sf_runner_simulate_each(sf_runner *runner, int count, const sf_runner_drop *drop, sf_error *failure,
+                                  sf_error *err);
+/* The results of a finished drop; SF_ERR_IO if there are none. */
+sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
+                         sf_error *err);
+
+/* The key of the drop's inputs: its folder is runner->folder/label-<key, 16 hexadecimal digits>. */
+sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uint64_t *key, sf_error *err);
+
+typedef enum sf_runner_state { SF_DROP_OPEN, SF_DROP_RUNNING, SF_DROP_DONE, SF_DROP_FAILED } sf_runner_state;
+
+/* How a drop stands; `*failure` of one that failed. Nothing is changed. Errors: of its inputs. */
+sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
+                         sf_error *failure, sf_error *err);
+/* open, running, done, failed */
+const char *sf_runner_state_name(sf_runner_state state);
+
+#endif

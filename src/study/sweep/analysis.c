@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/sweep/analysis.h"
+
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { SURFACE_SEED = 1 }; /* and that of pictures */
+
+double sf_analysis_value(const sf_analysis *a, int figure, int64_t row) {
+    const sf_runs *r = a->runs;
+    return sf_runs_usable(r, row) ? r->value[row * (int64_t)r->figures + (int64_t)a->figure[figure]] : NAN;
+}
+
+static void count(sf_analysis *a) {
+    for (int64_t k = 0; k < a->runs->count; k++) {
+        bool done = a->runs->state[k] == SF_SWEEP_DONE;
+        a->done += done;
+        a->failed += a->runs->state[k] == SF_SWEEP_FAILED;
+        a->open += a->runs->state[k] == SF_SWEEP_OPEN;
+        a->unusable += done && a->runs->grade[k] == SF_GRADE_DO_NOT_USE;
+        a->remarks += done && a->runs->grade[k] == SF_GRADE_REMARKS;
+    }
+}
+
+/* ---- response surface ---- */
+
+static bool varies(const sf_plan *p, int factor) {
+    const double *value = p->factor[factor].value;
+    for (int64_t k = 1; k < p->block[p->block_of[factor]].rows; k++)
+        if (value[k] != value[0])
+            return true;
+    return false;
+}
+
+int sf_analysis_numbers(const sf_plan *p, int list[SF_SWEEP_FACTORS]) {
+    int count = 0;
+    for (int f = 0; f < p->factor_count; f++)
+        if (!p->factor[f].words && varies(p, f))
+            list[count++] = f;
+    return count;
+}
+
+/* The levels of these words have constants of their own; draws of an unknown are scatter. */
+static bool has_offsets(const sf_factor *f) {
+    return f->words && !f->uncertain && f->count <= SF_OFFSET_LEVELS;
+}
+
+static int count_offsets(const sf_plan *p) {
+    int count = 0;
+    for (int f = 0; f < p->factor_count; f++)
+        count += has_offsets(&p->factor[f]) ? (int)p->factor[f].count - 1 : 0;
+    return count;
+}
+
+static void put_columns(const sf_plan *p, int d, const int *number, int64_t row, double *x) {
+    for (int i = 0; i < d; i++)
+        *x++ = sf_plan_value(p, number[i], row);
+    for (int f = 0; f < p->factor_count; f++)
+        for (int64_t k = 1; k < p->factor[f].count && has_offsets(&p->factor[f]); k++)
+            *x++ = sf_plan_value(p, f, row) == (double)k;
+}
+
+static int64_t count_values(const sf_analysis *a, int figure) {
+    int64_t number = 0;
+    for (int64_t row = 0; row < a->runs->count; row++)
+        number += !isnan(sf_analysis_value(a, figure, row));
+    return number;
+}
+
+/* Draws `wanted` of the `left` values to come, each as likely as any other (Knuth's algorithm S): rows at
+ * equal distances would meet the same levels of the factors that change fastest. */
+static bool is_drawn(gsl_rng *random, int64_t wanted, int64_t left) {
+    return left <= wanted || gsl_rng_uniform(random) * (double)left < (double)wanted;
+}
+
+bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err) {
+    int64_t picked = 0;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    bool *pick = sf_alloc(err, (unsigned long)count, sizeof *pick, "a picture");
+    if (!random && err->status == SF_OK)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a picture");
+    if (random)
+        gsl_rng_set(random, SURFACE_SEED);
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
+        pick[k] = picked < most && is_drawn(random, most - picked, count - k);
+        picked += pick[k];
+    }
+    if (random)
+        gsl_rng_free(random);
+    if (err->status == SF_OK)
+        return pick;
+    free(pick);
+    return NULL;
+}
+
+static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
+    sf_sweep_surface *s = &a->surface[figure];
+    int numbers[SF_SWEEP_FACTORS], d = sf_analysis_numbers(a->plan, numbers),
+                                   offsets = count_offsets(a->plan);
+    s->of = count_values(a, figure);
+    int64_t most = s->of < SF_SURFACE_ROWS ? s->of : SF_SURFACE_ROWS, left = s->of;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    if (!random)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a surface");
+    gsl_rng_set(random, SURFACE_SEED);
+    double *x = sf_alloc(err, (unsigned long)most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
+    s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
+    s->left_out = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
+    for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
+        double value = sf_analysis_value(a, figure, row);
+        if (isnan(value) || !is_drawn(random, most - s->rows, left--))
+            continue;
+        put_columns(a->plan, d, numbers, row, x + s->rows * (d + offsets));
+        s->simulated[s->rows++] = value;
+    }
+    if (err->status == SF_OK)
+        sf_quadratic_fit(d, offsets, s->rows, x, s->simulated, &s->fit, s->left_out, err);
+    for (int i = 0; i < d && err->status == SF_OK; i++)
+        if (sf_effect_is_by_surface(a->plan, numbers[i]))
+            sf_effect_of_surface(&s->fit, i, s->rows, x, &a->effect[figure][numbers[i]]);
+    free(x);
+    gsl_rng_free(random);
+    return err->status;
+}
+
+static void offset_name(const sf_plan *p, int offset, char *text, size_t size) {
+    for (int f = 0; f < p->factor_count; f++) {
+        if (!has_offsets(&p->factor[f]))
+            continue;
+        if (offset < p->factor[f].count - 1) {
+            snprintf(text, size, "%s = %s", p->factor[f].name, p->factor[f].label[offset + 1]);
+            return;
+        }
+        offset -= (int)p->factor[f].count - 1;
+    }
+}
+
+void sf_analysis_term(const sf_analysis *a, const sf_quadratic *s, int term, char *text, size_t size) {
+    int list[SF_SWEEP_FACTORS];
+    const sf_factor *f = a->plan->factor;
+    sf_analysis_numbers(a->plan, list);
+    snprintf(text, size, "1");
+    if (term-- == 0)
+        return;
+    for (int i = 0; i < s->d; i++)
+        if (term-- == 0)
+            snprintf(text, size, "%s", f[list[i]].name);
+    for (int i = 0; i < s->d; i++)
+        if (s->curved[i] && term-- == 0)
+            snprintf(text, size, "%s²", f[list[i]].name);
+    for (int i = 0; i < s->d; i++)
+        for (int j = i + 1; j < s->d; j++)
+            if (term-- == 0)
+                snprintf(text, size, "%s × %s", f[list[i]].name, f[list[j]].name);
+    if (term >= 0)
+        offset_name(a->plan, term, text, size);
+}
+
+/* ---- Sobol' indices ---- */
+
+static sf_status make_indices(sf_analysis *a, int figure, sf_error *err) {
+    const sf_block *b = sf_plan_saltelli(a->plan);
+    double *y = sf_alloc(err, (unsigned long)b->rows, sizeof *y, "indices");
+    for (int64_t row = 0; row < b->rows && y; row++)
+        y[row] = sf_analysis_value(a, figure, row);
+    if (y)
+        sf_indices(b->count, b->samples, y, b->seed, a->index[figure], &a->index_samples[figure], err);
+    free(y);
+    return err->status;
+}
+
+sf_status sf_analysis_make(const sf_runs *runs, sf_analysis *a, sf_error *err) {
+    *a =
+        (sf_analysis){.plan = runs->plan, .runs = runs, .with_indices = sf_plan_saltelli(runs->plan) != NULL};
+    count(a);
+    for (int k = 0; k < a->plan->figure_count && err->status == SF_OK; k++) {
+        a->figure[k] = sf_runs_figure(a->plan->figure[k].figure);
+        for (int f = 0; f < a->plan->factor_count && err->status == SF_OK; f++)
+            sf_effect_measure(runs, f, a->figure[k], &a->effect[k][f], err);
+        if (err->status == SF_OK && make_surface(a, k, err) == SF_OK && a->with_indices)
+            make_indices(a, k, err);
+    }
+    return err->status == SF_OK ? sf_probabilities_count(runs, &a->probability, err) : err->status;
+}
+
+void sf_analysis_free(sf_analysis *a) {
+    for (int k = 0; k < SF_SWEEP_FIGURES; k++) {
+        free(a->surface[k].simulated);
+        free(a->surface[k].left_out);
+    }
+    sf_probabilities_free(&a->probability);
+    *a = (sf_analysis){0};
+}

@@ -1,0 +1,444 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/sweep/campaign.h"
+
+#include "base/hash.h"
+#include "io/folder.h"
+#include "io/plain_file.h"
+#include "io/replace.h"
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const double WRITE_INTERVAL = 20; /* s between two tables, or this many times what one takes */
+static const double WRITE_SHARE = 20;
+enum { KEY_SIZE = 256 };
+
+typedef struct path {
+    char text[PATH_MAX];
+} path;
+
+static path file_of(const sf_sweep_campaign *c, const char *name) {
+    path p;
+    snprintf(p.text, sizeof p.text, "%s/%s", c->folder, name);
+    return p;
+}
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- whose folder it is: the file sweep.key ---- */
+
+typedef struct keys {
+    bool there;
+    uint64_t table, inputs, text; /* `text`: of runs.csv; 0: not known, by an earlier revision */
+} keys;
+
+static sf_status read_keys(const sf_sweep_campaign *c, keys *k, sf_error *err) {
+    path p = file_of(c, "sweep.key");
+    unsigned long long table = 0, inputs = 0, runs = 0;
+    char *text = NULL;
+    *k = (keys){0};
+    if (access(p.text, F_OK) != 0)
+        return SF_OK;
+    if (sf_plain_read(p.text, NULL, KEY_SIZE, &text, NULL, err) == SF_OK &&
+        sscanf(text, "softfall-sweep table %16llx inputs %16llx runs.csv %16llx", &table, &inputs, &runs) >=
+            2)
+        *k = (keys){true, table, inputs, runs};
+    else if (err->status == SF_OK)
+        SF_FAIL(err, SF_ERR_INPUT, "%s is not a file of softfall-sweep: give another directory", p.text);
+    free(text);
+    return err->status;
+}
+
+static sf_status write_keys(const sf_sweep_campaign *c, uint64_t runs, sf_error *err) {
+    sf_replacement out;
+    path p = file_of(c, "sweep.key");
+    FILE *file = sf_replace_open(p.text, &out, err);
+    if (!file)
+        return err->status;
+    fprintf(file, "softfall-sweep table %016llx inputs %016llx runs.csv %016llx\n",
+            (unsigned long long)sf_plan_hash(c->plan), (unsigned long long)c->inputs,
+            (unsigned long long)runs);
+    return sf_replace_close(&out, err);
+}
+
+static void remove_report(const sf_sweep_campaign *c) {
+    for (const char *const *name = c->report; name && *name; name++)
+        sf_folder_remove_file(file_of(c, *name).text);
+}
+
+/* sweep.key knows the table by its text: what something else has written, or was written under another key,
+ * is not believed. `turned`: to other inputs or another plan, so that the report of the rows as they were
+ * goes, after the table could be written and before sweep.key says of what it is: after a kill in between the
+ * next start finds it turned again (but for a file that only the geometry knows of). */
+static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, bool turned, sf_error *err) {
+    path table = file_of(c, "runs.csv"), key = file_of(c, "sweep.key");
+    uint64_t hash = 0;
+    if (access(key.text, F_OK) != 0) /* first of all: without it the table is somebody else's */
+        SF_TRY(write_keys(c, 0, err));
+    if (sf_runs_write(runs, table.text, &hash, err) != SF_OK)
+        return err->status;
+    if (turned)
+        remove_report(c);
+    return write_keys(c, hash, err);
+}
+
+static sf_status check_keys(const sf_sweep_campaign *c, keys *k, bool *known, sf_error *err) {
+    *known = false;
+    if (read_keys(c, k, err) != SF_OK)
+        return err->status;
+    *known = k->there && k->table == sf_plan_hash(c->plan);
+    if (k->there && !*known && !c->force)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s holds the runs of another plan: give another directory, or --force to replace its table "
+            "(finished drops of the same inputs are used again)",
+            c->folder);
+    return SF_OK;
+}
+
+sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_error *err) {
+    keys k;
+    return check_keys(c, &k, known, err);
+}
+
+/* ---- what is there ---- */
+
+/* A run whose folder somebody removed is to be done again. Where all folders are missing, the results are
+ * rather on a disk that is not there. */
+static sf_status open_missing(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+    char place[PATH_MAX];
+    int64_t there = 0, gone = 0;
+    for (int64_t row = 0; row < runs->count && c->drops; row++) {
+        if (runs->state[row] != SF_SWEEP_DONE || !runs->folder[row])
+            continue;
+        snprintf(place, sizeof place, "%s/%s/results.h5", c->drops, runs->folder[row]);
+        bool missing = access(place, F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR);
+        there += !missing;
+        gone += missing;
+        if (missing)
+            sf_runs_open(runs, row);
+    }
+    if (gone > 0 && there == 0)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "runs.csv has runs that are done, but the folder %s has the results of none of them: "
+                       "put them back, or remove runs.csv to begin anew",
+                       c->drops);
+    return SF_OK;
+}
+
+/* `*changed`: what the folder holds, if anything, is of other inputs, of another plan, or of a table that is
+ * not there. */
+static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *changed, sf_error *err) {
+    keys k;
+    bool known = false;
+    path table = file_of(c, "runs.csv");
+    if (check_keys(c, &k, &known, err) != SF_OK)
+        return err->status;
+    *changed = !known || k.inputs != c->inputs || access(table.text, F_OK) != 0;
+    if (known && access(table.text, F_OK) == 0 && sf_runs_read(runs, table.text, k.text, err) == SF_OK)
+        open_missing(c, runs, err);
+    return err->status;
+}
+
+sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err) {
+    bool changed = false;
+    if (read_table(c, runs, &changed, err) != SF_OK)
+        return err->status;
+    *open = sf_runs_count(runs, SF_SWEEP_OPEN) + (c->retry ? sf_runs_count(runs, SF_SWEEP_FAILED) : 0);
+    *open = changed ? runs->count : *open;
+    return SF_OK;
+}
+
+static void open_all(sf_runs *runs, sf_sweep_state state) {
+    for (int64_t row = 0; row < runs->count; row++)
+        if (runs->state[row] == state)
+            sf_runs_open(runs, row);
+}
+
+/* Rows since the last look may be of other inputs than those before. All are opened, as a row that is there
+ * is soon found again. */
+static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
+    uint64_t inputs = c->inputs;
+    sf_error refused = SF_ERROR_INIT;
+    if (!c->look || (c->look(c->plan, &inputs, &refused) == SF_OK && inputs == c->inputs))
+        return SF_OK;
+    open_all(runs, SF_SWEEP_DONE);
+    open_all(runs, SF_SWEEP_FAILED);
+    return SF_FAIL(err, SF_ERR_IO,
+                   "the inputs of the campaign changed while it ran: %.700s; finished drops are kept: repeat "
+                   "the command",
+                   refused.status != SF_OK ? refused.text
+                                           : "a file that the case or the plan leads to, or a program");
+}
+
+/* No row of other inputs comes into the table. It is written in any case; the first failure counts. */
+static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, bool turned, sf_error *err) {
+    sf_error second = SF_ERROR_INIT, edited = SF_ERROR_INIT;
+    turned = check_unchanged(c, runs, &edited) != SF_OK || turned;
+    if (err->status == SF_OK)
+        *err = edited;
+    if (write_table(c, runs, turned, &second) != SF_OK && err->status == SF_OK)
+        *err = second;
+    return err->status;
+}
+
+static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, bool *changed, sf_error *err) {
+    if (read_table(c, runs, changed, err) != SF_OK)
+        return err->status;
+    if (*changed) {
+        bool there = sf_runs_count(runs, SF_SWEEP_OPEN) < runs->count;
+        open_all(runs, SF_SWEEP_DONE);
+        open_all(runs, SF_SWEEP_FAILED);
+        if (c->log && there)
+            fputs("  files or programs have changed since: every run is looked at again\n", c->log);
+    }
+    if (c->retry)
+        open_all(runs, SF_SWEEP_FAILED);
+    return SF_OK;
+}
+
+/* The values of the factors of the geometry in a row. */
+static uint64_t geometry_of(const sf_plan *plan, int64_t row) {
+    uint64_t hash = SF_HASH_START;
+    for (int f = 0; f < plan->factor_count; f++)
+        if (strncmp(plan->factor[f].key, "geometry", 8) == 0) {
+            double value = sf_plan_value(plan, f, row);
+            hash = sf_hash_bytes(hash, &value, sizeof value);
+        }
+    return hash;
+}
+
+typedef struct geometry {
+    uint64_t hash;
+    bool failed;
+    int64_t row;
+} geometry;
+
+/* By geometry; of one, rows that are done come first. */
+static int compare_geometries(const void *a, const void *b) {
+    const geometry *p = a, *q = b;
+    int order = (p->hash > q->hash) - (p->hash < q->hash);
+    order = order ? order : p->failed - q->failed;
+    return order ? order : (p->row > q->row) - (p->row < q->row);
+}
+
+static int compare_rows(const void *a, const void *b) {
+    int64_t p = *(const int64_t *)a, q = *(const int64_t *)b;
+    return (p > q) - (p < q);
+}
+
+/* The rows that are done or failed, sorted. */
+static int64_t list_geometries(const sf_runs *runs, geometry *list) {
+    int64_t n = 0;
+    for (int64_t row = 0; row < runs->count; row++)
+        if (runs->state[row] != SF_SWEEP_OPEN)
+            list[n++] = (geometry){geometry_of(runs->plan, row), runs->state[row] == SF_SWEEP_FAILED, row};
+    if (n > 0)
+        qsort(list, (size_t)n, sizeof *list, compare_geometries);
+    return n;
+}
+
+/* Rows that are done by which a change of their geometry's files shows. */
+typedef struct samples {
+    int64_t count, *row;     /* the first one of each geometry, in the order of rows */
+    int64_t shared, *sharer; /* these, and those that share a folder with one of them (equal rows) */
+} samples;
+
+static void free_samples(samples *s) {
+    free(s->row);
+    free(s->sharer);
+}
+
+static int compare_folders(const void *a, const void *b) {
+    const char *p = *(char *const *)a, *q = *(char *const *)b;
+    return strcmp(p ? p : "", q ? q : "");
+}
+
+static sf_status list_sharers(const sf_runs *runs, samples *s, sf_error *err) {
+    char **folder = sf_alloc(err, (unsigned long)s->count, sizeof *folder, "geometries");
+    s->sharer =
+        sf_alloc(err, (unsigned long)sf_runs_count(runs, SF_SWEEP_DONE), sizeof *s->sharer, "geometries");
+    if (folder && s->sharer && s->count > 0) {
+        for (int64_t k = 0; k < s->count; k++)
+            folder[k] = runs->folder[s->row[k]];
+        qsort(folder, (size_t)s->count, sizeof *folder, compare_folders);
+        for (int64_t row = 0; row < runs->count; row++)
+            if (runs->state[row] == SF_SWEEP_DONE &&
+                bsearch(&runs->folder[row], folder, (size_t)s->count, sizeof *folder, compare_folders))
+                s->sharer[s->shared++] = row;
+    }
+    free(folder);
+    return err->status;
+}
+
+/* Rows of a geometry of which all have failed are opened: the files that they read may have changed, too. */
+static sf_status pick_samples(sf_runs *runs, samples *s, sf_error *err) {
+    int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
+    geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
+    s->row = sf_alloc(err, (unsigned long)ended, sizeof *s->row, "geometries");
+    int64_t n = list && s->row ? list_geometries(runs, list) : 0;
+    bool all_failed = false;
+    for (int64_t k = 0; k < n; k++) {
+        bool first = k == 0 || list[k].hash != list[k - 1].hash;
+        all_failed = first ? list[k].failed : all_failed;
+        if (all_failed)
+            sf_runs_open(runs, list[k].row);
+        else if (first)
+            s->row[s->count++] = list[k].row;
+    }
+    if (s->count > 0)
+        qsort(s->row, (size_t)s->count, sizeof *s->row, compare_rows);
+    free(list);
+    return err->status == SF_OK ? list_sharers(runs, s, err) : err->status;
+}
+
+/* Gives the rows to the engine, piece by piece, until one of them had to be simulated. */
+static sf_status look_at(const sf_sweep_engine *engine, sf_runs *runs, int64_t count, const int64_t *row,
+                         int *fresh, sf_error *err) {
+    for (int64_t k = 0; k < count && *fresh == 0 && err->status == SF_OK; k += engine->piece) {
+        int64_t left = count - k;
+        engine->run(engine->context, runs, left < engine->piece ? (int)left : engine->piece, row + k, fresh,
+                    err);
+    }
+    return err->status;
+}
+
+/* Writes the table with the sampled rows open: if the process is killed while they are looked at, the next
+ * one takes other samples, none of which finds a folder that was made now. */
+static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, bool turned, const samples *s,
+                                    sf_error *err) {
+    for (int64_t k = 0; k < s->shared; k++)
+        runs->state[s->sharer[k]] = SF_SWEEP_OPEN;
+    write_table(c, runs, turned, err);
+    for (int64_t k = 0; k < s->shared; k++)
+        runs->state[s->sharer[k]] = SF_SWEEP_DONE;
+    return err->status;
+}
+
+/* A file that only the geometry knows of may have changed: one finished run of each geometry, the samples, is
+ * given to the engine again. If it has to be simulated, every run is looked at again, those that failed, too;
+ * if they cannot all be looked at, the samples are open, and the next start takes others. */
+static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
+                       const samples *s, sf_error *err) {
+    int fresh = 0;
+    if (look_at(engine, runs, s->count, s->row, &fresh, err) == SF_OK && fresh == 0)
+        return SF_OK;
+    for (int64_t k = 0; k < s->shared; k++)
+        sf_runs_open(runs, s->sharer[k]);
+    if (fresh == 0)
+        return err->status;
+    open_all(runs, SF_SWEEP_DONE);
+    open_all(runs, SF_SWEEP_FAILED);
+    if (c->log)
+        fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
+              c->log);
+    return save(c, runs, true, err);
+}
+
+enum { LOOKED_AT = 200 }; /* geometries at the end */
+
+static sf_status refuse_row(int64_t row, sf_error *err) {
+    return SF_FAIL(
+        err, SF_ERR_IO,
+        "a file that the geometry of run %lld includes or merges, or its result, changed while the "
+        "campaign ran; finished drops are kept: repeat the command",
+        (long long)row + 1);
+}
+
+/* The same at the end, without simulating anything: the first and the last row that is done of each geometry
+ * (of many geometries, some evenly spread ones, as all come from a few files). If one is of other files, all
+ * rows are opened, as these may be of either. */
+static sf_status probe_again(const sf_sweep_engine *engine, sf_runs *runs, sf_error *err) {
+    if (!engine->is_current)
+        return SF_OK;
+    int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
+    geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
+    int64_t n = list ? list_geometries(runs, list) : 0, geometries = 0, at = 0;
+    for (int64_t k = 0; k < n; k++)
+        geometries += k == 0 || list[k].hash != list[k - 1].hash;
+    int64_t every = geometries / LOOKED_AT + 1;
+    for (int64_t k = 0, last; k < n && err->status == SF_OK; k = last + 1, at++) {
+        for (last = k; last + 1 < n && list[last + 1].hash == list[k].hash;)
+            last++;
+        int64_t done = last;
+        while (done >= k && list[done].failed)
+            done--;
+        if (at % every != 0 || done < k)
+            continue;
+        if (!engine->is_current(engine->context, runs, list[k].row))
+            refuse_row(list[k].row, err);
+        else if (!engine->is_current(engine->context, runs, list[done].row))
+            refuse_row(list[done].row, err);
+    }
+    free(list);
+    if (err->status != SF_OK) {
+        open_all(runs, SF_SWEEP_DONE);
+        open_all(runs, SF_SWEEP_FAILED);
+    }
+    return err->status;
+}
+
+/* ---- the work ---- */
+
+static int next_piece(const sf_runs *runs, int64_t *from, int most, int64_t *row) {
+    int count = 0;
+    for (; *from < runs->count && count < most; ++*from)
+        if (runs->state[*from] == SF_SWEEP_OPEN)
+            row[count++] = *from;
+    return count;
+}
+
+static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t done, int64_t open,
+                          double start) {
+    double spent = now() - start, left = spent / (double)done * (double)(open - done);
+    if (c->log) {
+        fprintf(c->log, "%lld of %lld runs; %.0f s so far, about %.0f s to go\n", (long long)(begun + done),
+                (long long)(begun + open), spent, left);
+        fflush(c->log);
+    }
+}
+
+static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs, int64_t *row,
+                      sf_error *err) {
+    int64_t from = 0, done = 0, open = sf_runs_count(runs, SF_SWEEP_OPEN);
+    double start = now(), written = start, duration = 0;
+    int count;
+    while (err->status == SF_OK && (count = next_piece(runs, &from, engine->piece, row)) > 0) {
+        int fresh = 0;
+        if (engine->run(engine->context, runs, count, row, &fresh, err) != SF_OK)
+            return err->status;
+        done += count;
+        double time = now();
+        if (time - written < WRITE_INTERVAL || time - written < WRITE_SHARE * duration)
+            continue;
+        save(c, runs, false, err);
+        written = now();
+        duration = written - time;
+        tell_progress(c, runs->count - open, done, open, start);
+    }
+    return err->status;
+}
+
+sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
+                                sf_error *err) {
+    int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
+    samples s = {0};
+    bool turned = false;
+    if (!row || take_over(c, runs, &turned, err) != SF_OK)
+        goto done;
+    if (pick_samples(runs, &s, err) == SF_OK && write_samples_open(c, runs, turned, &s, err) == SF_OK &&
+        probe(c, engine, runs, &s, err) == SF_OK && work(c, engine, runs, row, err) == SF_OK)
+        turned = probe_again(engine, runs, err) != SF_OK || turned;
+    save(c, runs, turned, err);
+done:
+    free_samples(&s);
+    free(row);
+    return err->status;
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Does the open rows of a plan in pieces, and keeps runs.csv up to date, so that a campaign that was
+ * interrupted or killed goes on where it was. */
+#ifndef SF_SWEEP_CAMPAIGN_H
+#define SF_SWEEP_CAMPAIGN_H
+
+#include "study/sweep/runs.h"
+#include <stdio.h>
+
+/* Does `count` rows: each becomes done or failed in `runs`, or stays open. `fresh` receives the number of
+ * those that had to be simulated. Errors: what ends the campaign; SF_INTERRUPTED. */
+typedef struct sf_sweep_engine {
+    sf_status (*run)(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh, sf_error *err);
+    void *context;
+    int piece; /* rows at a time */
+    /* Does what is there of a row that is done still come from its inputs as they are now, those that only
+     * its geometry knows of, too? NULL: not looked at. */
+    bool (*is_current)(void *context, const sf_runs *runs, int64_t row);
+} sf_sweep_engine;
+
+typedef struct sf_sweep_campaign {
+    const sf_plan *plan;
+    const char *folder; /* of the output; it exists */
+    uint64_t inputs;    /* hash of the contents of all inputs */
+    /* That hash as it is now, before each writing of the table; NULL: the inputs stay as they are. */
+    sf_status (*look)(const sf_plan *plan, uint64_t *hash, sf_error *err);
+    const char *drops; /* folder of the runs' folders: a row whose results have gone from there is open;
+                          NULL: not looked at */
+    const char *const
+        *report; /* names of the files in `folder` that are made of the table, ends with NULL: they
+                    are removed when the table turns to other inputs or another plan; NULL: none */
+    bool retry;  /* failed rows are done again */
+    bool force;  /* another plan in the folder gives way */
+    FILE *log;   /* NULL: silent */
+} sf_sweep_campaign;
+
+/* Is the folder that of a campaign, and of this plan? SF_ERR_INPUT if it is of another plan, without force.
+ * `*known`: it is of this one. Nothing is written. */
+sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_error *err);
+
+/* Takes over what runs.csv holds, does the rest and writes runs.csv, also when it ends early. `runs` is
+ * created by sf_runs_create. SF_ERR_IO: the inputs have changed meanwhile; all rows are open then. */
+sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
+                                sf_error *err);
+
+/* Reads the rows that are done, for a look without a run. `*open`: rows that a campaign looks at, which are
+ * all of them if the inputs have changed since, and those that failed if they are done again. */
+sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err);
+
+#endif

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the open runs of a plan will take: from the runs that are done, or else from the model of the first
+ * row. */
+#ifndef SF_SWEEP_COST_H
+#define SF_SWEEP_COST_H
+
+#include "study/sweep/runs.h"
+
+typedef struct sf_sweep_cost {
+    double seconds;    /* processor time of one run; NaN: not known, as the first row has no model */
+    double bytes;      /* of its results */
+    double work_bytes; /* that one run needs while it is at work */
+    int64_t open;      /* runs */
+    int64_t there;     /* of them at most so many have a drop's folder already */
+    char basis[512];   /* where that comes from */
+} sf_sweep_cost;
+
+/* Of `open` rows, of which some may have a figure of earlier inputs. `folder`: of the results' folders
+ * ("DIR/runs"). Without a finished run the model of the first row is built in memory. */
+sf_status sf_sweep_cost_estimate(const sf_runs *runs, int64_t open, const char *folder, sf_sweep_cost *cost,
+                                 sf_error *err);
+
+/* SF_ERR_INPUT if the file system of `folder` has too little room for all runs, and for `jobs` at work. */
+sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *cost, const char *folder, int jobs, sf_error *err);
+
+/* `jobs` 0: on machines that are not known. */
+void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *cost, int jobs);
+
+#endif

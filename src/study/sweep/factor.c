@@ -1,0 +1,487 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/sweep/factor.h"
+
+#include "case/parts.h"
+#include "case/print.h"
+#include "base/text.h"
+#include "io/plain_file.h"
+#include <gsl/gsl_cdf.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MOST_LEVELS = 1000000, MOST_DRAWS = 1000, DRAW_PATH = PATH_MAX + 32 };
+
+/* A factor while it is read: the kind of quantity of its unit is found by its first value. */
+typedef struct reading {
+    const sf_config *config;
+    const config_setting_t *group;
+    sf_factor *factor;
+    bool begun;       /* a number has been read */
+    sf_quantity kind; /* of `unit` */
+    double scale;     /* SI of one `unit` */
+} reading;
+
+/* ---- numbers ---- */
+
+/* Is the text a number with a unit of some kind? */
+static bool find_kind(const sf_units *units, const char *text, sf_quantity *kind, double *si) {
+    for (int k = 0; k < SF_QUANTITY_COUNT; k++) {
+        sf_error none = SF_ERROR_INIT;
+        if (sf_units_parse(units, text, (sf_quantity)k, si, &none) == SF_OK) {
+            *kind = (sf_quantity)k;
+            return true;
+        }
+    }
+    return false;
+}
+
+static void trim(const char *text, char *out, size_t size) {
+    text += strspn(text, " \t");
+    size_t length = strlen(text);
+    while (length > 0 && strchr(" \t", text[length - 1]))
+        length--;
+    snprintf(out, size, "%.*s", (int)(length < size ? length : size - 1), text);
+}
+
+/* The unit of the first number decides. */
+static sf_status begin_unit(reading *r, const config_setting_t *s, const char *unit, sf_quantity kind,
+                            sf_error *err) {
+    char one[SF_FACTOR_UNIT_SIZE + 4];
+    trim(unit, r->factor->unit, sizeof r->factor->unit);
+    snprintf(one, sizeof one, "1 %s", r->factor->unit);
+    r->kind = kind;
+    r->begun = true;
+    if (*r->factor->unit && sf_units_parse(r->config->units, one, kind, &r->scale, err) != SF_OK)
+        return sf_config_refuse(r->config, s, err, "%s: the unit of \"%s\" cannot be used", r->factor->key,
+                                unit);
+    return SF_OK;
+}
+
+static sf_status take_quantity(reading *r, const config_setting_t *s, const char *text, double number,
+                               const char *unit, double *out, sf_error *err) {
+    sf_error inner = SF_ERROR_INIT;
+    sf_quantity kind = SF_LENGTH;
+    double si = 0;
+    char own[SF_FACTOR_UNIT_SIZE];
+    if (!r->begun && !find_kind(r->config->units, text, &kind, &si))
+        return sf_config_refuse(r->config, s, err, "%s: \"%s\" has no unit that is known", r->factor->key,
+                                text);
+    if (!r->begun && begin_unit(r, s, unit, kind, err) != SF_OK)
+        return err->status;
+    if (!*r->factor->unit)
+        return sf_config_refuse(r->config, s, err, "%s: \"%s\" has a unit, the values before it have none",
+                                r->factor->key, text);
+    if (sf_units_parse(r->config->units, text, r->kind, &si, &inner) != SF_OK)
+        return sf_config_refuse(r->config, s, err, "%s: %s", r->factor->key, inner.text);
+    trim(unit, own, sizeof own);
+    *out = strcmp(own, r->factor->unit) == 0 ? number : si / r->scale;
+    return SF_OK;
+}
+
+static bool is_plain_number(const config_setting_t *s, double *out) {
+    int type = config_setting_type(s);
+    *out = type == CONFIG_TYPE_FLOAT   ? config_setting_get_float(s)
+           : type == CONFIG_TYPE_INT   ? config_setting_get_int(s)
+           : type == CONFIG_TYPE_INT64 ? (double)config_setting_get_int64(s)
+                                       : NAN;
+    return type == CONFIG_TYPE_FLOAT || type == CONFIG_TYPE_INT || type == CONFIG_TYPE_INT64;
+}
+
+/* A number, with or without a unit. */
+static sf_status take_number(reading *r, const config_setting_t *s, double *out, sf_error *err) {
+    const char *text = config_setting_get_string(s);
+    double number = 0;
+    const char *unit = text ? sf_decimal_read(text + strspn(text, " \t"), &number) : NULL;
+    if (is_plain_number(s, out)) {
+        if (*r->factor->unit)
+            return sf_config_refuse(r->config, s, err, "%s: %g has no unit, the values before it have one",
+                                    r->factor->key, *out);
+        r->begun = true;
+        return isfinite(*out) ? SF_OK
+                              : sf_config_refuse(r->config, s, err, "%s is not finite", r->factor->key);
+    }
+    if (!unit)
+        return sf_config_refuse(r->config, s, err, "%s: a number is expected, with its unit as a text",
+                                r->factor->key);
+    return take_quantity(r, s, text, number, unit, out, err);
+}
+
+/* Is the value a number, or a text of a number with a unit? */
+static bool looks_numeric(const sf_config *config, const config_setting_t *s) {
+    const char *text = config_setting_get_string(s);
+    double number = 0, si = 0;
+    sf_quantity kind;
+    if (is_plain_number(s, &number))
+        return true;
+    return text && sf_decimal_read(text + strspn(text, " \t"), &number) &&
+           find_kind(config->units, text, &kind, &si);
+}
+
+/* ---- words ---- */
+
+static sf_status make_levels(sf_factor *f, int64_t count, bool words, sf_error *err) {
+    f->words = words;
+    f->count = count;
+    if (words) {
+        f->text = sf_alloc(err, (unsigned long)count, sizeof *f->text, "levels");
+        f->label = sf_alloc(err, (unsigned long)count, sizeof *f->label, "levels");
+    } else {
+        f->number = sf_alloc(err, (unsigned long)count, sizeof *f->number, "levels");
+    }
+    return err->status;
+}
+
+/* `text`: from malloc, taken over. */
+static sf_status set_word(sf_factor *f, int64_t k, char *text, const char *label, sf_error *err) {
+    f->text[k] = text;
+    f->label[k] = strdup(label);
+    return text && f->label[k] ? SF_OK
+                               : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", f->key);
+}
+
+/* All with a point, as an array of libconfig has whole or fractional numbers, not both. */
+static void print_fractions(FILE *out, const config_setting_t *array) {
+    for (int k = 0; k < config_setting_length(array); k++) {
+        char number[40];
+        snprintf(number, sizeof number, "%.12g", config_setting_get_float_elem(array, k));
+        fprintf(out, "%s%s%s", k ? ", " : "[", number, strpbrk(number, ".e") ? "" : ".0");
+    }
+    fputc(']', out);
+}
+
+/* The setting in libconfig syntax, as --set takes it or, `plain`, as a table has it; from malloc, NULL
+ * without memory. */
+static char *print_word(const config_setting_t *s, bool plain) {
+    char *text = NULL;
+    size_t size = 0;
+    const config_setting_t *first = config_setting_is_array(s) ? config_setting_get_elem(s, 0) : NULL;
+    FILE *out = open_memstream(&text, &size);
+    if (out && first && config_setting_type(first) == CONFIG_TYPE_FLOAT && !plain)
+        print_fractions(out, s);
+    else if (out)
+        sf_case_print_setting(out, s);
+    return out && fclose(out) == 0 ? text : NULL;
+}
+
+static sf_status take_word(reading *r, const config_setting_t *s, int64_t k, sf_error *err) {
+    char *label = print_word(s, true);
+    const char *own = config_setting_get_string(s);
+    if (!label)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", r->factor->key);
+    set_word(r->factor, k, print_word(s, false), own ? own : label, err);
+    free(label);
+    return err->status;
+}
+
+/* A group of the case is replaced by a file, "@file"; a key takes the path as a text. */
+static bool is_group(const char *key) {
+    const char *dot = strchr(key, '.');
+    return !dot || (strncmp(key, "materials.", 10) == 0 && !strchr(dot + 1, '.'));
+}
+
+static sf_status take_file(reading *r, const config_setting_t *s, const char *label, int64_t k,
+                           sf_error *err) {
+    char *text = NULL, path[DRAW_PATH], real[PATH_MAX];
+    sf_error inner = SF_ERROR_INIT;
+    snprintf(path, sizeof path, "%s%s%s", *label == '/' ? "" : r->config->folder, *label == '/' ? "" : "/",
+             label);
+    if (sf_plain_check(path, NULL, &inner) != SF_OK)
+        return sf_config_refuse(r->config, s, err, "%s: %s", r->factor->key, inner.text);
+    const char *whole = realpath(path, real) ? real : path;
+    bool group = is_group(r->factor->key);
+    if (!group && strpbrk(whole, "\"\\"))
+        return sf_config_refuse(r->config, s, err,
+                                "%s: a path with a quote or a backslash cannot be used: %s", r->factor->key,
+                                whole);
+    if (asprintf(&text, group ? "@%s" : "\"%s\"", whole) < 0)
+        text = NULL;
+    return set_word(r->factor, k, text, label, err);
+}
+
+/* ---- the kinds of lists ---- */
+
+static sf_status read_files(reading *r, const config_setting_t *list, sf_error *err) {
+    int count = config_setting_length(list);
+    if (make_levels(r->factor, count, true, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < count && err->status == SF_OK; k++) {
+        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
+        const char *label = config_setting_get_string(s);
+        if (!label || !*label)
+            return sf_config_refuse(r->config, s, err, "files must be texts, the names of files");
+        take_file(r, s, label, k, err);
+    }
+    return err->status;
+}
+
+/* The case would look for it beside itself, not beside the plan; a group takes a file and nothing else. */
+static bool is_file(const sf_factor *f, const config_setting_t *s) {
+    const char *text = config_setting_get_string(s);
+    return is_group(f->key) || (text && *text && *text != '/' && sf_case_key_is_file(f->key));
+}
+
+static sf_status read_values(reading *r, const config_setting_t *list, sf_error *err) {
+    int count = config_setting_length(list);
+    bool words = !looks_numeric(r->config, config_setting_get_elem(list, 0));
+    if (make_levels(r->factor, count, words, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < count && err->status == SF_OK; k++) {
+        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
+        if (is_file(r->factor, s))
+            return sf_config_refuse(
+                r->config, s, err,
+                "%s is given by a file: give files, relative to the plan, in place of values",
+                r->factor->key);
+        if (words)
+            take_word(r, s, k, err);
+        else
+            take_number(r, s, &r->factor->number[k], err);
+    }
+    return err->status;
+}
+
+/* The list `values` or `files`. */
+static sf_status read_list(reading *r, const config_setting_t *list, bool files, sf_error *err) {
+    if (!config_setting_is_array(list) && !config_setting_is_list(list))
+        return sf_config_refuse(r->config, list, err, "%s must be a list, [ ... ] or ( ... )",
+                                config_setting_name(list));
+    if (config_setting_length(list) == 0)
+        return sf_config_refuse(r->config, list, err, "%s: the list of %s is empty: there is no run to do",
+                                config_setting_name(list), r->factor->key);
+    return files ? read_files(r, list, err) : read_values(r, list, err);
+}
+
+static sf_status read_range(reading *r, sf_error *err) {
+    sf_factor *f = r->factor;
+    double from = 0, to = 0, count = 0;
+    int logarithmic = 0;
+    const config_setting_t *first = config_setting_get_member(r->group, "from"),
+                           *last = config_setting_get_member(r->group, "to");
+    if (!last)
+        return sf_config_refuse(r->config, r->group, err, "%s: from needs to and count", f->key);
+    if (take_number(r, first, &from, err) != SF_OK || take_number(r, last, &to, err) != SF_OK ||
+        sf_config_whole(r->config, r->group, "count", true, 2, MOST_LEVELS, &count, err) != SF_OK ||
+        sf_config_choice(r->config, r->group, "spacing", "linear|log", &logarithmic, err) != SF_OK ||
+        make_levels(f, (int64_t)count, false, err) != SF_OK)
+        return err->status;
+    if (logarithmic && !(from > 0 && to > 0))
+        return sf_config_refuse(r->config, first, err, "%s: a logarithmic range needs values above zero",
+                                f->key);
+    for (int64_t k = 0; k < f->count; k++) {
+        double s = (double)k / (double)(f->count - 1);
+        f->number[k] = logarithmic ? exp(log(from) + s * (log(to) - log(from))) : from + s * (to - from);
+    }
+    return SF_OK;
+}
+
+/* ---- a posterior ---- */
+
+static void draw_name(const char *folder, int number, char *path, size_t size) {
+    snprintf(path, size, "%s/draw-%03d.cfg", folder, number);
+}
+
+/* Draws from 1 on, at most `most`. */
+static int count_draws(const char *folder, int most) {
+    char path[DRAW_PATH];
+    int count = 0;
+    do {
+        draw_name(folder, count + 1, path, sizeof path);
+    } while (access(path, F_OK) == 0 && count++ < most);
+    return count < most ? count : most;
+}
+
+/* The number of draw `k` (from 0) of `count` of them, in the middle of equal parts of those that are there:
+ * softfall-fit writes them model by model. */
+static int chosen_draw(int k, int count, int there) {
+    return (2 * k + 1) * there / (2 * count) + 1;
+}
+
+static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error *err) {
+    const char *name = config_setting_get_string(s);
+    char folder[PATH_MAX], path[DRAW_PATH];
+    double draws = MOST_DRAWS;
+    if (!name || !*name)
+        return sf_config_refuse(r->config, s, err, "posterior must be a text, the name of a folder of draws");
+    if (!is_group(r->factor->key))
+        return sf_config_refuse(r->config, s, err,
+                                "a posterior is of key = \"material\" or of a layer, not of %s",
+                                r->factor->key);
+    if (sf_config_whole(r->config, r->group, "draws", false, 1, MOST_DRAWS, &draws, err) != SF_OK)
+        return err->status;
+    bool given = config_setting_get_member(r->group, "draws") != NULL;
+    snprintf(folder, sizeof folder, "%s%s%s", *name == '/' ? "" : r->config->folder, *name == '/' ? "" : "/",
+             name);
+    int there = count_draws(folder, MOST_DRAWS), count = given ? (int)draws : there;
+    if (there == 0)
+        return sf_config_refuse(r->config, s, err, "posterior: there is no draw-001.cfg in %s", folder);
+    if (there < count)
+        return sf_config_refuse(r->config, s, err, "draws is %d, but %s holds %d", count, folder, there);
+    if (make_levels(r->factor, count, true, err) != SF_OK)
+        return err->status;
+    r->factor->uncertain = r->factor->posterior = true;
+    for (int k = 0; k < count && err->status == SF_OK; k++) {
+        draw_name(name, chosen_draw(k, count, there), path, sizeof path);
+        take_file(r, s, path, k, err);
+    }
+    return err->status;
+}
+
+/* ---- distributions ---- */
+
+static const char *const parameters[][2] = {[SF_DISTRIBUTION_UNIFORM] = {"low", "high"},
+                                            [SF_DISTRIBUTION_NORMAL] = {"mean", "deviation"},
+                                            [SF_DISTRIBUTION_LOGNORMAL] = {"median", "deviation_ln"}};
+
+static sf_status check_distribution(const reading *r, sf_error *err) {
+    const sf_factor *f = r->factor;
+    if (f->distribution == SF_DISTRIBUTION_UNIFORM && !(f->a < f->b))
+        return sf_config_refuse(r->config, r->group, err, "%s: low must be below high", f->key);
+    if (f->distribution != SF_DISTRIBUTION_UNIFORM && !(f->b > 0))
+        return sf_config_refuse(r->config, r->group, err, "%s: the deviation must be above zero", f->key);
+    if (f->distribution == SF_DISTRIBUTION_LOGNORMAL && !(f->a > 0))
+        return sf_config_refuse(r->config, r->group, err, "%s: the median must be above zero", f->key);
+    return SF_OK;
+}
+
+static sf_status read_distribution(reading *r, sf_error *err) {
+    int which = 0;
+    if (sf_config_choice(r->config, r->group, "distribution", "uniform|normal|lognormal", &which, err) !=
+        SF_OK)
+        return err->status;
+    r->factor->distribution = (sf_distribution)(which + 1);
+    const char *const *names = parameters[which + 1];
+    char own[64];
+    snprintf(own, sizeof own, "key|name|distribution|%s|%s", names[0], names[1]);
+    if (sf_config_names(r->config, r->group, own, err) != SF_OK)
+        return err->status;
+    const config_setting_t *first = config_setting_get_member(r->group, names[0]),
+                           *second = config_setting_get_member(r->group, names[1]);
+    if (!first || !second)
+        return sf_config_refuse(r->config, r->group, err, "%s: give %s and %s, or values, files or posterior",
+                                r->factor->key, names[0], names[1]);
+    if (take_number(r, first, &r->factor->a, err) != SF_OK)
+        return err->status;
+    if (which == 2 ? sf_config_number(r->config, r->group, names[1], true, 0, 10, &r->factor->b, err) != SF_OK
+                   : take_number(r, second, &r->factor->b, err) != SF_OK)
+        return err->status;
+    r->factor->uncertain = true;
+    return check_distribution(r, err);
+}
+
+/* ---- the whole ---- */
+
+static sf_status read_head(reading *r, sf_error *err) {
+    const char *key = NULL, *name = NULL;
+    sf_factor *f = r->factor;
+    int line = (int)config_setting_source_line(r->group);
+    const char *path = sf_case_source_find(&r->config->source, line, &line);
+    snprintf(f->where, sizeof f->where, "%.480s:%d", path, line);
+    if (sf_config_text(r->config, r->group, "key", true, &key, err) != SF_OK ||
+        sf_config_text(r->config, r->group, "name", false, &name, err) != SF_OK)
+        return err->status;
+    if (strlen(key) >= sizeof f->key || strpbrk(key, "= \t\"@") || (name && strlen(name) >= sizeof f->name))
+        return sf_config_refuse(r->config, r->group, err, "\"%.80s\" is no key of a case", key);
+    snprintf(f->key, sizeof f->key, "%s", key);
+    snprintf(f->name, sizeof f->name, "%s", name ? name : key);
+    return SF_OK;
+}
+
+static sf_status read_levels(reading *r, bool sampled, sf_error *err) {
+    static const char *const kinds[] = {"values", "files", "posterior", "from", NULL},
+                             *const names[] = {"key|name|values|uncertain", "key|name|files|uncertain",
+                                               "key|name|posterior|draws|uncertain",
+                                               "key|name|from|to|count|spacing|uncertain"},
+                             *const drawn[] = {"key|name|values", "key|name|files",
+                                               "key|name|posterior|draws"}; /* no `from` there */
+    const config_setting_t *found = NULL;
+    int which = -1;
+    for (int k = 0; kinds[k]; k++) {
+        const config_setting_t *s = config_setting_get_member(r->group, kinds[k]);
+        if (s && found)
+            return sf_config_refuse(r->config, s, err, "%s: %s and %s exclude each other", r->factor->key,
+                                    kinds[which], kinds[k]);
+        found = s ? s : found;
+        which = s ? k : which;
+    }
+    if (which < 0 && sampled)
+        return read_distribution(r, err);
+    if (which < 0)
+        return sf_config_refuse(r->config, r->group, err,
+                                "%s: give values, files, posterior, or from, to and count; a distribution "
+                                "belongs into a group with sample",
+                                r->factor->key);
+    SF_TRY(sf_config_names(r->config, r->group, sampled ? drawn[which] : names[which], err));
+    return which == 2   ? read_posterior(r, found, err)
+           : which == 3 ? read_range(r, err)
+                        : read_list(r, found, which == 1, err);
+}
+
+sf_status sf_factor_read(const sf_config *config, const config_setting_t *group, bool sampled, sf_factor *f,
+                         sf_error *err) {
+    static const char list[] = "key|name|values|files|posterior|draws|from|to|count|spacing|uncertain",
+                      drawn[] = "key|name|values|files|posterior|draws|distribution|low|high|mean|deviation|"
+                                "median|deviation_ln";
+    reading r = {.config = config, .group = group, .factor = f};
+    *f = (sf_factor){0};
+    if (sf_config_names(config, group, sampled ? drawn : list, err) != SF_OK || read_head(&r, err) != SF_OK ||
+        read_levels(&r, sampled, err) != SF_OK)
+        return err->status;
+    f->uncertain |= sampled;
+    return sf_config_flag(config, group, "uncertain", &f->uncertain, err);
+}
+
+void sf_factor_free(sf_factor *f) {
+    for (int64_t k = 0; k < f->count && f->words; k++) {
+        if (f->text)
+            free(f->text[k]);
+        if (f->label)
+            free(f->label[k]);
+    }
+    free(f->text);
+    free(f->label);
+    free(f->number);
+    free(f->value);
+    *f = (sf_factor){0};
+}
+
+double sf_factor_quantile(const sf_factor *f, double u) {
+    int64_t level = (int64_t)(u * (double)f->count);
+    switch (f->distribution) {
+    case SF_DISTRIBUTION_UNIFORM:
+        return f->a + u * (f->b - f->a);
+    case SF_DISTRIBUTION_NORMAL:
+        return f->a + f->b * gsl_cdf_ugaussian_Pinv(u);
+    case SF_DISTRIBUTION_LOGNORMAL:
+        return f->a * exp(f->b * gsl_cdf_ugaussian_Pinv(u));
+    case SF_DISTRIBUTION_NONE:
+        break;
+    }
+    level = level < f->count ? level : f->count - 1;
+    return f->words ? (double)level : f->number[level];
+}
+
+void sf_factor_override(const sf_factor *f, double value, char *text, size_t size) {
+    if (f->words)
+        snprintf(text, size, "%s=%s", f->key, f->text[(int64_t)value]);
+    else if (*f->unit)
+        snprintf(text, size, "%s=\"%.12g %s\"", f->key, value, f->unit);
+    else
+        snprintf(text, size, "%s=%.12g", f->key, value);
+}
+
+void sf_factor_text(const sf_factor *f, double value, char *text, size_t size) {
+    if (f->words)
+        snprintf(text, size, "%s", f->label[(int64_t)value]);
+    else
+        snprintf(text, size, "%.12g", value);
+}
+
+void sf_factor_heading(const sf_factor *f, char *text, size_t size) {
+    if (*f->unit)
+        snprintf(text, size, "%s (%s)", f->name, f->unit);
+    else
+        snprintf(text, size, "%s", f->name);
+}

@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/sweep/plan.h"
+
+#include "base/hash.h"
+#include "post/figures/figures.h"
+#include "study/sweep/indices.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SAMPLES = 100000000 };
+#define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"
+
+/* ---- blocks ---- */
+
+/* Beside the factors. */
+static bool is_column(const char *name) {
+    static const char *const columns[] = {"id", "run_status", "grade", "message", "folder"};
+    for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++)
+        if (strcmp(name, columns[k]) == 0)
+            return true;
+    return sf_figure_find(name) != NULL;
+}
+
+static sf_status add_factor(const sf_config *config, const config_setting_t *group, bool sampled, sf_plan *p,
+                            sf_error *err) {
+    if (p->factor_count == SF_SWEEP_FACTORS)
+        return sf_config_refuse(config, group, err, "more than %d factors", SF_SWEEP_FACTORS);
+    p->block_of[p->factor_count] = p->block_count;
+    sf_factor *f = &p->factor[p->factor_count++];
+    if (sf_factor_read(config, group, sampled, f, err) != SF_OK)
+        return err->status;
+    if (is_column(f->name))
+        return sf_config_refuse(config, group, err,
+                                "\"%s\" is a column of runs.csv already: give the factor another name",
+                                f->name);
+    if (sf_runner_sets_key(f->key))
+        return sf_config_refuse(config, group, err, SETS_ITSELF, f->key);
+    for (int k = 0; k < p->factor_count - 1; k++) {
+        const sf_factor *other = &p->factor[k];
+        if (strcmp(other->key, f->key) == 0)
+            return sf_config_refuse(config, group, err, "%s is a factor already, at %s", f->key,
+                                    other->where);
+        if (strcmp(other->name, f->name) == 0)
+            return sf_config_refuse(config, group, err, "two factors have the name \"%s\"", f->name);
+    }
+    return SF_OK;
+}
+
+static sf_status add_members(const sf_config *config, const config_setting_t *list, bool sampled, sf_plan *p,
+                             sf_error *err) {
+    for (int k = 0; k < config_setting_length(list) && err->status == SF_OK; k++)
+        add_factor(config, config_setting_get_elem(list, (unsigned)k), sampled, p, err);
+    return err->status;
+}
+
+/* A word that the list repeats, as that of a zip may, is one level. */
+static void number_words(sf_factor *f) {
+    int64_t kept = 0;
+    for (int64_t k = 0; k < f->count; k++) {
+        char *text = f->text[k], *label = f->label[k];
+        int64_t level = 0;
+        f->text[k] = f->label[k] = NULL;
+        while (level < kept && strcmp(f->text[level], text) != 0)
+            level++;
+        f->value[k] = (double)level;
+        if (level < kept) {
+            free(text);
+            free(label);
+        } else {
+            f->text[kept] = text;
+            f->label[kept++] = label;
+        }
+    }
+    f->count = kept;
+}
+
+static sf_status copy_levels(sf_factor *f, sf_error *err) {
+    f->value = sf_alloc(err, (unsigned long)f->count, sizeof *f->value, "the values of a factor");
+    if (!f->value)
+        return err->status;
+    for (int64_t k = 0; k < f->count && !f->words; k++)
+        f->value[k] = f->number[k];
+    if (f->words)
+        number_words(f);
+    return SF_OK;
+}
+
+static sf_status read_list_block(const sf_config *config, const config_setting_t *group, sf_plan *p,
+                                 sf_block *b, sf_error *err) {
+    if (add_factor(config, group, false, p, err) != SF_OK)
+        return err->status;
+    b->rows = p->factor[b->first].count;
+    return copy_levels(&p->factor[b->first], err);
+}
+
+static sf_status read_zip(const sf_config *config, const config_setting_t *group, sf_plan *p, sf_block *b,
+                          sf_error *err) {
+    const config_setting_t *list = NULL;
+    b->kind = SF_BLOCK_ZIP;
+    if (sf_config_names(config, group, "zip", err) != SF_OK ||
+        sf_config_list(config, group, "zip", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
+        add_members(config, list, false, p, err) != SF_OK)
+        return err->status;
+    b->rows = p->factor[b->first].count;
+    for (int k = b->first; k < p->factor_count; k++) {
+        const sf_factor *f = &p->factor[k];
+        if (f->count != b->rows)
+            return sf_config_refuse(config, list, err,
+                                    "zip: %s has %lld values and %s %lld; the lists must have one length",
+                                    p->factor[b->first].key, (long long)b->rows, f->key, (long long)f->count);
+        if (f->uncertain != p->factor[b->first].uncertain)
+            return sf_config_refuse(
+                config, list, err,
+                "zip: one of %s and %s is chosen and the other uncertain, so that no "
+                "probability belongs to a choice: give the chosen one uncertain = true, or "
+                "cross them",
+                p->factor[b->first].key, f->key);
+        if (copy_levels(&p->factor[k], err) != SF_OK)
+            return err->status;
+    }
+    return SF_OK;
+}
+
+/* From the unit cube to the values of the factors. */
+static sf_status spread(const double *u, sf_plan *p, const sf_block *b, sf_error *err) {
+    int d = p->factor_count - b->first;
+    for (int i = 0; i < d; i++) {
+        sf_factor *f = &p->factor[b->first + i];
+        f->value = sf_alloc(err, (unsigned long)b->rows, sizeof *f->value, "the values of a factor");
+        for (int64_t k = 0; k < b->rows && f->value; k++)
+            f->value[k] = sf_factor_quantile(f, u[k * d + i]);
+    }
+    return err->status;
+}
+
+static sf_status draw(const sf_config *config, const config_setting_t *group, sf_plan *p, sf_block *b,
+                      sf_error *err) {
+    int d = p->factor_count - b->first;
+    sf_error inner = SF_ERROR_INIT;
+    b->rows = sf_sample_rows(b->method, d, b->samples);
+    double *u = sf_alloc(err, (unsigned long)b->rows, (unsigned long)d * sizeof *u, "samples");
+    if (u && sf_sample(b->method, d, b->samples, b->seed, u, &inner) != SF_OK)
+        sf_config_refuse(config, group, err, "%s", inner.text);
+    else if (u)
+        spread(u, p, b, err);
+    free(u);
+    return err->status;
+}
+
+static sf_status read_sample(const sf_config *config, const config_setting_t *group, bool huge, sf_plan *p,
+                             sf_block *b, sf_error *err) {
+    const config_setting_t *list = NULL;
+    int method = 0;
+    double count = 0, seed = 1;
+    b->kind = SF_BLOCK_SAMPLE;
+    if (sf_config_names(config, group, "sample|count|seed|of", err) != SF_OK ||
+        sf_config_choice(config, group, "sample", SF_SAMPLING_WORDS, &method, err) != SF_OK ||
+        sf_config_whole(config, group, "count", true, 1, MOST_SAMPLES, &count, err) != SF_OK ||
+        sf_config_whole(config, group, "seed", false, 0, 4294967295.0, &seed, err) != SF_OK ||
+        sf_config_list(config, group, "of", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
+        add_members(config, list, true, p, err) != SF_OK)
+        return err->status;
+    if ((sf_sampling)method == SF_SAMPLING_SALTELLI && count < SF_INDEX_LEAST)
+        return sf_config_refuse(config, config_setting_get_member(group, "count"), err,
+                                "count: Sobol' indices need %d samples, and some hundreds to tell anything",
+                                SF_INDEX_LEAST);
+    b->method = (sf_sampling)method;
+    b->samples = (int64_t)count;
+    b->seed = (uint64_t)seed;
+    if (!huge && sf_sample_rows(b->method, p->factor_count - b->first, b->samples) > SF_SWEEP_ROWS)
+        return sf_config_refuse(config, group, err,
+                                "the sample has more than %d rows: give --yes if it is meant", SF_SWEEP_ROWS);
+    return draw(config, group, p, b, err);
+}
+
+static sf_status read_block(const sf_config *config, const config_setting_t *group, bool huge, sf_plan *p,
+                            sf_error *err) {
+    sf_block *b = &p->block[p->block_count];
+    *b = (sf_block){.first = p->factor_count};
+    if (config_setting_get_member(group, "zip"))
+        read_zip(config, group, p, b, err);
+    else if (config_setting_get_member(group, "sample"))
+        read_sample(config, group, huge, p, b, err);
+    else
+        read_list_block(config, group, p, b, err);
+    b->count = p->factor_count - b->first;
+    p->block_count++;
+    return err->status;
+}
+
+/* ---- the product ---- */
+
+static sf_status multiply(const sf_config *config, const config_setting_t *list, bool huge, sf_plan *p,
+                          sf_error *err) {
+    double product = 1;
+    p->rows = 1;
+    for (int k = 0; k < p->block_count; k++)
+        product *= (double)p->block[k].rows;
+    if (product > SF_SWEEP_ROWS && !huge)
+        return sf_config_refuse(config, list, err,
+                                "the plan has %.0f runs, more than %d: give --yes if it is meant", product,
+                                SF_SWEEP_ROWS);
+    if (product > MOST_SAMPLES)
+        return sf_config_refuse(config, list, err, "the plan has %.3g runs: more than %d cannot be planned",
+                                product, MOST_SAMPLES);
+    for (int k = p->block_count - 1; k >= 0; k--) {
+        p->block[k].stride = p->rows;
+        p->rows *= p->block[k].rows;
+    }
+    const sf_block *s = sf_plan_saltelli(p);
+    if (s && p->block_count > 1)
+        return sf_config_refuse(config, list, err,
+                                "a sample for Sobol' indices (saltelli) stands alone: move the "
+                                "other factors into it, or make a plan for each of their values");
+    return SF_OK;
+}
+
+static sf_status read_factors(const sf_config *config, bool huge, sf_plan *p, sf_error *err) {
+    const config_setting_t *root = config_root_setting(&config->config), *list = NULL;
+    if (sf_config_list(config, root, "factors", true, SF_SWEEP_FACTORS, &list, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < config_setting_length(list) && err->status == SF_OK; k++)
+        read_block(config, config_setting_get_elem(list, (unsigned)k), huge, p, err);
+    return err->status == SF_OK ? multiply(config, list, huge, p, err) : err->status;
+}
+
+/* ---- the rest ---- */
+
+/* The key of an override, without blanks. */
+static void key_of(const char *set, char *key, size_t size) {
+    set += strspn(set, " \t");
+    snprintf(key, size, "%.*s", (int)strcspn(set, " \t="), set);
+}
+
+static sf_status read_set(const sf_config *config, sf_plan *p, sf_error *err) {
+    const config_setting_t *list = config_lookup(&config->config, "set");
+    int line = list ? (int)config_setting_source_line(list) : 0;
+    const char *file = sf_case_source_find(&config->source, line, &line);
+    snprintf(p->set_where, sizeof p->set_where, "%.480s:%d", file, line);
+    SF_TRY(sf_config_overrides(config, "set", SF_RUNNER_OVERRIDES, p->set, &p->set_count, err));
+    if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES)
+        return sf_config_refuse(config, list, err, "set and the factors change more than %d keys",
+                                SF_RUNNER_OVERRIDES);
+    for (int k = 0; k < p->set_count; k++) {
+        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
+        char key[SF_FACTOR_KEY_SIZE];
+        key_of(p->set[k], key, sizeof key);
+        if (sf_runner_sets_key(key))
+            return sf_config_refuse(config, s, err, "set: " SETS_ITSELF, key);
+        for (int f = 0; f < p->factor_count; f++)
+            if (strcmp(p->factor[f].key, key) == 0)
+                return sf_config_refuse(config, s, err, "set: %s is a factor, at %s", key,
+                                        p->factor[f].where);
+    }
+    return SF_OK;
+}
+
+static sf_status add_figure(const sf_config *config, const config_setting_t *s, const char *key, double limit,
+                            sf_plan *p, sf_error *err) {
+    const sf_figure *figure = sf_figure_find(key);
+    if (!figure || figure->type == SF_FIGURE_TEXT)
+        return sf_config_refuse(config, s, err, "\"%.80s\" is no figure of summary.json (docs/formats.md)",
+                                key);
+    if (p->figure_count == SF_SWEEP_FIGURES)
+        return sf_config_refuse(config, s, err, "at most %d figures", SF_SWEEP_FIGURES);
+    p->figure[p->figure_count++] = (sf_sweep_limit){figure->key, limit};
+    return SF_OK;
+}
+
+static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err) {
+    const config_setting_t *list = config_lookup(&config->config, "figures");
+    if (!list) {
+        p->figure_count = 2;
+        p->figure[0] = (sf_sweep_limit){"a_max_g", SF_DEFAULT_LIMIT_G};
+        p->figure[1] = (sf_sweep_limit){"hic", SF_DEFAULT_LIMIT_HIC};
+        return SF_OK;
+    }
+    if (!config_setting_is_list(list) || config_setting_length(list) == 0)
+        return sf_config_refuse(config, list, err,
+                                "figures must be a list: ( { key = \"a_max_g\"; limit = 200.0; } )");
+    for (int k = 0; k < config_setting_length(list) && err->status == SF_OK; k++) {
+        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
+        const char *key = NULL;
+        double limit = NAN;
+        if (!config_setting_is_group(s))
+            return sf_config_refuse(config, s, err, "figures: each entry must be a group: { ... }");
+        if (sf_config_names(config, s, "key|limit", err) == SF_OK &&
+            sf_config_text(config, s, "key", true, &key, err) == SF_OK &&
+            sf_config_number(config, s, "limit", false, -1e300, 1e300, &limit, err) == SF_OK)
+            add_figure(config, s, key, limit, p, err);
+    }
+    return err->status;
+}
+
+static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_error *err) {
+    const config_setting_t *root = config_root_setting(&config->config);
+    const char *title = NULL;
+    if (sf_config_names(config, root, "case|title|set|factors|figures", err) != SF_OK ||
+        sf_config_file(config, root, "case", true, &p->case_path, err) != SF_OK ||
+        sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
+        read_factors(config, huge, p, err) != SF_OK || read_set(config, p, err) != SF_OK)
+        return err->status;
+    p->title = title ? strdup(title) : NULL;
+    p->folder = strdup(config->folder);
+    if (!p->folder)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the plan %s", p->path);
+    return read_figures(config, p, err);
+}
+
+sf_status sf_plan_read(const char *path, bool huge, sf_plan *p, sf_error *err) {
+    sf_config config;
+    *p = (sf_plan){.path = path};
+    if (sf_config_open(path, &config, err) == SF_OK)
+        read_plan(&config, huge, p, err);
+    sf_config_close(&config);
+    return err->status;
+}
+
+void sf_plan_free(sf_plan *p) {
+    for (int k = 0; k < p->factor_count; k++)
+        sf_factor_free(&p->factor[k]);
+    for (int k = 0; k < p->set_count; k++)
+        free(p->set[k]);
+    free(p->folder);
+    free(p->case_path);
+    free(p->title);
+    *p = (sf_plan){0};
+}
+
+/* ---- rows ---- */
+
+double sf_plan_value(const sf_plan *p, int factor, int64_t row) {
+    const sf_block *b = &p->block[p->block_of[factor]];
+    return p->factor[factor].value[row / b->stride % b->rows];
+}
+
+bool sf_factor_is_group(const sf_factor *f) {
+    return f->words && f->text[0][0] == '@';
+}
+
+/* A file in place of a group is relative to the plan. */
+void sf_plan_set(const sf_plan *p, int k, char *text) {
+    const char *set = p->set[k];
+    const char *file = sf_case_override_file(set);
+    if (file && *file != '/')
+        snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%.*s%s/%s", (int)(file - set), set, p->folder, file);
+    else
+        snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%s", set);
+}
+
+int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE]) {
+    int count = 0;
+    for (int groups = 1; groups >= 0; groups--) {
+        for (int f = 0; f < p->factor_count; f++)
+            if (sf_factor_is_group(&p->factor[f]) == groups)
+                sf_factor_override(&p->factor[f], sf_plan_value(p, f, row), text[count++],
+                                   SF_SWEEP_OVERRIDE_SIZE);
+        for (int k = 0; groups && k < p->set_count; k++)
+            sf_plan_set(p, k, text[count++]);
+    }
+    return count;
+}
+
+uint64_t sf_plan_hash(const sf_plan *p) {
+    uint64_t hash = sf_hash_bytes(SF_HASH_START, &p->rows, sizeof p->rows);
+    for (int k = 0; k < p->set_count; k++)
+        hash = sf_hash_bytes(hash, p->set[k], strlen(p->set[k]) + 1);
+    for (int f = 0; f < p->factor_count; f++) {
+        const sf_factor *factor = &p->factor[f];
+        const sf_block *b = &p->block[p->block_of[f]];
+        hash = sf_hash_bytes(hash, factor->key, strlen(factor->key) + 1);
+        hash = sf_hash_bytes(hash, factor->unit, strlen(factor->unit) + 1);
+        hash = sf_hash_bytes(hash, factor->name, strlen(factor->name) + 1);
+        hash = sf_hash_bytes(hash, &b->stride, sizeof b->stride);
+        hash = sf_hash_bytes(hash, factor->value, (size_t)b->rows * sizeof *factor->value);
+        for (int64_t k = 0; factor->words && k < factor->count; k++)
+            hash = sf_hash_bytes(hash, factor->label[k], strlen(factor->label[k]) + 1);
+    }
+    return hash;
+}
+
+const sf_block *sf_plan_saltelli(const sf_plan *p) {
+    for (int k = 0; k < p->block_count; k++)
+        if (p->block[k].kind == SF_BLOCK_SAMPLE && p->block[k].method == SF_SAMPLING_SALTELLI)
+            return &p->block[k];
+    return NULL;
+}

@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/sweep/runs.h"
+
+#include "base/hash.h"
+#include "io/plain_file.h"
+#include "io/replace.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const states[] = {
+    [SF_SWEEP_OPEN] = "open", [SF_SWEEP_DONE] = "done", [SF_SWEEP_FAILED] = "failed"};
+
+sf_status sf_runs_create(const sf_plan *plan, sf_runs *r, sf_error *err) {
+    unsigned long n = (unsigned long)plan->rows;
+    *r = (sf_runs){.plan = plan, .count = plan->rows};
+    sf_figure_list(&r->figures);
+    r->state = sf_alloc(err, n, 1, "the runs");
+    r->grade = sf_alloc(err, n, 1, "the runs");
+    r->folder = sf_alloc(err, n, sizeof *r->folder, "the runs");
+    r->message = sf_alloc(err, n, sizeof *r->message, "the runs");
+    r->value = sf_alloc(err, n, r->figures * sizeof *r->value, "the figures of the runs");
+    for (int64_t k = 0; r->value && k < r->count * (int64_t)r->figures; k++)
+        r->value[k] = NAN;
+    return err->status;
+}
+
+void sf_runs_free(sf_runs *r) {
+    for (int64_t k = 0; k < r->count; k++) {
+        if (r->folder)
+            free(r->folder[k]);
+        if (r->message)
+            free(r->message[k]);
+    }
+    free(r->state);
+    free(r->grade);
+    free(r->folder);
+    free(r->message);
+    free(r->value);
+    *r = (sf_runs){0};
+}
+
+double *sf_runs_place(sf_runs *r, int64_t row) {
+    return r->value + row * (int64_t)r->figures;
+}
+
+size_t sf_runs_figure(const char *key) {
+    size_t count;
+    return (size_t)(sf_figure_find(key) - sf_figure_list(&count));
+}
+
+/* ---- states ---- */
+
+/* The number of a text, entered if it is new; NaN: no place is left. */
+static double text_number(sf_runs *r, const char *text) {
+    for (int k = 0; k < r->text_count; k++)
+        if (strncmp(r->text[k], text, sizeof r->text[k] - 1) == 0)
+            return k;
+    if (r->text_count == SF_RUNS_TEXTS)
+        return NAN;
+    snprintf(r->text[r->text_count], sizeof r->text[0], "%s", text);
+    return r->text_count++;
+}
+
+void sf_runs_take(sf_runs *r, int64_t row, const double *figure, const char *status) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    double *place = sf_runs_place(r, row);
+    for (size_t k = 0; k < count; k++)
+        place[k] = list[k].type != SF_FIGURE_TEXT ? figure[k] : *status ? text_number(r, status) : NAN;
+}
+
+static double to_nine_digits(double value) {
+    char text[32];
+    if (!isfinite(value))
+        return NAN;
+    snprintf(text, sizeof text, "%.9g", value);
+    return strtod(text, NULL);
+}
+
+static sf_status keep_text(char **place, const char *text, sf_error *err) {
+    free(*place);
+    *place = text && *text ? strdup(text) : NULL;
+    return !text || !*text || *place ? SF_OK : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the runs");
+}
+
+sf_status sf_runs_done(sf_runs *r, int64_t row, sf_grade grade, const char *folder, const char *message,
+                       sf_error *err) {
+    double *place = sf_runs_place(r, row);
+    for (size_t k = 0; k < r->figures; k++)
+        place[k] = to_nine_digits(place[k]);
+    r->state[row] = SF_SWEEP_DONE;
+    r->grade[row] = (unsigned char)grade;
+    keep_text(&r->message[row], message, err);
+    return keep_text(&r->folder[row], folder, err);
+}
+
+sf_status sf_runs_failed(sf_runs *r, int64_t row, const char *message, sf_error *err) {
+    sf_runs_open(r, row);
+    r->state[row] = SF_SWEEP_FAILED;
+    return keep_text(&r->message[row], message, err);
+}
+
+void sf_runs_open(sf_runs *r, int64_t row) {
+    double *place = sf_runs_place(r, row);
+    r->state[row] = SF_SWEEP_OPEN;
+    free(r->message[row]);
+    free(r->folder[row]);
+    r->message[row] = r->folder[row] = NULL;
+    for (size_t k = 0; k < r->figures; k++)
+        place[k] = NAN;
+}
+
+int64_t sf_runs_count(const sf_runs *r, sf_sweep_state state) {
+    int64_t count = 0;
+    for (int64_t k = 0; k < r->count; k++)
+        count += r->state[k] == state;
+    return count;
+}
+
+bool sf_runs_usable(const sf_runs *r, int64_t row) {
+    return r->state[row] == SF_SWEEP_DONE && r->grade[row] != SF_GRADE_DO_NOT_USE;
+}
+
+/* ---- runs.csv ---- */
+
+static void put_cell(FILE *out, const char *text) {
+    if (!strpbrk(text, ",\"\r\n")) {
+        fputs(text, out);
+        return;
+    }
+    fputc('"', out);
+    for (; *text; text++) {
+        if (*text == '"')
+            fputc('"', out);
+        fputc(*text == '\n' || *text == '\r' ? ' ' : *text, out);
+    }
+    fputc('"', out);
+}
+
+static void put_heading(FILE *out, const sf_runs *r) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    char text[SF_FACTOR_KEY_SIZE + SF_FACTOR_UNIT_SIZE + 8];
+    fputs("id", out);
+    for (int f = 0; f < r->plan->factor_count; f++) {
+        fputc(',', out);
+        sf_factor_heading(&r->plan->factor[f], text, sizeof text);
+        put_cell(out, text);
+    }
+    fputs(",run_status,grade,message,folder", out);
+    for (size_t k = 0; k < count; k++)
+        fprintf(out, ",%s", list[k].key);
+    fputc('\n', out);
+}
+
+static void put_figure(FILE *out, const sf_runs *r, const sf_figure *figure, double value) {
+    fputc(',', out);
+    if (isnan(value))
+        return;
+    if (figure->type == SF_FIGURE_TEXT)
+        put_cell(out, r->text[(int)value]);
+    else
+        fprintf(out, "%.9g", value);
+}
+
+static void put_row(FILE *out, const sf_runs *r, int64_t row) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    char text[SF_SWEEP_OVERRIDE_SIZE];
+    fprintf(out, "%lld", (long long)row + 1);
+    for (int f = 0; f < r->plan->factor_count; f++) {
+        fputc(',', out);
+        sf_factor_text(&r->plan->factor[f], sf_plan_value(r->plan, f, row), text, sizeof text);
+        put_cell(out, text);
+    }
+    bool done = r->state[row] == SF_SWEEP_DONE;
+    fprintf(out, ",%s,%s,", states[r->state[row]], done ? sf_verdict_phrase(r->grade[row]) : "");
+    put_cell(out, r->message[row] ? r->message[row] : "");
+    fputc(',', out);
+    put_cell(out, r->folder[row] ? r->folder[row] : "");
+    for (size_t k = 0; k < count; k++)
+        put_figure(out, r, &list[k], done ? r->value[row * (int64_t)count + (int64_t)k] : NAN);
+    fputc('\n', out);
+}
+
+/* Of what has been written under the partial name, before anybody else knows the file. */
+static sf_status hash_written(const sf_replacement *out, uint64_t *hash, sf_error *err) {
+    if (fflush(out->file) != 0)
+        return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", out->path);
+    return sf_plain_hash(out->partial, "table of the runs", SF_PLAIN_ANY, hash, err);
+}
+
+sf_status sf_runs_write(const sf_runs *r, const char *path, uint64_t *hash, sf_error *err) {
+    sf_replacement out;
+    FILE *file = sf_replace_open(path, &out, err);
+    if (!file)
+        return err->status;
+    put_heading(file, r);
+    for (int64_t row = 0; row < r->count; row++)
+        put_row(file, r, row);
+    hash_written(&out, hash, err);
+    return sf_replace_close(&out, err);
+}
+
+/* The next cell in place, its quotes taken away; `*at` moves behind it. NULL at the end of the line. */
+static char *next_cell(char **at) {
+    char *cell = *at, *to = *at, *from = *at;
+    if (!from)
+        return NULL;
+    bool quoted = *from == '"';
+    from += quoted;
+    while (*from && (quoted || *from != ',')) {
+        if (quoted && *from == '"' && from[1] != '"')
+            quoted = false, from++;
+        else {
+            from += quoted && *from == '"';
+            *to++ = *from++;
+        }
+    }
+    *at = *from == ',' ? from + 1 : NULL;
+    *to = '\0';
+    return cell;
+}
+
+static int find_word(const char *cell, const char *const *words, int count) {
+    for (int k = 0; k < count; k++)
+        if (cell && strcmp(cell, words[k]) == 0)
+            return k;
+    return -1;
+}
+
+static void take_figures(sf_runs *r, int64_t row, char *rest) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    double *place = sf_runs_place(r, row);
+    for (size_t k = 0; k < count; k++) {
+        const char *cell = next_cell(&rest);
+        if (!cell || !*cell)
+            continue;
+        place[k] = list[k].type == SF_FIGURE_TEXT ? text_number(r, cell) : strtod(cell, NULL);
+    }
+}
+
+static sf_status take_row(sf_runs *r, int64_t row, char *line, sf_error *err) {
+    const char *const grades[] = {sf_verdict_phrase(SF_GRADE_VALID), sf_verdict_phrase(SF_GRADE_REMARKS),
+                                  sf_verdict_phrase(SF_GRADE_DO_NOT_USE)};
+    for (int k = 0; k <= r->plan->factor_count; k++)
+        next_cell(&line);
+    int state = find_word(next_cell(&line), states, 3), grade = find_word(next_cell(&line), grades, 3);
+    const char *message = next_cell(&line), *folder = next_cell(&line);
+    if (state == SF_SWEEP_FAILED && message)
+        return sf_runs_failed(r, row, message, err);
+    if (state != SF_SWEEP_DONE || grade < 0 || !folder)
+        return SF_OK;
+    take_figures(r, row, line);
+    r->state[row] = SF_SWEEP_DONE;
+    r->grade[row] = (unsigned char)grade;
+    keep_text(&r->message[row], message, err);
+    return keep_text(&r->folder[row], folder, err);
+}
+
+/* The heading that belongs to the table; from malloc. */
+static char *own_heading(const sf_runs *r) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    put_heading(out, r);
+    if (fclose(out) == 0)
+        return text;
+    free(text);
+    return NULL;
+}
+
+sf_status sf_runs_read(sf_runs *r, const char *path, uint64_t hash, sf_error *err) {
+    char *text = NULL, *heading = own_heading(r);
+    size_t size = 0;
+    if (!heading)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the runs");
+    else if (sf_plain_read(path, "table of the runs", SF_PLAIN_ANY, &text, &size, err) == SF_OK &&
+             sf_hash_bytes(SF_HASH_START, text, size) == hash &&
+             strncmp(text, heading, strlen(heading)) == 0) {
+        char *rest = text + strlen(heading), *line;
+        for (int64_t row = 0; row < r->count && (line = strsep(&rest, "\n")) && *line; row++)
+            if (take_row(r, row, line, err) != SF_OK)
+                break;
+    }
+    free(text);
+    free(heading);
+    return err->status;
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The state of every run of a plan and its figures: the table runs.csv. */
+#ifndef SF_SWEEP_RUNS_H
+#define SF_SWEEP_RUNS_H
+
+#include "post/figures/figures.h"
+#include "post/figures/verdict.h"
+#include "study/sweep/plan.h"
+
+typedef enum sf_sweep_state { SF_SWEEP_OPEN, SF_SWEEP_DONE, SF_SWEEP_FAILED } sf_sweep_state;
+
+enum { SF_RUNS_TEXTS = 64 };
+
+typedef struct sf_runs {
+    const sf_plan *plan; /* borrowed */
+    int64_t count;
+    size_t figures;               /* of the list of summary.json, post/figures/figures.h */
+    unsigned char *state, *grade; /* [count] sf_sweep_state, sf_grade */
+    double *value;                /* [count][figures] as in summary.json; NaN: none; a text: its number */
+    char **folder;                /* [count] name of its folder; NULL: none */
+    char **message;               /* [count] why it failed, or the remarks of its verdict; NULL: none */
+    char text[SF_RUNS_TEXTS][80]; /* of the figures that are texts */
+    int text_count;
+} sf_runs;
+
+/* All open. Release with sf_runs_free. */
+sf_status sf_runs_create(const sf_plan *plan, sf_runs *runs, sf_error *err);
+void sf_runs_free(sf_runs *runs);
+
+/* The figures of a row, to be filled before sf_runs_done. */
+double *sf_runs_place(sf_runs *runs, int64_t row);
+/* The place of a figure among them; the key must be in the list. */
+size_t sf_runs_figure(const char *key);
+/* The figures of a drop, [of sf_figure_list] sf_figure_number, into the place of the row; `status` is the one
+ * that is a text. */
+void sf_runs_take(sf_runs *runs, int64_t row, const double *figure, const char *status);
+
+/* Figures are rounded to the 9 digits of runs.csv, so that a campaign in pieces computes with the same. */
+sf_status sf_runs_done(sf_runs *runs, int64_t row, sf_grade grade, const char *folder, const char *message,
+                       sf_error *err);
+sf_status sf_runs_failed(sf_runs *runs, int64_t row, const char *message, sf_error *err);
+void sf_runs_open(sf_runs *runs, int64_t row);
+int64_t sf_runs_count(const sf_runs *runs, sf_sweep_state state);
+
+/* Can the figures of the row be used: done, and not "do not use"? */
+bool sf_runs_usable(const sf_runs *runs, int64_t row);
+
+/* Writes runs.csv aside and renames it. `hash`: of its text. */
+sf_status sf_runs_write(const sf_runs *runs, const char *path, uint64_t *hash, sf_error *err);
+/* Reads what sf_runs_write wrote. All rows stay open if the file is of another table or has another hash:
+ * something else has written it. */
+sf_status sf_runs_read(sf_runs *runs, const char *path, uint64_t hash, sf_error *err);
+
+#endif

@@ -1,0 +1,540 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/sweep/sweep_report.h"
+
+#include "build_info.h"
+#include "report/gnuplot.h"
+#include "report/html.h"
+#include "report/json.h"
+#include "study/sweep/sweep_plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LISTED = 50, CELLS_LISTED = 200 };
+
+static const char caution[] = "Figures of simulated drops: indicative, not a certification.";
+static const char *const sampling_words[] = {[SF_SAMPLING_RANDOM] = "random",
+                                             [SF_SAMPLING_LATIN] = "Latin hypercube",
+                                             [SF_SAMPLING_SOBOL] = "Sobol' sequence",
+                                             [SF_SAMPLING_SALTELLI] = "Sobol' sequence, for indices"};
+
+/* ---- factors in words ---- */
+
+static void distribution_text(const sf_factor *f, char *text, size_t size) {
+    static const char *const form[] = {
+        [SF_DISTRIBUTION_UNIFORM] = "uniform, %.6g to %.6g %s",
+        [SF_DISTRIBUTION_NORMAL] = "normal, mean %.6g, standard deviation %.6g %s",
+        [SF_DISTRIBUTION_LOGNORMAL] = "lognormal, median %.6g, deviation of the logarithm %.6g (%s)"};
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+    snprintf(text, size, form[f->distribution], f->a, f->b, f->unit);
+#pragma GCC diagnostic pop
+}
+
+static void list_text(const sf_factor *f, char *text, size_t size) {
+    double low = INFINITY, high = -INFINITY;
+    if (f->words) {
+        snprintf(text, size, "%lld %s", (long long)f->count, f->uncertain ? "draws" : "levels");
+        return;
+    }
+    for (int64_t k = 0; k < f->count; k++) {
+        low = fmin(low, f->number[k]);
+        high = fmax(high, f->number[k]);
+    }
+    snprintf(text, size, "%lld values, %.6g to %.6g %s", (long long)f->count, low, high, f->unit);
+}
+
+void sf_sweep_factor_text(const sf_plan *p, int factor, char *text, size_t size) {
+    const sf_factor *f = &p->factor[factor];
+    const sf_block *b = &p->block[p->block_of[factor]];
+    if (f->distribution == SF_DISTRIBUTION_NONE)
+        list_text(f, text, size);
+    else
+        distribution_text(f, text, size);
+    size_t used = strlen(text);
+    if (b->kind == SF_BLOCK_ZIP && used < size)
+        snprintf(text + used, size - used, ", with %s",
+                 p->factor[b->first == factor ? b->first + b->count - 1 : b->first].name);
+    else if (b->kind == SF_BLOCK_SAMPLE && used < size)
+        snprintf(text + used, size - used, "; %s of %lld rows", sampling_words[b->method],
+                 (long long)b->rows);
+}
+
+void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
+    char text[SF_SWEEP_OVERRIDE_SIZE];
+    for (int f = 0; f < p->factor_count; f++) {
+        sf_sweep_factor_text(p, f, text, sizeof text);
+        fprintf(out, "  %-36s %s\n", p->factor[f].name, text);
+    }
+    fprintf(out, "%lld runs\n  id", (long long)p->rows);
+    for (int f = 0; f < p->factor_count; f++) {
+        sf_factor_heading(&p->factor[f], text, sizeof text);
+        fprintf(out, ", %s", text);
+    }
+    for (int64_t row = 0; row < p->rows && row < rows; row++) {
+        fprintf(out, "\n  %lld", (long long)row + 1);
+        for (int f = 0; f < p->factor_count; f++) {
+            sf_factor_text(&p->factor[f], sf_plan_value(p, f, row), text, sizeof text);
+            fprintf(out, ", %s", text);
+        }
+    }
+    fputs(p->rows > rows ? "\n  ...\n" : "\n", out);
+}
+
+/* ---- sweep.json ---- */
+
+static void json_factors(sf_json *j, const sf_plan *p) {
+    char text[512];
+    sf_json_open(j, "factors", '[');
+    for (int f = 0; f < p->factor_count; f++) {
+        sf_sweep_factor_text(p, f, text, sizeof text);
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "key", p->factor[f].key);
+        sf_json_text(j, "name", p->factor[f].name);
+        sf_json_text(j, "unit", *p->factor[f].unit ? p->factor[f].unit : NULL);
+        sf_json_text(j, "values", text);
+        sf_json_bool(j, "uncertain", p->factor[f].uncertain);
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+}
+
+static void json_effects(sf_json *j, const sf_sweep_report *r, int figure) {
+    sf_json_open(j, "main_effects", '[');
+    for (int f = 0; f < r->plan->factor_count; f++) {
+        const sf_effect *e = &r->analysis->effect[figure][f];
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "factor", r->plan->factor[f].name);
+        sf_json_number(j, "low", e->low);
+        sf_json_number(j, "high", e->high);
+        sf_json_number(j, "at_least_value", e->first);
+        sf_json_number(j, "at_greatest_value", e->last);
+        sf_json_bool(j, "by_response_surface", sf_effect_is_by_surface(r->plan, f));
+        sf_json_integer(j, "combinations", e->used);
+        sf_json_integer(j, "all_combinations", e->of);
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+}
+
+static void json_indices(sf_json *j, const sf_sweep_report *r, int figure) {
+    const sf_analysis *a = r->analysis;
+    if (!a->with_indices)
+        return;
+    sf_json_integer(j, "sobol_samples", a->index_samples[figure]);
+    sf_json_open(j, "sobol_indices", '[');
+    for (int f = 0; f < r->plan->factor_count; f++) {
+        const sf_index *i = &a->index[figure][f];
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "factor", r->plan->factor[f].name);
+        sf_json_number(j, "first", i->first);
+        sf_json_number(j, "first_low", i->first_low);
+        sf_json_number(j, "first_high", i->first_high);
+        sf_json_number(j, "total", i->total);
+        sf_json_number(j, "total_low", i->total_low);
+        sf_json_number(j, "total_high", i->total_high);
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+}
+
+static void json_surface(sf_json *j, const sf_sweep_report *r, int figure) {
+    const sf_sweep_surface *s = &r->analysis->surface[figure];
+    const sf_quadratic *fit = &s->fit;
+    char text[512];
+    sf_json_open(j, "response_surface", '{');
+    sf_json_text(j, "problem", *fit->problem ? fit->problem : NULL);
+    sf_json_integer(j, "rows", s->rows);
+    sf_json_number(j, "rms", fit->rms);
+    sf_json_number(j, "left_out_rms", fit->left_out_rms);
+    sf_json_number(j, "q2", fit->q2);
+    sf_json_open(j, "numbers", '[');
+    int list[SF_SWEEP_FACTORS];
+    sf_analysis_numbers(r->plan, list);
+    for (int i = 0; i < fit->d && fit->terms > 0; i++) {
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "factor", r->plan->factor[list[i]].name);
+        sf_json_number(j, "centre", fit->centre[i]);
+        sf_json_number(j, "half_range", fit->half[i]);
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+    sf_json_open(j, "terms", '[');
+    for (int t = 0; t < fit->terms; t++) {
+        sf_analysis_term(r->analysis, fit, t, text, sizeof text);
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "term", text);
+        sf_json_number(j, "coefficient", fit->c[t]);
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+    sf_json_close(j, '}');
+}
+
+static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
+    const sf_probabilities *q = &r->analysis->probability;
+    char text[SF_SWEEP_OVERRIDE_SIZE];
+    if (isnan(r->plan->figure[figure].limit) || q->cells == 0)
+        return;
+    sf_json_open(j, "probability_below_limit", '[');
+    for (int64_t k = 0; k < q->cells; k++) {
+        const sf_probability *c = &q->cell[figure * q->cells + k];
+        sf_json_open(j, NULL, '{');
+        for (int f = 0; f < r->plan->factor_count; f++) {
+            if (!sf_block_is_chosen(r->plan, r->plan->block_of[f]))
+                continue;
+            sf_factor_text(&r->plan->factor[f], sf_plan_value(r->plan, f, q->row[k]), text, sizeof text);
+            sf_json_text(j, r->plan->factor[f].name, text);
+        }
+        sf_json_number(j, "probability", c->share);
+        sf_json_number(j, "low", c->low);
+        sf_json_number(j, "high", c->high);
+        sf_json_integer(j, "below", c->below);
+        sf_json_integer(j, "above", c->above);
+        sf_json_integer(j, "unknown", c->unknown);
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+}
+
+sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
+    FILE *file = sf_staging_open(output, "sweep.json", err);
+    const sf_analysis *a = r->analysis;
+    if (!file)
+        return err->status;
+    sf_json j = {.file = file};
+    sf_json_open(&j, NULL, '{');
+    sf_json_text(&j, "plan", r->plan->path);
+    sf_json_integer(&j, "runs", r->plan->rows);
+    sf_json_integer(&j, "done", a->done);
+    sf_json_integer(&j, "failed", a->failed);
+    sf_json_integer(&j, "open", a->open);
+    sf_json_integer(&j, "do_not_use", a->unusable);
+    json_factors(&j, r->plan);
+    sf_json_open(&j, "figures", '[');
+    for (int k = 0; k < r->plan->figure_count; k++) {
+        sf_json_open(&j, NULL, '{');
+        sf_json_text(&j, "figure", r->plan->figure[k].figure);
+        sf_json_number(&j, "limit", r->plan->figure[k].limit);
+        json_probability(&j, r, k);
+        json_effects(&j, r, k);
+        json_indices(&j, r, k);
+        json_surface(&j, r, k);
+        sf_json_close(&j, '}');
+    }
+    sf_json_close(&j, ']');
+    sf_json_close(&j, '}');
+    return sf_staging_close(file, "sweep.json", err);
+}
+
+/* ---- report.html ---- */
+
+static void put_tiles(FILE *page, const sf_sweep_report *r) {
+    const sf_analysis *a = r->analysis;
+    char value[64], remark[96];
+    sf_html_tiles_begin(page);
+    snprintf(value, sizeof value, "%lld of %lld", (long long)a->done, (long long)r->plan->rows);
+    snprintf(remark, sizeof remark, "%lld failed, %lld open", (long long)a->failed, (long long)a->open);
+    sf_html_tile(page, a->failed + a->open > 0 ? "fair" : "good", "runs done", value, remark);
+    snprintf(value, sizeof value, "%lld", (long long)(a->done - a->unusable));
+    snprintf(remark, sizeof remark, "%lld with remarks; %lld more are not to be used", (long long)a->remarks,
+             (long long)a->unusable);
+    sf_html_tile(page, a->unusable > 0 ? "fair" : "good", "runs whose figures count", value, remark);
+    for (int k = 0; k < r->plan->figure_count && a->probability.cells == 1; k++) {
+        const sf_probability *c = &a->probability.cell[k];
+        if (isnan(r->plan->figure[k].limit))
+            continue;
+        char title[96];
+        snprintf(title, sizeof title, "P(%s < %g)", r->plan->figure[k].figure, r->plan->figure[k].limit);
+        snprintf(value, sizeof value, "%.3f", c->share);
+        snprintf(remark, sizeof remark, "95 %% interval %.3f to %.3f", c->low, c->high);
+        if (c->unknown > 0)
+            snprintf(remark, sizeof remark, "%.3f to %.3f; %lld unknown runs are taken as above", c->low,
+                     c->high, (long long)c->unknown);
+        sf_html_tile(page, "plain", title, value, remark);
+    }
+    sf_html_tiles_end(page);
+}
+
+static void put_factors(FILE *page, const sf_plan *p) {
+    char text[512];
+    sf_html_heading(page, "Plan");
+    sf_html_table t = sf_html_table_begin(page, "dense", "factor|key of the case|values|role");
+    for (int f = 0; f < p->factor_count; f++) {
+        sf_html_row(&t);
+        sf_sweep_factor_text(p, f, text, sizeof text);
+        sf_html_cell(&t, "%s", p->factor[f].name);
+        sf_html_cell(&t, "%s", p->factor[f].key);
+        sf_html_cell(&t, "%s", text);
+        sf_html_cell(&t, "%s", p->factor[f].uncertain ? "uncertain" : "chosen");
+    }
+    sf_html_table_end(&t);
+    sf_html_paragraph(page, "%lld runs of %s, a row each in runs.csv.", (long long)p->rows, p->case_path);
+}
+
+static void put_pictures(FILE *page, const sf_staging *output) {
+    char warning[320];
+    for (const sf_sweep_picture *p = sf_sweep_pictures(); p->name; p++) {
+        char script[64];
+        snprintf(script, sizeof script, "%s.gp", p->name);
+        if (!sf_staging_has(output, script))
+            continue;
+        char *svg = sf_gnuplot_svg(output, p->name, "softfall-sweep", warning, sizeof warning);
+        if (svg)
+            sf_html_figure(page, svg, "%s.", p->caption);
+        else
+            sf_html_figure(page, NULL, "%s.", warning);
+        free(svg);
+    }
+}
+
+static void put_probability_row(sf_html_table *t, const sf_sweep_report *r, int64_t cell) {
+    const sf_probabilities *q = &r->analysis->probability;
+    char text[SF_SWEEP_OVERRIDE_SIZE];
+    sf_html_row(t);
+    for (int f = 0; f < r->plan->factor_count; f++)
+        if (sf_block_is_chosen(r->plan, r->plan->block_of[f])) {
+            sf_factor_text(&r->plan->factor[f], sf_plan_value(r->plan, f, q->row[cell]), text, sizeof text);
+            sf_html_cell(t, "%s", text);
+        }
+    for (int k = 0; k < r->plan->figure_count; k++) {
+        const sf_probability *c = &q->cell[k * q->cells + cell];
+        if (isnan(r->plan->figure[k].limit))
+            continue;
+        sf_html_cell(t, isnan(c->share) ? "–" : "%.3f (%.3f to %.3f)", c->share, c->low, c->high);
+        sf_html_cell(t, "%lld / %lld / %lld", (long long)c->below, (long long)c->above,
+                     (long long)c->unknown);
+    }
+}
+
+static void put_probability(FILE *page, const sf_sweep_report *r) {
+    const sf_probabilities *q = &r->analysis->probability;
+    char columns[4096] = "";
+    size_t used = 0;
+    if (q->cells == 0)
+        return;
+    for (int f = 0; f < r->plan->factor_count; f++)
+        if (sf_block_is_chosen(r->plan, r->plan->block_of[f])) {
+            char text[SF_FACTOR_KEY_SIZE + SF_FACTOR_UNIT_SIZE + 8];
+            sf_factor_heading(&r->plan->factor[f], text, sizeof text);
+            used += (size_t)snprintf(columns + used, sizeof columns - used, "%s%s", used ? "|" : "", text);
+        }
+    for (int k = 0; k < r->plan->figure_count && used < sizeof columns; k++)
+        if (!isnan(r->plan->figure[k].limit))
+            used += (size_t)snprintf(columns + used, sizeof columns - used,
+                                     "%s>P(%s < %g), 95 %% interval|>below / above / unknown",
+                                     used ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
+    if (used == 0)
+        return;
+    sf_html_heading(page, "Probability of staying below the limits");
+    sf_html_table t = sf_html_table_begin(page, "dense", columns);
+    for (int64_t k = 0; k < q->cells && k < CELLS_LISTED; k++)
+        put_probability_row(&t, r, k);
+    sf_html_table_end(&t);
+    sf_html_note(
+        page,
+        "Over the uncertain factors of the plan, all draws equally probable; the interval (Clopper and Pearson) "
+        "is that of the number of runs. Unknown ones (failed, or not to be used) are taken as above, and as "
+        "below for the high end of the interval alone. A run that reached the anvil counts as above. It holds neither "
+        "the error of the model nor what the plan does not vary.%s%s",
+        q->open > 0 ? " Open runs are not counted." : "",
+        q->cells > CELLS_LISTED ? " sweep.json has the other combinations." : "");
+}
+
+/* Means and fits of a part that the outcome has chosen. */
+static void note_missing(FILE *page, const sf_sweep_report *r, const char *what) {
+    int64_t missing = r->plan->rows - (r->analysis->done - r->analysis->unusable);
+    if (missing > 0)
+        sf_html_note(page,
+                     "%lld of %lld runs are left out (failed, not to be used, or open). These are no random "
+                     "part, but mostly the hardest drops: %s.",
+                     (long long)missing, (long long)r->plan->rows, what);
+}
+
+/* What a main effect stands on. */
+static void put_ground(sf_html_table *t, const sf_plan *p, int factor, const sf_effect *e) {
+    if (sf_effect_is_by_surface(p, factor))
+        sf_html_cell(t, isnan(e->low) ? "no good response surface" : "the response surface");
+    else if (sf_effect_is_scatter(p, factor))
+        sf_html_cell(t, "–");
+    else if (e->of > 0)
+        sf_html_cell(t, "%lld of %lld combinations", (long long)e->used, (long long)e->of);
+    else
+        sf_html_cell(t, "all runs that count");
+}
+
+static void put_effects(FILE *page, const sf_sweep_report *r) {
+    bool scatter = false;
+    sf_html_heading(page, "Main effects");
+    sf_html_table t = sf_html_table_begin(
+        page, "dense",
+        "figure|factor|>lowest mean|>highest mean|>at the least value|>at the greatest value|over");
+    for (int k = 0; k < r->plan->figure_count; k++)
+        for (int f = 0; f < r->plan->factor_count; f++) {
+            const sf_effect *e = &r->analysis->effect[k][f];
+            sf_html_row(&t);
+            sf_html_cell(&t, "%s", r->plan->figure[k].figure);
+            sf_html_cell(&t, "%s", r->plan->factor[f].name);
+            sf_html_number(&t, 1, e->low);
+            sf_html_number(&t, 1, e->high);
+            sf_html_number(&t, 1, e->first);
+            sf_html_number(&t, 1, e->last);
+            put_ground(&t, r->plan, f, e);
+            scatter |= sf_effect_is_scatter(r->plan, f);
+        }
+    sf_html_table_end(&t);
+    sf_html_note(
+        page,
+        "All else equal: means over those combinations of the other blocks of the plan of which all runs "
+        "count. More than %d numbers are taken in %d parts; of draws of an unknown the means at 5 and 95 %% of "
+        "them are shown. Numbers that a sample mixes with others: between their least and their greatest "
+        "value by the response surface, if its Q² is %g or more.",
+        SF_EFFECT_LEVELS, SF_EFFECT_BINS, SF_EFFECT_Q2);
+    note_missing(page, r, "an effect there may be far greater than in the combinations that are whole");
+    if (scatter)
+        sf_html_note(
+            page,
+            "Draws, or many words, that a sample mixes with other factors have no bar where each has "
+            "fewer than %d runs: their means are mostly scatter of the others. A saltelli sample "
+            "tells their share (Sobol' indices).",
+            SF_EFFECT_RUNS);
+}
+
+static void put_indices(FILE *page, const sf_sweep_report *r) {
+    const sf_analysis *a = r->analysis;
+    if (!a->with_indices)
+        return;
+    sf_html_heading(page, "Sobol' indices");
+    sf_html_table t = sf_html_table_begin(
+        page, "dense", "figure|factor|>first order|95 % interval|>total|95 % interval|>samples");
+    for (int k = 0; k < r->plan->figure_count; k++)
+        for (int f = 0; f < r->plan->factor_count; f++) {
+            const sf_index *i = &a->index[k][f];
+            sf_html_row(&t);
+            sf_html_cell(&t, "%s", r->plan->figure[k].figure);
+            sf_html_cell(&t, "%s", r->plan->factor[f].name);
+            sf_html_number(&t, 3, i->first);
+            sf_html_cell(&t, isnan(i->first_low) ? "–" : "%.3f to %.3f", i->first_low, i->first_high);
+            sf_html_number(&t, 3, i->total);
+            sf_html_cell(&t, isnan(i->total_low) ? "–" : "%.3f to %.3f", i->total_low, i->total_high);
+            sf_html_cell(&t, "%lld of %lld", (long long)a->index_samples[k],
+                         (long long)sf_plan_saltelli(r->plan)->samples);
+        }
+    sf_html_table_end(&t);
+    sf_html_note(
+        page,
+        "Estimators of Saltelli (2010) and Jansen, intervals by bootstrap. A sample of which one run has no "
+        "figure (failed, or not to be used) is left out as a whole. Such runs are mostly the hardest drops: "
+        "a figure has no indices where fewer than %.0f %% of the samples are left, as these are no random "
+        "part of all. Take narrower ranges, or a thicker pad.",
+        100 * SF_INDEX_SHARE);
+}
+
+static void put_surfaces(FILE *page, const sf_sweep_report *r) {
+    sf_html_heading(page, "Response surface");
+    sf_html_table t = sf_html_table_begin(
+        page, "dense", "figure|>runs|>terms|>rms of the residuals|>rms error at runs left out|>Q²|remark");
+    for (int k = 0; k < r->plan->figure_count; k++) {
+        const sf_sweep_surface *s = &r->analysis->surface[k];
+        sf_html_row(&t);
+        sf_html_cell(&t, "%s", r->plan->figure[k].figure);
+        sf_html_number(&t, 0, (double)s->rows);
+        sf_html_number(&t, 0, s->fit.terms);
+        sf_html_number(&t, 3, s->fit.rms);
+        sf_html_number(&t, 3, s->fit.left_out_rms);
+        sf_html_number(&t, 3, s->fit.q2);
+        sf_html_cell(&t, "%s%s%s", s->fit.problem, *s->fit.problem && s->rows < s->of ? "; " : "",
+                     s->rows < s->of ? "a part of the runs, drawn at random" : "");
+    }
+    sf_html_table_end(&t);
+    sf_html_note(
+        page,
+        "A quadratic of the factors that are numbers, with a constant for each level of chosen words; what is "
+        "uncertain and no number is scatter about it. The error is that at each run by the surface without "
+        "all runs of its place in these factors; Q² is 1 less its square over the variance. The coefficients are in sweep.json.");
+    note_missing(page, r, "the surface says nothing about where they are");
+}
+
+static void put_failures(FILE *page, const sf_sweep_report *r) {
+    int listed = 0;
+    const sf_analysis *a = r->analysis;
+    if (a->failed + a->unusable == 0)
+        return;
+    sf_html_heading(page, "Runs that failed or are not to be used");
+    sf_html_table t = sf_html_table_begin(page, "dense", ">id|what|sentence");
+    for (int64_t row = 0; row < r->runs->count && listed < LISTED; row++) {
+        bool failed = r->runs->state[row] == SF_SWEEP_FAILED;
+        if (!failed && (r->runs->state[row] != SF_SWEEP_DONE || sf_runs_usable(r->runs, row)))
+            continue;
+        listed++;
+        sf_html_row(&t);
+        sf_html_cell(&t, "%lld", (long long)row + 1);
+        sf_html_cell(&t, "%s", failed ? "failed" : "do not use");
+        sf_html_cell(&t, "%s", r->runs->message[row] ? r->runs->message[row] : "");
+    }
+    sf_html_table_end(&t);
+    if (a->failed + a->unusable > LISTED)
+        sf_html_note(page, "The others are in runs.csv.");
+    if (a->failed > 0)
+        sf_html_note(page, "The same command with --retry does the failed ones again.");
+}
+
+sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
+    const sf_analysis *a = r->analysis;
+    FILE *page = sf_html_begin(output, "Sweep", r->plan->title, err);
+    if (!page)
+        return err->status;
+    bool whole = a->failed + a->open + a->unusable == 0;
+    sf_html_banner(
+        page,
+        whole                   ? "good"
+        : a->done > a->unusable ? "fair"
+                                : "bad",
+        whole ? "complete" : "with gaps",
+        "%lld of %lld runs are done, %lld failed, %lld are open; the figures of %lld are not to be used. %s",
+        (long long)a->done, (long long)r->plan->rows, (long long)a->failed, (long long)a->open,
+        (long long)a->unusable, caution);
+    put_tiles(page, r);
+    put_factors(page, r->plan);
+    put_pictures(page, output);
+    put_probability(page, r);
+    put_effects(page, r);
+    put_indices(page, r);
+    put_surfaces(page, r);
+    put_failures(page, r);
+    sf_html_heading(page, "The command that repeats this report");
+    sf_html_pre(page, r->command_line);
+    return sf_html_end(page, "softfall-sweep " SF_VERSION " (" SF_GIT_REVISION ")", err);
+}
+
+/* ---- terminal ---- */
+
+void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
+    const sf_analysis *a = r->analysis;
+    fprintf(out, "%lld runs: %lld done, %lld failed, %lld open; the figures of %lld are not to be used\n",
+            (long long)r->plan->rows, (long long)a->done, (long long)a->failed, (long long)a->open,
+            (long long)a->unusable);
+    int listed = 0;
+    for (int64_t row = 0; row < r->runs->count && listed < 5; row++)
+        if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)
+            fprintf(out, "  run %lld failed: %s\n", (long long)row + 1, r->runs->message[row]);
+    if (a->failed > listed)
+        fprintf(out, "  %lld more in runs.csv; --retry does them again\n", (long long)a->failed - listed);
+    for (int k = 0; k < r->plan->figure_count && a->with_indices; k++)
+        if (isnan(a->index[k][0].first))
+            fprintf(
+                out,
+                "  %s: no Sobol' indices: it does not vary, or too few samples have all runs, %lld of %lld\n",
+                r->plan->figure[k].figure, (long long)a->index_samples[k],
+                (long long)sf_plan_saltelli(r->plan)->samples);
+    for (int k = 0; k < r->plan->figure_count; k++) {
+        const sf_quadratic *s = &a->surface[k].fit;
+        if (s->terms > 0 && *s->problem)
+            fprintf(out, "  %s: response surface of %d terms; %s\n", r->plan->figure[k].figure, s->terms,
+                    s->problem);
+        else if (s->terms > 0)
+            fprintf(out, "  %s: response surface of %d terms, rms error at runs left out %.4g, Q2 %.4f\n",
+                    r->plan->figure[k].figure, s->terms, s->left_out_rms, s->q2);
+    }
+    fprintf(out, "%s\n", caution);
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* sweep.json, report.html and the lines on the terminal. */
+#ifndef SF_SWEEP_REPORT_H
+#define SF_SWEEP_REPORT_H
+
+#include "io/staging.h"
+#include "study/sweep/analysis.h"
+#include <stdio.h>
+
+typedef struct sf_sweep_report {
+    const sf_plan *plan;
+    const sf_runs *runs;
+    const sf_analysis *analysis;
+    const char *command_line;
+} sf_sweep_report;
+
+sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *report, sf_error *err);
+/* After sf_sweep_plot, whose pictures the page takes in. */
+sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *report, sf_error *err);
+void sf_sweep_print(FILE *out, const sf_sweep_report *report);
+
+/* The factors, their number of values and the number of runs, and the first `rows` of them. */
+void sf_sweep_print_table(FILE *out, const sf_plan *plan, int rows);
+
+/* What a factor takes, in a few words: "5 values, 4 to 6 m/s". */
+void sf_sweep_factor_text(const sf_plan *plan, int factor, char *text, size_t size);
+
+#endif
