@@ -6,7 +6,7 @@
 
 #include "model/model.h"
 #include "solver/operators.h"
-#include "solver/stopwatch.h"
+#include "solver/state.h"
 
 typedef struct bench_traffic {
     double bytes[SF_PHASES]; /* of one step without Lanczos products */

@@ -5,7 +5,7 @@
 
 #include "foam_reference.h"
 #include "point_fixture.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 /* Builds the foam of a card; ends the running test if that fails. */
 void foam_build(const point_card *card, sf_foam *foam);

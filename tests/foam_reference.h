@@ -4,7 +4,7 @@
 #ifndef SF_TESTS_FOAM_REFERENCE_H
 #define SF_TESTS_FOAM_REFERENCE_H
 
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 /* Recoverable energy and energy lost to hysteresis (J m-3) at W and its maximum (theory eq. 15, 16). */
 void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost);

@@ -2,7 +2,7 @@
 #include "extreme.h"
 #include "laboratory.h"
 
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include <assert.h>
 #include <gsl/gsl_randist.h>
 #include <math.h>

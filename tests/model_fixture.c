@@ -3,7 +3,6 @@
 
 #include "pre/mesh/gmsh_session.h"
 #include "solver/field/domain_stress.h"
-#include "solver/field/internal_force.h"
 #include "solver/field/stabilisation.h"
 #include "solver/step.h"
 #include <math.h>

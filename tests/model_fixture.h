@@ -7,7 +7,7 @@
 #define SF_TESTS_MODEL_FIXTURE_H
 
 #include "pre/build.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include "solver/operators.h"
 #include "solver/state.h"
 

@@ -5,7 +5,7 @@
 #include "program_fixture.h"
 
 #include "case/case.h"
-#include "case/curve.h"
+#include "case/curves.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,7 +3,7 @@
  * softfall-post does it. */
 #include "extreme.h"
 #include "foam_fixture.h"
-#include "post/figures/hic.h"
+#include "post/figures/injury.h"
 #include "study/column.h"
 
 #include "base/units.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "extreme.h"
 #include "post/figures/compare.h"
-#include "post/figures/reference.h"
 
 #include <math.h>
 #include <setjmp.h>

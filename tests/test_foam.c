@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rate-independent foam law: eigenvalues, loading, hysteresis, tension, tangent bound. */
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loading curves at several strain rates. */
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 #include <math.h>
 #include <setjmp.h>

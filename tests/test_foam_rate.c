@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rate-dependent parts of the foam law: Maxwell, Kelvin, DAMP; lanes. */
 #include "extreme.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 #include <math.h>
 #include <setjmp.h>

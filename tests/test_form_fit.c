@@ -6,7 +6,7 @@
 #include "study/fit/form/gas.h"
 #include "material/point.h"
 #include "program_fixture.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 #include <math.h>
 #include <setjmp.h>

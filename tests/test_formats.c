@@ -2,9 +2,8 @@
 /* The tables of docs/formats.md are those of the program: what stands between `<!-- generated: NAME -->` and
  * `<!-- end -->` is written from the lists in src/. With SF_WRITE_DOCS=1 in the environment the document is
  * brought up to date instead. */
-#include "model/frame_field.h"
-#include "model/good_run.h"
 #include "model/columns.h"
+#include "model/good_run.h"
 #include "model/model.h"
 #include "post/figures/figures.h"
 #include <setjmp.h>

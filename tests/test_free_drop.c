@@ -6,7 +6,7 @@
 #include "model_fixture.h"
 
 #include "base/mat3.h"
-#include "solver/run/ending.h"
+#include "solver/run/run.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>

@@ -5,7 +5,7 @@
 #include "program_fixture.h"
 #include "run_fixture.h"
 
-#include "base/rotation.h"
+#include "base/mat3.h"
 #include "base/units.h"
 #include "model/model_io.h"
 #include "post/figures/figures.h"

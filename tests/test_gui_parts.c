@@ -6,12 +6,12 @@
 
 #include "case/values.h"
 #include "gui/cache.h"
-#include "gui/checks.h"
-#include "gui/geo_names.h"
+#include "gui/outcome.h"
+#include "gui/fields.h"
 #include "gui/shape.h"
 #include "gui/activity.h"
-#include "gui/watch.h"
-#include "io/child.h"
+#include "gui/children.h"
+#include "io/process.h"
 #include <errno.h>
 #include <setjmp.h>
 #include <signal.h>

@@ -4,7 +4,7 @@
 #include "extreme.h"
 #include "foam_fixture.h"
 #include "material/hyperfoam.h"
-#include "base/lane_math.h"
+#include "base/lanes.h"
 
 #include <gsl/gsl_integration.h>
 #include <math.h>

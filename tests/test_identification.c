@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit compression: what it refuses, its spline, its model against the solver's law and against its
  * own derivatives, and a fit from the files of tests to a material that softfall-pre reads. */
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include "study/fit/compression/table_fit.h"
 #include "study/fit/compression/compression_output.h"
 #include "material/point.h"

@@ -7,7 +7,7 @@
 #include "study/fit/drop/fit_input.h"
 #include "material/point.h"
 #include "program_fixture.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include "study/column.h"
 
 #include <gsl/gsl_errno.h>

@@ -5,10 +5,9 @@
 #include "program_fixture.h"
 
 #include "model/model.h"
-#include "pre/mesher/gmsh_adapter.h"
-#include "pre/mesh/cell_topology.h"
-#include "pre/mesh/gmsh_session.h"
+#include "pre/mesher/work.h"
 #include "pre/mesh/mesh.h"
+#include "pre/mesh/gmsh_session.h"
 
 #include <gmshc.h>
 #include <math.h>

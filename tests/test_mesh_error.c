@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A mesh that is too coarse for its drop: refused, or named and marked in the files, by the law of
- * pre/mesh_error.h. */
+ * pre/drop_check.h. */
 #include "model_fixture.h"
-#include "pre/mesh_error.h"
+#include "pre/drop_check.h"
 #include "program_fixture.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 /* Shape functions and the neighbour grid on random clouds. */
 #include "pre/cloud/mls.h"
 
-#include "pre/cloud/neighbours.h"
+#include "pre/cloud/cloud.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -3,7 +3,7 @@
 #include "base/units.h"
 #include "post/figures/injury.h"
 #include "post/results/results.h"
-#include "post/view/axis.h"
+#include "post/view/cut.h"
 #include "post_fixture.h"
 
 #include <math.h>

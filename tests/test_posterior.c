@@ -5,7 +5,6 @@
 #include "study/fit/posterior/discrepancy.h"
 #include "study/fit/posterior/evidence.h"
 #include "study/fit/posterior/leave_one_out.h"
-#include "study/fit/posterior/weights.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* HIC of single pulses against the global search. */
-#include "study/pulse.h"
+#include "study/column.h"
 
 #include <math.h>
 #include <setjmp.h>

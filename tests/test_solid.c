@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Volume, centroid and inertia of closed surfaces, against closed forms. */
-#include "pre/solid.h"
+#include "pre/missile_body.h"
 
 #include <math.h>
 #include <setjmp.h>

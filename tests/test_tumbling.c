@@ -2,7 +2,7 @@
 /* The missile with six degrees of freedom, alone: tumbling without torque, response to forces, inertia. */
 #include "extreme.h"
 
-#include "base/rotation.h"
+#include "base/mat3.h"
 #include "solver/missile.h"
 #include "solver/rigid.h"
 

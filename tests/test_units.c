@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/units.h"
 
-#include "base/unit_text.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

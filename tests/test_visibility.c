@@ -4,7 +4,7 @@
 #include "model_fixture.h"
 
 #include "pre/cloud/cloud.h"
-#include "pre/cloud/visibility.h"
+#include "pre/cloud/mls.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

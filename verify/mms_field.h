@@ -5,7 +5,7 @@
 #ifndef SF_VERIFY_MMS_FIELD_H
 #define SF_VERIFY_MMS_FIELD_H
 
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 typedef struct sf_mms_field {
     double side;         /* m, the cube is [0, side]^3 */

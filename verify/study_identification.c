@@ -2,7 +2,7 @@
 /* A synthetic laboratory: compression tests made with hidden parameters by the solver's own foam law, with
  * scatter, go through the identification of softfall-fit compression. It must choose the law that made them,
  * and its intervals must hold the truth as often as they say. */
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include "study/fit/compression/table_fit.h"
 #include "material/point.h"
 #include "study.h"

@@ -3,7 +3,7 @@
  * noise, identified by space mapping, and the intervals counted. The "simulation" is a stiffer and thinner
  * set of columns than the surrogate, so that the correction has to work; hundreds of drops then cost seconds.
  * The whole chain with three-dimensional drops is in tests/test_fit_drop.c. */
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include "study.h"
 
 #include "study/column.h"

@@ -6,9 +6,9 @@
 #include "model_fixture.h"
 #include "study.h"
 
-#include "base/rotation.h"
+#include "base/mat3.h"
 #include "solver/rigid.h"
-#include "solver/run/ending.h"
+#include "solver/run/run.h"
 #include "solver/step.h"
 
 #include <math.h>

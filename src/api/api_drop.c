@@ -1,12 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drops: created, and advanced in time. */
 #include "api/api_drop.h"
 
-#include "solver/run/ending.h"
-#include "solver/step.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "api/api.h"
+#include "build_info.h"
+#include "model/model_io.h"
+#include "solver/run/frame.h"
+#include "solver/run/run.h"
+#include "solver/step.h"
+
+/* Drops: created, and advanced in time. */
 
 static const softfall_drop_options by_default;
 
@@ -91,4 +98,151 @@ softfall_status softfall_drop_run(softfall_drop *d, int (*observe)(void *user, c
     if (ending)
         *ending = d->ending;
     return status;
+}
+
+/* Results of a drop: its last step, its history, the fields over its nodes. */
+
+void softfall_drop_list(softfall_drop *d) {
+    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
+        const sf_history_column *column = sf_history_column_get(k);
+        d->column[k] = (softfall_quantity){column->name, column->units, column->description, 1};
+    }
+    for (int k = 0; k < SF_FRAME_FIELDS; k++) {
+        const sf_frame_field_info *f = sf_frame_field_get((sf_frame_field)k);
+        d->field[k] = (softfall_quantity){f->name, f->units, f->description, f->components};
+    }
+}
+
+int64_t softfall_drop_steps(const softfall_drop *d) {
+    return d->recorder.history.rows;
+}
+
+double softfall_drop_latest(const softfall_drop *d, const char *name) {
+    const double *values = NULL;
+    int64_t rows = softfall_drop_history(d, name, &values);
+    return rows > 0 ? values[rows - 1] : NAN;
+}
+
+const softfall_quantity *softfall_drop_columns(const softfall_drop *d, int *count) {
+    *count = SF_HISTORY_COUNT;
+    return d->column;
+}
+
+int64_t softfall_drop_history(const softfall_drop *d, const char *name, const double **values) {
+    for (int k = 0; k < SF_HISTORY_COUNT; k++)
+        if (strcmp(d->column[k].name, name) == 0) {
+            *values = d->recorder.history.column[k];
+            return d->recorder.history.rows;
+        }
+    return -1;
+}
+
+const softfall_quantity *softfall_drop_fields(const softfall_drop *d, int *count) {
+    *count = SF_FRAME_FIELDS;
+    return d->field;
+}
+
+static sf_status take_field(const softfall_drop *d, const char *name, double *values, int64_t size,
+                            sf_error *err) {
+    int field = 0;
+    while (field < SF_FRAME_FIELDS && strcmp(d->field[field].name, name) != 0)
+        field++;
+    if (field == SF_FRAME_FIELDS)
+        return SF_FAIL(err, SF_ERR_INPUT, "there is no field \"%.80s\" of the nodes", name);
+    int64_t needed = d->model.node_count * d->field[field].components;
+    if (size != needed)
+        return SF_FAIL(err, SF_ERR_INPUT, "the field \"%s\" has %lld values, room was given for %lld", name,
+                       (long long)needed, (long long)size);
+    if (d->recorder.history.rows == 0 || d->failure.status != SF_OK)
+        return SF_FAIL(err, SF_ERR_INPUT, "the drop has no good step whose fields could be read");
+    sf_frame_take(&d->model, &d->operators, &d->state, (sf_frame_field)field, values);
+    return SF_OK;
+}
+
+softfall_status softfall_drop_field(const softfall_drop *d, const char *name, double *values, int64_t size,
+                                    softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    int before = softfall_drop_enter(d);
+    take_field(d, name, values, size, &err);
+    omp_set_num_threads(before);
+    return softfall_return(&err, error);
+}
+
+/* Models: reading, writing and their properties. */
+
+const char *softfall_version(void) {
+    return SF_VERSION;
+}
+
+const char *softfall_revision(void) {
+    return SF_GIT_REVISION;
+}
+
+/* A text of the provenance that a file may lack. */
+static sf_status read_text(const sf_h5 *file, const char *path, char **text, sf_error *err) {
+    return sf_h5_exists(file, path) ? sf_h5_read_text(file, path, text, err) : SF_OK;
+}
+
+static sf_status read_model(const char *path, softfall_model *m, sf_error *err) {
+    sf_h5 *file = NULL;
+    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
+    char *libraries = NULL;
+    if (sf_model_read(path, &m->model, &file, err) == SF_OK &&
+        read_text(file, "/provenance/case_text", &m->case_text, err) == SF_OK &&
+        read_text(file, "/provenance/parameters", &m->parameters, err) == SF_OK &&
+        read_text(file, "/provenance/mesh_hash", &m->mesh_hash, err) == SF_OK &&
+        read_text(file, "/provenance/geometry_files", &m->geometry_files, err) == SF_OK)
+        read_text(file, "/provenance/libraries", &libraries, err);
+    snprintf(m->libraries, sizeof m->libraries, "%s", libraries ? libraries : "");
+    free(libraries);
+    sf_h5_close(&file, &ignored);
+    return err->status;
+}
+
+softfall_status softfall_model_read(const char *path, softfall_model **out, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    *out = softfall_new(&err, sizeof **out, "a model");
+    if (*out && read_model(path, *out, &err) != SF_OK) {
+        softfall_model_free(*out);
+        *out = NULL;
+    }
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_model_write(const softfall_model *m, const char *path, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    const sf_provenance provenance = {.program = "libsoftfall",
+                                      .libraries = m->libraries,
+                                      .case_text = m->case_text,
+                                      .parameters = m->parameters,
+                                      .mesh_hash = m->mesh_hash,
+                                      .geometry_files = m->geometry_files};
+    sf_model_write(path, &m->model, &provenance, &err);
+    return softfall_return(&err, error);
+}
+
+void softfall_model_free(softfall_model *m) {
+    if (!m)
+        return;
+    sf_model_free(&m->model);
+    free(m->case_text);
+    free(m->parameters);
+    free(m->mesh_hash);
+    free(m->geometry_files);
+    free(m);
+}
+
+softfall_model_info softfall_model_describe(const softfall_model *model) {
+    const sf_model *m = &model->model;
+    return (softfall_model_info){.node_count = m->node_count,
+                                 .symmetry_factor = m->symmetry_factor,
+                                 .thickness = m->thickness,
+                                 .missile_mass = m->missile.mass,
+                                 .missile_speed = m->missile.speed,
+                                 .end_time = m->run.end_time,
+                                 .has_prescribed_motion = sf_missile_is_driven(m)};
+}
+
+const double *softfall_model_positions(const softfall_model *m) {
+    return m->model.position;
 }

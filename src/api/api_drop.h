@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A drop behind its handle. */
-#ifndef SF_API_DROP_H
-#define SF_API_DROP_H
+#ifndef SF_API_API_DROP_H
+#define SF_API_API_DROP_H
+#include <omp.h>
 
 #include "api/api.h"
-#include "model/frame_field.h"
+#include "model/columns.h"
 #include "solver/operators.h"
 #include "solver/run/recorder.h"
 #include "solver/state.h"
-#include <omp.h>
+
+/* A drop behind its handle. */
 
 struct softfall_drop {
     sf_model model; /* arrays borrowed from the caller's model */
@@ -31,5 +32,4 @@ static inline int softfall_drop_enter(const softfall_drop *drop) {
 
 /* Fills the lists of columns and fields. */
 void softfall_drop_list(softfall_drop *drop);
-
 #endif

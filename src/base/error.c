@@ -55,3 +55,15 @@ void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const cha
     memset(block, 0, bytes ? bytes : 64);
     return block;
 }
+
+void sf_sink_tell(const sf_sink *sink, sf_severity severity, const char *format, ...) {
+    char sentence[1024];
+    va_list args;
+    if (!sink || !sink->tell)
+        return;
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    sf_error_clean(sentence);
+    sink->tell(sink->user, severity, sentence);
+}

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_BASE_ERROR_H
+#define SF_BASE_ERROR_H
+
 /* Status codes and the error record that every fallible softfall function fills.
  *
  * A function that can fail returns sf_status and takes an `sf_error *err` as its last argument. The first
@@ -6,8 +9,6 @@
  * the value and the bound, and with the source line that raised it. `err` may not be NULL. A failing function
  * leaves its outputs released or NULL unless its header says otherwise. Only main() functions turn a status
  * into an exit code. */
-#ifndef SF_CORE_ERROR_H
-#define SF_CORE_ERROR_H
 
 typedef enum sf_status {
     SF_OK = 0,
@@ -33,8 +34,8 @@ typedef struct sf_error {
 /* Records a failure (unless one is recorded already) and returns the recorded status. */
 #define SF_FAIL(err, status, ...) sf_error_set((err), (status), __FILE__, __LINE__, __VA_ARGS__)
 
-/* Leaves the function with the status of `call` unless that is SF_OK. For a sequence of calls in a function that
- * returns sf_status and has nothing to release; where something must be released, chain the calls in one
+/* Leaves the function with the status of `call` unless that is SF_OK. For a sequence of calls in a function
+ * that returns sf_status and has nothing to release; where something must be released, chain the calls in one
  * condition or use `goto done`. */
 #define SF_TRY(call)                                                                                         \
     do {                                                                                                     \
@@ -54,4 +55,22 @@ void sf_error_clean(char *sentence);
  * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
 void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);
 
+/* Where warnings and notes go: a function that may produce some takes a sink from its caller. Only the
+ * programs print. */
+
+typedef enum sf_severity {
+    SF_NOTE,    /* a choice that was made for the user */
+    SF_WARNING, /* the input is legal but probably not intended */
+} sf_severity;
+
+/* `sentence` has no line end and is valid during the call only. */
+typedef struct sf_sink {
+    void (*tell)(void *user, sf_severity severity, const char *sentence);
+    void *user; /* borrowed */
+} sf_sink;
+
+/* Gives the sink a sentence of at most 1023 bytes; control characters become blanks. NULL: the sentence is
+ * dropped. */
+void sf_sink_tell(const sf_sink *sink, sf_severity severity, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 #endif

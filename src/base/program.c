@@ -2,7 +2,7 @@
 #include "base/program.h"
 
 #include "base/text.h"
-#include "base/openmp_environment.h"
+#include "base/threads.h"
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>

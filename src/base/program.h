@@ -4,7 +4,6 @@
 #define SF_CORE_PROGRAM_H
 
 #include "base/error.h"
-#include "base/sink.h"
 
 /* main calls it first. Ignores SIGPIPE and SIGXFSZ, so that a closed standard output (`softfall-pre ... |
  * head -1`) and a limit of file sizes become failed writes with their sentences, and do not end the program

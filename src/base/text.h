@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers in texts of the user: decimal ones alone. */
-#ifndef SF_CORE_DECIMAL_H
-#define SF_CORE_DECIMAL_H
-
+#ifndef SF_BASE_TEXT_H
+#define SF_BASE_TEXT_H
 #include <stdbool.h>
+
+/* Numbers in texts of the user: decimal ones alone. */
 
 /* The number at `text`, [+-] digits [. digits] [e [+-] digits] with at least one digit, and what follows it;
  * NULL if there is none (hexadecimal). "nan" and "inf", and numbers that are too large, give a value that is
@@ -16,4 +16,9 @@ bool sf_decimal_is(const char *text, double *value);
 /* Is the whole text one whole number from `low` to `high`? */
 bool sf_whole_is(const char *text, long low, long high, int *value);
 
+/* Length of the well-formed UTF-8 sequence at `s`, 0 if there is none (RFC 3629). */
+int sf_utf8_length(const unsigned char *s);
+
+/* Length of `text`, or at most `size`, cut before a sequence that does not end there. */
+int sf_utf8_cut(const char *text, int size);
 #endif

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_BASE_UNITS_H
+#define SF_BASE_UNITS_H
+#include <stdio.h>
+
+#include "base/error.h"
+
 /* Quantities with units: "4.5 m/s" to 4.5, "160 mm" to 0.16. UDUNITS-2 knows the size of each unit; the only
  * file that includes udunits2.h is units.c. Error messages quote the text and name its kind and the kind
  * expected. */
-#ifndef SF_CORE_UNITS_H
-#define SF_CORE_UNITS_H
-
-#include "base/error.h"
 
 /* m s-2: the g of a_max and of drop heights (CGPM 1901), and as the text of a quantity. */
 #define SF_STANDARD_GRAVITY 9.80665
@@ -45,7 +47,7 @@ sf_status sf_units_hold(sf_error *err);
 void sf_units_let_go(void);
 
 /* Reads "number unit" into the SI value of `kind`: one decimal number, one unit in the grammar and of the
- * names of base/unit_text.h, nothing else. SF_ERR_INPUT if the number or the unit is missing or unknown, if
+ * names of base/units.h, nothing else. SF_ERR_INPUT if the number or the unit is missing or unknown, if
  * the unit belongs to another kind (reciprocals too), or the value is not finite. */
 sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity kind, double *si,
                          sf_error *err);
@@ -55,4 +57,27 @@ const char *sf_quantity_phrase(sf_quantity kind);
 const char *sf_quantity_unit(sf_quantity kind);
 const char *sf_quantity_example(sf_quantity kind);
 
+/* The text of a unit, "m/s2", as factors: names of one table with powers. Numbers, offsets and every other
+ * name are refused, so that nothing in the text can change the value unseen. */
+
+enum { SF_UNIT_FACTORS = 8, SF_UNIT_NAME = 16, SF_UNIT_POWER = 4, SF_UNIT_REASON = 96 };
+
+typedef struct sf_unit_factor {
+    char name[SF_UNIT_NAME]; /* of UDUNITS: "mm", "us" */
+    int power;               /* -SF_UNIT_POWER to SF_UNIT_POWER, not 0 */
+} sf_unit_factor;
+
+typedef struct sf_unit_text {
+    int count;
+    sf_unit_factor factor[SF_UNIT_FACTORS];
+    char reason[SF_UNIT_REASON]; /* empty: the text is a unit; else what is wrong with it */
+} sf_unit_text;
+
+/* Grammar: product = factor { ("/" | "." | "*" | "·" | blanks) factor }, from left to right (kg/m s is (kg/m)
+ * s); factor = (name | "(" product ")") [power], power = ["^"] ["-"] digit, or ², ³, ⁻¹; the first factor of
+ * a product may be 1 if "/" follows. */
+sf_unit_text sf_unit_text_read(const char *text);
+
+/* The names as Markdown: a table for docs/case.md. */
+void sf_unit_text_print(FILE *file);
 #endif

@@ -5,10 +5,9 @@
 #ifndef SF_CASE_CASE_H
 #define SF_CASE_CASE_H
 
-#include "model/drop_kinds.h"
+#include "model/good_run.h"
 #include "base/error.h"
 #include "model/model.h"
-#include "base/sink.h"
 #include <stdio.h>
 
 enum {
@@ -44,9 +43,9 @@ typedef struct sf_case {
     sf_geo_source missile;
     double length_unit;     /* m per unit of the geometry */
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */
-    const char *store;      /* folder in which meshes and domains are kept for other drops (io/store.h); NULL:
-                               they are not; borrowed, not of the case file */
-    char *geometry_files;   /* what the geometries read (sf_gmsh_files), set when they are meshed; owned */
+    const char *store;    /* folder in which meshes and domains are kept for other drops (io/folder.h); NULL:
+                             they are not; borrowed, not of the case file */
+    char *geometry_files; /* what the geometries read (sf_gmsh_files), set when they are meshed; owned */
     char pad_group[SF_CASE_NAME_SIZE]; /* physical volume group of the pad; of layers, for sentences: all */
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */
     int base_rule;                         /* SF_BASE_*: how the fixed groups stand on the anvil */

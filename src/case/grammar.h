@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_CASE_GRAMMAR_H
+#define SF_CASE_GRAMMAR_H
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/error.h"
+
 /* Looks at a text in libconfig syntax before libconfig does, and refuses what libconfig would drop or cut
  * without a word: comments and strings that do not end, numbers that are none or do not fit, unknown escapes,
  * text beside an @include, and more text than a case can need (libconfig's time grows with the square of the
  * number of settings). */
-#ifndef SF_CASE_SCAN_H
-#define SF_CASE_SCAN_H
-
-#include "base/error.h"
-#include <stdbool.h>
-#include <stddef.h>
 
 /* One text, with everything that it includes. Begin with zeros; `path` and `line` are those of the line that
  * follows, for the sentences. */
@@ -39,4 +40,36 @@ sf_status sf_case_scan_end(const sf_case_scan *scan, sf_error *err);
 /* The same for a value on one line of its own, without a comment; `name` stands before the sentence. */
 sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err);
 
+/* The text of a file in libconfig syntax with its includes put in place, and where each of its lines comes
+ * from; looked over by case/grammar.h. libconfig's own @include takes no absolute paths beside relative ones,
+ * and its scanner ends the process on a folder. */
+
+enum { SF_CASE_WHERE_SIZE = 512 /* of a text that says where a setting stands */ };
+
+/* Where the lines of a case's text come from, as its includes are put in place before libconfig reads it:
+ * from line `first` of the text on, they are those of the file `path` from `line` on. */
+typedef struct sf_case_piece {
+    int first, line;
+    char *path; /* owned */
+} sf_case_piece;
+
+typedef struct sf_case_source {
+    int count, capacity;
+    sf_case_piece *piece; /* [count] ascending in `first` */
+} sf_case_source;
+
+/* The text of the case with its includes put in place and the overrides as comments; from malloc. Includes
+ * that are missing or no plain files are refused. `source` (may be NULL) is filled. */
+char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
+                        sf_error *err);
+/* File and line of a line of the text. */
+const char *sf_case_source_find(const sf_case_source *source, int line, int *file_line);
+void sf_case_source_free(sf_case_source *source);
+
+/* The folder part of a path, "." if there is none; from malloc. */
+char *sf_case_folder_of(const char *path, sf_error *err);
+
+/* The file of a text "group=@file" or "materials.NAME=@file", NULL for "group.key=value". Relative to the
+ * working directory. */
+const char *sf_case_override_file(const char *text);
 #endif

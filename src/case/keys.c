@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/keys.h"
 
-#include "model/motion.h"
+#include "model/model.h"
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>

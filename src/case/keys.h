@@ -2,8 +2,8 @@
 /* The table of the case file's keys. Internal to src/case.
  *
  * One row per key drives reading, checking, the list of unknown keys, the used-parameters listing, `--keys`
- * and docs/case.md. The rows of a material are those of its law (material/law.h). Defaults are texts in libconfig
- * syntax and pass through the same reader as given values.
+ * and docs/case.md. The rows of a material are those of its law (material/card.h). Defaults are texts in
+ * libconfig syntax and pass through the same reader as given values.
  */
 #ifndef SF_CASE_KEYS_H
 #define SF_CASE_KEYS_H

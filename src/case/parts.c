@@ -4,8 +4,6 @@
 #include "case/keys.h"
 #include "case/grammar.h"
 #include "case/settings.h"
-#include "case/source.h"
-#include "io/path.h"
 #include "io/plain_file.h"
 #include "material/laws.h"
 #include <libconfig.h>

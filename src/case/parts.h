@@ -7,7 +7,7 @@
 #ifndef SF_CASE_PARTS_H
 #define SF_CASE_PARTS_H
 
-#include "case/part.h"
+#include "case/settings.h"
 #include "base/error.h"
 #include <stdbool.h>
 

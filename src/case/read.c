@@ -3,14 +3,11 @@
  */
 #include "case/case.h"
 
-#include "case/freedom.h"
 #include "case/rules.h"
 #include "case/override.h"
-#include "case/print.h"
-#include "case/reader.h"
-#include "case/response_error.h"
-#include "case/value.h"
 #include "case/values.h"
+#include "case/reader.h"
+#include "case/value.h"
 
 #include "base/hash.h"
 #include "base/mat3.h"
@@ -93,7 +90,7 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
     return u.count > 0 ? refuse_unknown(reader, &u, err) : SF_OK;
 }
 
-/* What stands in the files that a key names is hashed where they are read (study/key.c). */
+/* What stands in the files that a key names is hashed where they are read (study/run_folder.c). */
 static bool names_files(const sf_key *key) {
     return key->kind == SF_KEY_PATH || key->kind == SF_KEY_CURVE || key->kind == SF_KEY_CURVES ||
            key->kind == SF_KEY_MOTION;

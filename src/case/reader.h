@@ -6,8 +6,8 @@
 
 #include "case/case.h"
 #include "case/keys.h"
-#include "case/source.h"
-#include "base/sink.h"
+#include "case/grammar.h"
+#include "base/error.h"
 #include "base/units.h"
 #include <libconfig.h>
 #include <stdbool.h>

@@ -1,11 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the settings of a case stand in its text. Internal to src/case. */
 #ifndef SF_CASE_SETTINGS_H
 #define SF_CASE_SETTINGS_H
-
-#include "case/part.h"
-#include "base/error.h"
 #include <stddef.h>
+
+#include "base/error.h"
+
+/* A file of a case's text (case/parts.h). */
+
+typedef struct sf_case_part {
+    char *path;        /* where it stands, from / */
+    char *included_as; /* the name in its include; NULL: the case file, or one of a --set text */
+    char *text;        /* its includes are @include "#INDEX of the part" until sf_case_parts_finish */
+    char *name;        /* where it goes, from the new folder; NULL: no longer part of the case */
+} sf_case_part;
+
+typedef struct sf_case_parts {
+    int count, capacity;
+    sf_case_part *part; /* [count], the case file first */
+} sf_case_parts;
+
+/* Where the settings of a case stand in its text. Internal to src/case. */
 
 enum { SF_SETTING_PATH_SIZE = 256 };
 
@@ -37,5 +51,4 @@ char *sf_setting_text(const sf_case_parts *parts, const sf_setting *setting, sf_
 
 /* If the line [line, end) is an include of a part: which; else -1. */
 int sf_settings_include(const char *line, const char *end);
-
 #endif

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The keys of a case with their values as texts, for who lets a user change them. Of the table of keys
- * (case/keys.c), which is internal to src/case. */
 #ifndef SF_CASE_VALUES_H
 #define SF_CASE_VALUES_H
+#include <libconfig.h>
+#include <stdio.h>
 
 #include "case/case.h"
+
+/* The keys of a case with their values as texts, for who lets a user change them. Of the table of keys
+ * (case/keys.c), which is internal to src/case. */
 
 /* How a value can be entered. */
 typedef enum sf_case_value_kind {
@@ -37,4 +40,9 @@ typedef struct sf_case_listener {
 sf_status sf_case_read_values(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                               const sf_case_listener *listener, sf_case *out, sf_error *err);
 
+/* Settings in libconfig syntax. Internal to src/case; the list of keys is printed by case.h's
+ * sf_case_print_keys. */
+
+/* Writes a setting's value in libconfig syntax on one line. */
+void sf_case_print_setting(FILE *file, const config_setting_t *setting);
 #endif

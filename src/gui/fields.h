@@ -1,13 +1,35 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_GUI_FIELDS_H
+#define SF_GUI_FIELDS_H
+#include <stdbool.h>
+
+#include "case/case.h"
+#include "gui/gmsh/window.h"
+
+/* The parameters of a .geo file: gmsh's tree knows them by their Name, a case by their variable. gmsh tells
+ * no one which belongs to which, so the text of the file (and of what it includes) is looked through:
+ * DefineConstant and DefineNumber with a Name that is written out. */
+
+enum { SF_GEO_NAME_SIZE = 256, SF_GEO_NAMES = 128 };
+
+typedef struct sf_geo_name {
+    char variable[SF_CASE_NAME_SIZE]; /* "thickness" */
+    char name[SF_GEO_NAME_SIZE];      /* "Pad/2 Thickness [mm]" */
+} sf_geo_name;
+
+typedef struct sf_geo_names {
+    int count;
+    sf_geo_name name[SF_GEO_NAMES];
+} sf_geo_names;
+
+/* Of a file that is no text of gmsh's language there are none. Errors: the file cannot be read. */
+sf_status sf_geo_names_read(const char *path, sf_geo_names *names, sf_error *err);
+/* Those of a text alone, added. */
+void sf_geo_names_scan(const char *text, sf_geo_names *names);
+
 /* The fields of the tree: the keys of the case, from the table of keys, and the parameters of its geometries.
  * A field that differs from the case is an override, as --set takes it; nothing else of the tree reaches a
  * run. */
-#ifndef SF_GUI_FIELDS_H
-#define SF_GUI_FIELDS_H
-
-#include "case/case.h"
-#include "gui/geo_names.h"
-#include "gui/gmsh/window.h"
 
 enum {
     SF_FIELDS = 160,
@@ -74,5 +96,4 @@ void sf_fields_lock_unknown(sf_fields *fields);
 
 /* Marks the fields that the sentence of an error names (NULL: none), in the tree too. */
 void sf_fields_mark(sf_fields *fields, const char *sentence);
-
 #endif

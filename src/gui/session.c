@@ -2,7 +2,6 @@
 #include "gui/session.h"
 
 #include "gui/cache.h"
-#include "gui/checks.h"
 #include "gui/outcome.h"
 #include "gui/children.h"
 #include "io/folder.h"

@@ -5,11 +5,11 @@
 
 #include "study/run_folder.h"
 #include "gui/fields.h"
-#include "gui/gmsh/geometry.h"
+#include "gui/gmsh/window.h"
 #include "gui/shape.h"
 #include "gui/activity.h"
-#include "gui/watch.h"
-#include "io/child.h"
+#include "gui/children.h"
+#include "io/process.h"
 
 /* Where the case puts the missile, until softfall-pre does so exactly. */
 typedef struct sf_session_place {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/shape.h"
 
-#include "post/view/cells.h"
+#include "post/view/cut.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Folders that softfall keeps for itself: those of runs and drops, and what is being written. Such a folder
- * holds a mark (a file of that name and text); softfall removes and replaces files only where that stands. */
 #ifndef SF_IO_FOLDER_H
 #define SF_IO_FOLDER_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "base/error.h"
-#include <stdbool.h>
-#include <stdint.h>
+
+/* Folders that softfall keeps for itself: those of runs and drops, and what is being written. Such a folder
+ * holds a mark (a file of that name and text); softfall removes and replaces files only where that stands. */
 
 /* Makes the folder, or takes an empty one or one with the mark; several processes may do so at once.
  * SF_ERR_INPUT: it holds files but no mark, or is no folder. */
@@ -44,4 +46,28 @@ uint64_t sf_folder_bytes(const char *path);
  * plain file. */
 void sf_folder_remove_file(const char *path);
 
+/* A folder of intermediate results that are found again by a key of everything they follow from: a file
+ * KIND-<key, 16 hexadecimal digits>.bin each, written aside and renamed, with a checksum. A file that is
+ * damaged or of another key counts as absent, and one that cannot be kept is not: the store saves time, and
+ * nothing else. */
+
+/* Beyond this many bytes in the folder nothing more is kept. */
+#define SF_STORE_MOST (UINT64_C(1) << 30)
+
+typedef struct sf_store_part {
+    const void *data;
+    size_t size; /* bytes */
+} sf_store_part;
+
+/* What was kept. `data` is aligned for 64 bits; release `block` with free(). */
+typedef struct sf_stored {
+    void *block;
+    const char *data;
+    size_t size;
+} sf_stored;
+
+/* False: there is none; `*out` is empty. `folder` NULL: no store. */
+bool sf_store_find(const char *folder, const char *kind, uint64_t key, sf_stored *out);
+/* Keeps the parts, one after another. */
+void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count, const sf_store_part *part);
 #endif

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers of a struct as datasets of one group, by a table. */
-#ifndef SF_IO_MEMBERS_H
-#define SF_IO_MEMBERS_H
-
+#ifndef SF_IO_H5_MEMBERS_H
+#define SF_IO_H5_MEMBERS_H
 #include "io/h5.h"
+
+/* Lists of numbers, X(type, name, array size, units, meaning), that declare the members of a struct;
+ * io/h5_members.h writes and reads them by the list. */
+
+#define SF_DECLARE(type, name, size, units, meaning) type name size;
+
+/* Numbers of a struct as datasets of one group, by a table. */
 
 typedef struct sf_member {
     const char *name;
@@ -26,5 +31,4 @@ sf_status sf_members_write(sf_h5 *file, const char *group, const sf_member *memb
 /* Reads them back, bit by bit. */
 sf_status sf_members_read(const sf_h5 *file, const char *group, const sf_member *member, size_t count,
                           void *base, sf_error *err);
-
 #endif

@@ -1,4 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_IO_PLAIN_FILE_H
+#define SF_IO_PLAIN_FILE_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/error.h"
+
 /* The gate: the only code that opens a file for reading (tools/gate.py, a test, holds the short list of
  * exceptions). It takes plain files only, from file systems that store files: no folder, pipe, socket or
  * device, and nothing of proc, sysfs and the like, whose "files" may be endless or wait for ever. It never
@@ -10,13 +18,6 @@
  *
  * Every file that passed is entered in the register of this process: an output is never one of them,
  * and a key can be made of their contents. */
-#ifndef SF_IO_PLAIN_FILE_H
-#define SF_IO_PLAIN_FILE_H
-
-#include "base/error.h"
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 /* Largest text that somebody would write or measure, in bytes. */
 #define SF_PLAIN_TEXT (UINT64_C(1) << 28)
@@ -62,4 +63,21 @@ const char *sf_plain_name(uint64_t device, uint64_t inode);
 /* Empties the register. */
 void sf_plain_forget(void);
 
+/* Paths as texts: nothing is looked up but the working directory, and links are not followed. */
+
+/* From /, without ".", ".." and double slashes; a relative path begins at `folder` (NULL: the working
+ * directory). From malloc, NULL on failure. */
+char *sf_path_whole(const char *folder, const char *path, sf_error *err);
+
+/* The part of whole paths below `folder`; NULL: `path` is not below it. Points into `path`. */
+const char *sf_path_below(const char *folder, const char *path);
+
+/* The length of the folder part of a path, without the slash but of "/"; 0: none. */
+size_t sf_path_folder_length(const char *path);
+/* The last part. */
+const char *sf_path_name(const char *path);
+
+/* How a file in the folder of `from` names the file `to`; both from the same folder, without "." and "..".
+ * From malloc, NULL on failure. */
+char *sf_path_between(const char *from, const char *to, sf_error *err);
 #endif

@@ -12,7 +12,7 @@
 #ifndef SF_IO_TABLE_CSV_H
 #define SF_IO_TABLE_CSV_H
 
-#include "io/table_layout.h"
+#include "io/table_heading.h"
 
 enum { SF_TABLE_UNDERSTOOD = 384 };
 

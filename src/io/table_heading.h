@@ -1,10 +1,58 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Headings of CSV tables: which cells are the two columns of a layout, and in which units. Internal to
- * io/table_csv. */
 #ifndef SF_IO_TABLE_HEADING_H
 #define SF_IO_TABLE_HEADING_H
+#include <stdbool.h>
+#include <stdint.h>
 
-#include "io/table_layout.h"
+#include "base/error.h"
+#include "base/units.h"
+
+/* What a program expects of a table of two columns (io/table_csv.h). */
+
+enum { SF_TABLE_RATIO = SF_QUANTITY_COUNT }; /* kind of a column without dimension: "%" or "1" */
+
+/* A name that the heading may use exactly, which of the two columns it is, and its factor to the table's
+ * unit.
+ */
+typedef struct sf_table_name {
+    const char *name;
+    int column;
+    double scale;
+    const char *unit; /* of the name, for sentences; NULL: not told */
+} sf_table_name;
+
+/* A line that was read: values, and the cells as written, so that the user finds them in the file. */
+typedef struct sf_table_point {
+    const char *path;
+    int line;
+    int64_t index; /* of the point, from 0 */
+    double value[2];
+    const char *text[2];
+    double before[2]; /* the point before; zero at the first */
+    double last[2];   /* the same in the file's own units */
+} sf_table_point;
+
+/* Refuses a point. */
+typedef sf_status sf_table_check(const sf_table_point *point, sf_error *err);
+
+typedef struct sf_table_layout {
+    const char *what;      /* "curve" */
+    const char *column[2]; /* "strain", "stress" */
+    const char *wanted[2]; /* the names allowed in the heading, for messages */
+    const sf_table_name *names;
+    int name_count;
+    const char *words[2]; /* "time|t|*zeit": words that stand in a heading with a unit ('*': they end a word);
+                             NULL: exact names only */
+    int kind[2];          /* sf_quantity or SF_TABLE_RATIO, with words */
+    double unit[2];       /* SI value of the unit of the table's values; 0: SI */
+    const char *chosen[2]; /* heading of the column to take; NULL: the only one that fits */
+    const char *choice;    /* how the user chooses a column, for messages; NULL: not possible */
+    bool ragged;           /* a row may be shorter than the heading as long as it holds both columns */
+    sf_table_check *check; /* NULL: none */
+} sf_table_layout;
+
+/* Headings of CSV tables: which cells are the two columns of a layout, and in which units. Internal to
+ * io/table_csv. */
 
 enum { SF_TABLE_COLUMNS = 256, SF_TABLE_TITLE = 96, SF_TABLE_UNIT = 32 };
 
@@ -38,5 +86,4 @@ bool sf_table_number(const char *cell, double *value);
 sf_status sf_table_heading_read(const sf_table_layout *layout, const sf_table_cells *cells,
                                 const sf_table_cells *below, sf_units **units, sf_table_heading *heading,
                                 sf_error *err);
-
 #endif

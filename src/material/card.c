@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/card.h"
 
-#include "base/hash.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/hash.h"
 
 sf_status sf_material_create(const sf_law *law, sf_material *material, sf_error *err) {
     *material = (sf_material){.law = law, .card = sf_alloc(err, 1, law->card_size, "material card")};

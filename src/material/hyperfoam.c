@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The entry of the hyperfoam in the table of laws: its parameters and rules. The update of a batch is in
- * hyperfoam_point.c. */
 #include "material/hyperfoam.h"
-#include "material/foam_parameters.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "base/lanes.h"
+#include "material/foam_card.h"
+
+/* The entry of the hyperfoam in the table of laws: its parameters and rules. The update of a batch is in
+ * hyperfoam_point.c. */
 
 /* ---- parameters ---- */
 
@@ -228,3 +233,244 @@ const sf_law sf_hyperfoam_law = {
     .energy = energy,
     .uniaxial = uniaxial,
 };
+
+double sf_hyperfoam_beta(const sf_hyperfoam_term *term) {
+    return term->beta + term->nu / (1 - 2 * term->nu);
+}
+
+sf_hyperfoam sf_hyperfoam_build(const sf_hyperfoam_card *card) {
+    sf_hyperfoam foam = {.options = sf_foam_options_build(&card->shared)};
+    for (int k = 0; k < SF_HYPERFOAM_TERMS; k++)
+        if (card->term[k].mu != 0) {
+            foam.mu[foam.count] = card->term[k].mu;
+            foam.alpha[foam.count] = card->term[k].alpha;
+            foam.beta[foam.count] = sf_hyperfoam_beta(&card->term[k]);
+            foam.rest += 2 * foam.mu[foam.count] * (1 + foam.beta[foam.count]);
+            foam.count++;
+        }
+    return foam;
+}
+
+/* ---- a batch ---- */
+
+/* Adds one term: its stresses times the stretch, its energy, its slopes times the stretch squared, and the
+ * coupling d2W / dli dlj = `coupling` / (li lj). */
+static inline void add_term(double mu, double alpha, double beta, double logarithm[3][SF_LANES],
+                            sf_foam_loading *law, double coupling[SF_LANES]) {
+    double twice = 2 * mu / alpha, energy = twice / alpha, squash = beta != 0 ? energy / beta : 0;
+    double volume[SF_LANES];
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double rest, sum = logarithm[0][l] + logarithm[1][l] + logarithm[2][l];
+        volume[l] = sf_lane_expm1(-alpha * beta * sum, &rest);
+        law->energy[l] += squash * rest;
+        coupling[l] += 2 * mu * beta * (1 + volume[l]);
+    }
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            double rest, power = sf_lane_expm1(alpha * logarithm[i][l], &rest);
+            law->energy[l] += energy * rest;
+            law->t[i][l] += twice * (power - volume[l]);
+            law->slope[i][l] +=
+                twice * (alpha * (1 + beta) + (alpha - 1) * power + (1 + alpha * beta) * volume[l]);
+        }
+}
+
+static SF_KERNEL void loading(const void *numbers, double stretch[3][SF_LANES], sf_foam_loading *law) {
+    const sf_hyperfoam *foam = numbers;
+    double logarithm[3][SF_LANES], inverse[3][SF_LANES], coupling[SF_LANES] = {0};
+    memset(law, 0, sizeof *law);
+    for (int i = 0; i < 3; i++)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            logarithm[i][l] = sf_lane_log(stretch[i][l]);
+            inverse[i][l] = 1 / stretch[i][l];
+        }
+    for (int k = 0; k < foam->count; k++)
+        add_term(foam->mu[k], foam->alpha[k], foam->beta[k], logarithm, law, coupling);
+    for (int i = 0; i < 3; i++) {
+        const double *one = inverse[i], *two = inverse[(i + 1) % 3], *three = inverse[(i + 2) % 3];
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            law->t[i][l] *= one[l];
+            law->slope[i][l] *= one[l] * one[l];
+            law->steepest[i][l] = law->slope[i][l] + fabs(coupling[l]) * one[l] * (two[l] + three[l]);
+        }
+    }
+}
+
+void sf_hyperfoam_update(const sf_hyperfoam *foam, double dt, sf_law_batch *b) {
+    const sf_foam_kind kind = {.numbers = foam, .rest = foam->rest, .loading = loading};
+    sf_foam_point_update(&foam->options, &kind, dt, b);
+}
+
+/* ---- one point ---- */
+
+sf_hyperfoam_point sf_hyperfoam_evaluate(const sf_hyperfoam *foam, const double stretch[3]) {
+    sf_hyperfoam_point out = {0};
+    double sum = 0;
+    for (int i = 0; i < 3; i++)
+        sum += log(stretch[i]);
+    for (int k = 0; k < foam->count; k++) {
+        double mu = foam->mu[k], alpha = foam->alpha[k], beta = foam->beta[k], z = -alpha * beta * sum;
+        double volume = expm1(z), scale = 2 * mu / (alpha * alpha);
+        out.energy += beta != 0 ? scale * (volume - z) / beta : 0;
+        for (int i = 0; i < 3; i++) {
+            double x = alpha * log(stretch[i]), power = expm1(x);
+            out.energy += scale * (power - x);
+            out.t[i] += scale * alpha * (power - volume) / stretch[i];
+            out.slope[i][i] += scale * alpha *
+                               (alpha * (1 + beta) + (alpha - 1) * power + (1 + alpha * beta) * volume) /
+                               (stretch[i] * stretch[i]);
+            for (int j = 0; j < 3; j++)
+                out.slope[i][j] += i == j ? 0 : 2 * mu * beta * (1 + volume) / (stretch[i] * stretch[j]);
+        }
+    }
+    return out;
+}
+
+double sf_hyperfoam_poisson(const sf_hyperfoam *foam, double strain) {
+    double stretch[3] = {1 - strain, 1, 1};
+    return sf_hyperfoam_release(foam, 1, stretch) ? -log(stretch[1]) / log(stretch[0]) : NAN;
+}
+
+bool sf_hyperfoam_release(const sf_hyperfoam *foam, int held, double stretch[3]) {
+    enum { TURNS = 60 };
+    const double largest = 0.2; /* of a change of the logarithm */
+    for (int turn = 0; turn < TURNS; turn++) {
+        for (int i = held; i < 3; i++)
+            stretch[i] = stretch[held];
+        sf_hyperfoam_point p = sf_hyperfoam_evaluate(foam, stretch);
+        double x = stretch[held], slope = x * p.t[held]; /* of the Kirchhoff stress, by the logarithm */
+        for (int j = held; j < 3; j++)
+            slope += x * x * p.slope[held][j];
+        double step = -x * p.t[held] / slope;
+        if (!(slope > 0) || !isfinite(step))
+            return false;
+        step = fmax(-largest, fmin(largest, step));
+        stretch[held] = x * exp(step);
+        if (fabs(step) < 1e-15)
+            break;
+    }
+    for (int i = held; i < 3; i++)
+        stretch[i] = stretch[held];
+    return true;
+}
+
+/* Drucker's condition: the derivatives of the Kirchhoff stresses by the logarithms of the stretches,
+ *     D = sum over the terms of 2 mu (diag(l^alpha) + beta J^(-alpha beta) 1 1^T),
+ * are positive definite. */
+
+enum { STEPS = 200 };
+
+/* A family of deformations with one parameter, the strain. */
+typedef struct path {
+    const char *name;
+    int held;   /* directions with a given stretch; the others are free of stress */
+    int axes;   /* of them, how many change */
+    bool pulls; /* tension */
+} path;
+static const path paths[] = {
+    {"uniaxial compression", 1, 1, false},   {"uniaxial tension", 1, 1, true},
+    {"biaxial compression", 2, 2, false},    {"biaxial tension", 2, 2, true},
+    {"confined compression", 3, 1, false},   {"confined tension", 3, 1, true},
+    {"volumetric compression", 3, 3, false}, {"volumetric tension", 3, 3, true},
+};
+
+/* Contribution of term k to the form v . D v. */
+static double share(const sf_hyperfoam *foam, int k, const double stretch[3], const double v[3]) {
+    double sum = 0, along = 0, volume = log(stretch[0]) + log(stretch[1]) + log(stretch[2]);
+    for (int i = 0; i < 3; i++) {
+        sum += v[i];
+        along += pow(stretch[i], foam->alpha[k]) * v[i] * v[i];
+    }
+    return 2 * foam->mu[k] *
+           (along + foam->beta[k] * exp(-foam->alpha[k] * foam->beta[k] * volume) * sum * sum);
+}
+
+/* D = diag(d) + b 1 1^T. */
+static double parts(const sf_hyperfoam *foam, const double stretch[3], double d[3]) {
+    double b = 0, volume = log(stretch[0]) + log(stretch[1]) + log(stretch[2]);
+    for (int i = 0; i < 3; i++) {
+        d[i] = 0;
+        for (int k = 0; k < foam->count; k++)
+            d[i] += 2 * foam->mu[k] * pow(stretch[i], foam->alpha[k]);
+    }
+    for (int k = 0; k < foam->count; k++)
+        b += 2 * foam->mu[k] * foam->beta[k] * exp(-foam->alpha[k] * foam->beta[k] * volume);
+    return b;
+}
+
+/* Is it positive definite? With two d[i] at or below 0 it is not, whatever b: a change of the two against
+ * each other shows it. Otherwise the sign of its determinant decides, and 1/d[i] is the change of least work.
+ */
+static bool positive(double b, const double d[3], double v[3]) {
+    int below[3], count = 0;
+    double sum = 1;
+    for (int i = 0; i < 3; i++) {
+        v[i] = 0;
+        if (!(d[i] > 0))
+            below[count++] = i;
+    }
+    if (count >= 2) {
+        v[below[0]] = 1;
+        v[below[1]] = -1;
+        return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        v[i] = d[i] != 0 ? 1 / d[i] : 1e100;
+        sum += b * v[i];
+    }
+    return count == 0 ? sum > 0 : b > 0 && sum < 0;
+}
+
+/* Is the law stable there? Otherwise the term that takes most from the work of the critical change. */
+static bool stable(const sf_hyperfoam *foam, const double stretch[3], int *term) {
+    double d[3], along[3], b = parts(foam, stretch, d);
+    if (positive(b, d, along))
+        return true;
+    *term = 0;
+    for (int k = 1; k < foam->count; k++)
+        if (share(foam, k, stretch, along) < share(foam, *term, stretch, along))
+            *term = k;
+    return false;
+}
+
+static bool path_fails(const sf_hyperfoam *foam, const path *p, double limit, sf_hyperfoam_failure *out) {
+    double stretch[3] = {1, 1, 1};
+    for (int k = 0; k <= STEPS; k++) {
+        double strain = limit * k / STEPS;
+        for (int i = 0; i < p->axes; i++)
+            stretch[i] = p->pulls ? 1 + strain : 1 - strain;
+        bool found = p->held == 3 || sf_hyperfoam_release(foam, p->held, stretch);
+        out->term = 0;
+        if (stable(foam, stretch, &out->term) && found)
+            continue;
+        out->path = p->name;
+        out->strain = strain;
+        return true;
+    }
+    return false;
+}
+
+/* At constant volume: one direction compressed, one stretched. */
+static bool shear_fails(const sf_hyperfoam *foam, double limit, sf_hyperfoam_failure *out) {
+    for (int k = 0; k <= STEPS; k++) {
+        double strain = limit * k / STEPS;
+        const double stretch[3] = {1 - strain, 1 / (1 - strain), 1};
+        if (stable(foam, stretch, &out->term))
+            continue;
+        out->path = "shear";
+        out->strain = strain;
+        return true;
+    }
+    return false;
+}
+
+bool sf_hyperfoam_fails(const sf_hyperfoam *foam, double limit, sf_hyperfoam_failure *out) {
+    for (size_t k = 0; k < sizeof paths / sizeof *paths; k++)
+        if (path_fails(foam, &paths[k], limit, out))
+            return true;
+    return shear_fails(foam, limit, out);
+}

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_MATERIAL_HYPERFOAM_H
+#define SF_MATERIAL_HYPERFOAM_H
+#include "base/error.h"
+#include "material/foam_point.h"
+
 /* Compressible hyperfoam of Ogden and Storakers (theory, section "Hyperfoam"), of 1 to 3 terms:
  *     W = sum 2 mu/alpha^2 [l1^alpha + l2^alpha + l3^alpha - 3 + (J^(-alpha beta) - 1)/beta]
  * with the hysteresis and viscosity of the foam laws (foam_point.h). Pure functions. */
-#ifndef SF_SOLVER_MATERIAL_HYPERFOAM_H
-#define SF_SOLVER_MATERIAL_HYPERFOAM_H
-
-#include "base/error.h"
-#include "material/foam_point.h"
 
 enum { SF_HYPERFOAM_TERMS = 3 };
 
@@ -79,5 +79,4 @@ bool sf_hyperfoam_fails(const sf_hyperfoam *foam, double limit, sf_hyperfoam_fai
 
 /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
 void sf_hyperfoam_update(const sf_hyperfoam *foam, double dt, sf_law_batch *batch);
-
 #endif

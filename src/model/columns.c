@@ -6,6 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+const sf_frame_field_info *sf_frame_field_get(sf_frame_field field) {
+    static const sf_frame_field_info fields[SF_FRAME_FIELDS] = {
+#define FIELD(constant, name, components, units, array, description, remark)                                 \
+    {#name, components, units, array, description, remark},
+        SF_FRAME_FIELD_LIST(FIELD, )
+#undef FIELD
+    };
+    return &fields[field];
+}
+
 const sf_history_column *sf_history_column_get(int k) {
     static const sf_history_column columns[SF_HISTORY_COUNT] = {
 #define COLUMN(name, units, csv, factor, description, remark)                                                \

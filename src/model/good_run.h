@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The checks of a good run: a value of each beyond its first bound is a remark on the run's figures, beyond
- * the second they are not to be used. This list is the only one of them; the verdict of softfall-post
- * (post/figures/verdict.h), what warns, the studies and the table in docs/formats.md follow it. */
-#ifndef SF_CORE_GOOD_RUN_H
-#define SF_CORE_GOOD_RUN_H
-
+#ifndef SF_MODEL_GOOD_RUN_H
+#define SF_MODEL_GOOD_RUN_H
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+
+/* The checks of a good run: a value of each beyond its first bound is a remark on the run's figures, beyond
+ * the second they are not to be used. This list is the only one of them; the verdict of softfall-post
+ * (post/figures/verdict.h), what warns, the studies and the table in docs/formats.md follow it. */
 
 enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
 
@@ -76,4 +76,54 @@ enum { SF_GOOD_RUN(SF_GOOD_RUN_INDEX) SF_CHECKS };
 /* Line k of the list, 0 <= k < SF_CHECKS; static storage. */
 const sf_good_run_rule *sf_good_run_rule_get(int k);
 
+/* The numbers that may be measured of a drop, as the accelerometer in the missile reads it (F/m), filtered
+ * with CFC 1000. This list is the only one of them.
+ *
+ * To add one: a line in the list and its value in sf_drop_values_scale (study/fit/drop/drop_input.c). Keys of
+ * the fit file, responses, report.html, fit.json, fit-drops.csv, posterior.csv, the material file's comments
+ * and its response_error, and leave-one-out follow. */
+
+/* X(name, key in the fit file, key in response_error, default of the standard deviation, standard deviation
+ * of the model's error at kappa = 1, stem and unit in fit.json, name and unit in reports, digits there,
+ * always shown, what it needs of a drop, is it above every value where the foam collapses). The key of a
+ * standard deviation is SF_DROP_SD(key in response_error), in both files. */
+/* clang-format off */
+#define SF_DROP_KINDS(X)                                                                                       \
+    X(A_MAX, "a_max_g", "a_max", 0.02, 0.01, "a_max", "_g", "a_max", "g", 1, true, "contact", true)                     \
+    X(HIC, "HIC", "HIC", 0.04, 0.02, "hic", "", "HIC", "", 0, true, "contact", true)                                    \
+    X(WINDOW, "HIC_window_ms", "HIC_window", 0.03, 0.02, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact", false) \
+    X(REBOUND, "v_rebound_m_s", "v_rebound", 0.03, 0.02, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound", false) \
+    X(CONTACT, "contact_time_ms", "contact_time", 0.03, 0.02, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound", false)
+/* clang-format on */
+#define SF_DROP_SD(key) key "_sd"
+
+/* Rows of a drop's responses; the samples of a measured curve from SF_FIT_SAMPLES on. */
+#define SF_DROP_KIND_NAME(name, ...) SF_FIT_##name,
+typedef enum sf_drop_kind { SF_DROP_KINDS(SF_DROP_KIND_NAME) SF_FIT_SAMPLES } sf_drop_kind;
+
+typedef struct sf_drop_kind_info {
+    const char *key, *error_key, *sd_key;
+    double sd;       /* default, relative */
+    double model_sd; /* of the logarithm, see study/fit/drop/inference.h */
+    const char *stem, *suffix;
+    const char *name, *unit;
+    int digits;
+    bool always; /* in reports, measured or not */
+    const char *needs;
+    /* Where the foam collapses the number is above every value: so are peaks. False: no order, as a pulse
+     * that has no end has no window. */
+    bool above_all;
+} sf_drop_kind_info;
+
+/* Static storage. */
+const sf_drop_kind_info *sf_drop_kind_get(int kind);
+
+/* By how much the numbers of drops differ from those of a foam's law, in natural logarithms: an error of each
+ * number that all drops share, and the standard deviation of another one of each drop. Zeros: not stated.
+ * The group `response_error` of a material file (docs/case.md). */
+typedef struct sf_response_error {
+    bool given[SF_FIT_SAMPLES];
+    double shared[SF_FIT_SAMPLES];
+    double own_sd[SF_FIT_SAMPLES];
+} sf_response_error;
 #endif

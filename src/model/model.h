@@ -1,4 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_MODEL_MODEL_H
+#define SF_MODEL_MODEL_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/error.h"
+#include "material/card.h"
+#include "model/columns.h"
+
 /* sf_model: everything about a drop that does not change while it is solved. softfall-pre builds it, model.h5
  * stores it, softfall-solve reads it and never writes to it.
  *
@@ -6,15 +16,6 @@
  * configuration = the mesh as read. Arrays are row-major with the shape given in brackets, from sf_alloc,
  * owned by the model. Lists are CSR: the entries of row i are [ptr[i], ptr[i+1]). Nodes are the particles of
  * the cloud. */
-#ifndef SF_CORE_MODEL_H
-#define SF_CORE_MODEL_H
-
-#include "base/error.h"
-#include "model/frame_field.h"
-#include "material/card.h"
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 enum {
     SF_FIX_X = 1, /* bits of fix_mask: which components of u_h are held at zero */
@@ -142,7 +143,7 @@ typedef struct sf_model {
     double *surface_position;  /* [surface_node_count][3] m */
     int32_t *surface_triangle; /* [surface_triangle_count][3] */
 
-    /* Prescribed motion of the missile along its direction, piecewise linear (model/motion.h): both columns
+    /* Prescribed motion of the missile along its direction, piecewise linear (model/model.h): both columns
      * begin with 0, the times ascend to run.end_time or beyond. */
     int64_t motion_count;        /* 0 = the missile is free; else 2 or more */
     double *motion_time;         /* [motion_count] s */
@@ -154,7 +155,7 @@ typedef struct sf_model {
 
     int64_t symmetry_factor;    /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness;           /* m, of the pad along z */
-    double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; 0 = not estimated */
+    double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; 0 = not estimated */
     double slit_fraction;       /* of the nodes: those at a slit, hole or gap narrower than their supports */
     int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */
     sf_material *material;      /* [material_count] owned */
@@ -181,7 +182,7 @@ static inline int64_t sf_model_point_node(const sf_model *model, int64_t point) 
                                         : model->rest_node[point - model->contact_count];
 }
 
-/* Has the missile a prescribed motion (model/motion.h)? Else the drop decides. */
+/* Has the missile a prescribed motion (model/model.h)? Else the drop decides. */
 bool sf_missile_is_driven(const sf_model *model);
 /* Has it six degrees of freedom? */
 bool sf_missile_turns(const sf_model *model);
@@ -249,4 +250,33 @@ typedef struct sf_model_field {
 /* The table, and its length. Counts come before the arrays that need them. */
 const sf_model_field *sf_model_fields(size_t *count);
 
+/* The symmetry planes of a model. */
+
+/* Is a plane normal to the axis (0 x, 1 y) a symmetry plane of the model, which has its sets? Then *place (m)
+ * is where on that axis; else 0. */
+bool sf_symmetry_plane(const sf_model *model, int axis, double *place);
+
+/* The prescribed motion of a missile driven by a machine (model->motion_*): displacement along its direction,
+ * linear between the points of the table, independent of the forces. Only for models whose missile is driven
+ * (sf_missile_is_driven). */
+
+/* Relative rounding of times that come from different units. */
+#define SF_MOTION_SLACK 1e-12
+#define SF_MOTION_MAX_SPEED 200.0 /* m s-1 */
+
+/* Displacement (m) at `time` >= 0 (s). Extrapolates the last piece beyond the end of the table: the last step
+ * of a run passes its end time by less than a step. */
+double sf_motion_displacement(const sf_model *model, double time);
+/* Velocity (m s-1) of the piece that begins at or before `time`. */
+double sf_motion_velocity(const sf_model *model, double time);
+
+typedef struct sf_motion_range {
+    int64_t points;      /* of the table; 0 of a free missile, and all else 0 */
+    double end_time;     /* s, of the table */
+    double displacement; /* m, largest; at least 0 */
+    double speed;        /* m s-1, largest of all pieces */
+} sf_motion_range;
+
+/* For free missiles too. */
+sf_motion_range sf_motion_measure(const sf_model *model);
 #endif

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "model/model.h"
-#include "model/motion.h"
-
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+#include "base/hash.h"
+#include "model/model.h"
 
 /* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
 static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr,
@@ -305,4 +306,33 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         check_ties(m, err) != SF_OK)
         return err->status;
     return check_mesh(m, err);
+}
+
+static size_t item_size(sf_model_type type) {
+    return type == SF_MODEL_U8 ? 1 : type == SF_MODEL_I32 ? 4 : 8;
+}
+
+static uint64_t hash_of(const sf_model *model) {
+    size_t count;
+    const sf_model_field *field = sf_model_fields(&count);
+    const char *base = (const char *)model;
+    uint64_t hash = SF_HASH_START;
+    for (size_t k = 0; k < count; k++) {
+        const char *member = base + field[k].offset;
+        if (field[k].rows_offset == SIZE_MAX) {
+            hash = sf_hash(hash, member, item_size(field[k].type));
+            continue;
+        }
+        const void *data = *(void *const *)member;
+        int64_t rows = *(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra;
+        if (data)
+            hash = sf_hash(hash, data, (size_t)rows * (size_t)field[k].columns * item_size(field[k].type));
+    }
+    for (int64_t k = 0; k < model->material_count; k++)
+        hash = sf_material_hash(hash, &model->material[k]);
+    return hash;
+}
+
+void sf_model_hash(const sf_model *model, char text[SF_MODEL_HASH_SIZE]) {
+    snprintf(text, SF_MODEL_HASH_SIZE, "%016llx", (unsigned long long)hash_of(model));
 }

@@ -2,7 +2,7 @@
 #include "pre/build.h"
 
 #include "base/mat3.h"
-#include "model/motion.h"
+#include "model/model.h"
 #include "model/stability.h"
 #include "pre/support.h"
 #include "material/laws.h"
@@ -13,13 +13,9 @@
 #include "pre/drop_check.h"
 #include "pre/missile_body.h"
 #include "pre/cloud/dual.h"
-#include "pre/cloud/group_check.h"
 #include "pre/cloud/layers.h"
-#include "pre/cloud/surface_area.h"
 #include "pre/impact.h"
-#include "pre/groups.h"
 #include "pre/mesh/missile_shape.h"
-#include "pre/mesh/surface_orient.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -494,7 +490,7 @@ static sf_status place(const sf_case *c, const sf_hold *hold, sf_surface *surfac
 }
 
 /* A prescribed motion stays above the plane of the pad's underside: where the anvil is there, it would end
- * the run (solver/run/ending.h). */
+ * the run (solver/run/run.h). */
 static sf_status check_depth(const sf_model *m, sf_error *err) {
     double depth = sf_missile_card_depth(&m->missile, sf_motion_measure(m).displacement);
     if (!sf_missile_is_driven(m) || depth < m->thickness * (1 - 1e-9)) /* a difference of coordinates */

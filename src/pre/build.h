@@ -10,7 +10,7 @@
 #include "pre/cloud/invariants.h"
 #include "pre/mesh/mesh.h"
 #include "pre/hold.h"
-#include "pre/mesh_error.h"
+#include "pre/drop_check.h"
 
 /* Results of the build, for the table that softfall-pre prints. */
 typedef struct sf_build_report {

@@ -1,15 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Does a model make sense as a drop? The checks that need the case and the group names of the geometry, which
- * sf_model_check does not have. */
 #ifndef SF_PRE_DROP_CHECK_H
 #define SF_PRE_DROP_CHECK_H
-
 #include "base/error.h"
-#include "model/model.h"
-#include "base/sink.h"
 #include "case/case.h"
+#include "model/model.h"
 #include "pre/mesh/mesh.h"
-#include "pre/mesh_error.h"
+
+/* Is the mesh fine enough? The expected error of a_max from the spacing under the missile. */
+
+/* The law: C (h/t)^2 + D (h/w)^2 with the thickness t and the half width w of the contact zone; C and D are
+ * calibrated in docs/theory.md, section 11. */
+#define SF_MESH_ERROR_THICKNESS 0.5
+#define SF_MESH_ERROR_WIDTH 0.35
+
+/* The part of the pad that the missile touches when it stands half a thickness deep in it. */
+typedef struct sf_contact_zone {
+    double area;       /* m2, of the whole pad's surface */
+    double half_width; /* m, across its narrow direction: the radius of a round zone */
+    double spacing;    /* m, root mean square of the pad below it */
+} sf_contact_zone;
+
+/* The model has its cloud, its sets and its missile. */
+void sf_contact_zone_measure(const sf_model *model, sf_contact_zone *zone);
+
+/* Expected relative error of a_max, or 0 with a prescribed motion, which has no a_max. */
+double sf_mesh_error_expect(const sf_model *model, const sf_contact_zone *zone);
+
+/* Does a model make sense as a drop? The checks that need the case and the group names of the geometry, which
+ * sf_model_check does not have. */
 
 /* SF_ERR_INPUT, naming the key, the value and the bound: the pad's thickness is not one of a pad; the
  * missile's share in the model is lighter than a node; the missile starts inside the pad; it is not symmetric
@@ -22,5 +40,4 @@ sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m
  * known to be weak (sf_law.caution), and of a coarse mesh. */
 void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                   const sf_sink *sink);
-
 #endif

@@ -1,12 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What holds the pad? Its rigid motions, and those of its connected parts (pre/bodies.h) against each other,
- * that base, anvil, symmetry planes and ties leave free. */
 #ifndef SF_PRE_HOLD_H
 #define SF_PRE_HOLD_H
-
 #include "base/error.h"
 #include "model/model.h"
-#include "base/sink.h"
+
+/* The connected parts of a pad of layers: cells that share a face, within a layer or where all the nodes of
+ * the face are tied in all components. Parts move rigidly against each other unless ties or supports hold
+ * them. */
+
+typedef struct sf_bodies {
+    int64_t count;
+    int32_t *cell;  /* [cell_count] owned */
+    int32_t *node;  /* [node_count] owned; of a node where several bodies meet one of them */
+    int32_t *first; /* [count] owned; the first node of each, ascending */
+} sf_bodies;
+
+/* Needs cells and ties of the model; a pad of one material and without ties is one body. On failure `*bodies`
+ * is empty. */
+sf_status sf_bodies_find(const sf_model *model, sf_bodies *bodies, sf_error *err);
+void sf_bodies_free(sf_bodies *bodies);
+
+/* What holds the pad? Its rigid motions, and those of its connected parts (pre/hold.h) against each other,
+ * that base, anvil, symmetry planes and ties leave free. */
 
 #define SF_HOLD_MOST 0.5 /* of the underside's nodes, held along z: mostly held */
 
@@ -30,5 +45,4 @@ sf_status sf_hold_check(const sf_hold *hold, const sf_model *model, sf_error *er
 /* Tells `sink` of an underside that is mostly free, and of a missile that pushes the pad along a free motion.
  */
 void sf_hold_warn(const sf_hold *hold, const sf_model *model, const sf_sink *sink);
-
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/impact.h"
 
-#include "model/symmetry.h"
+#include "model/model.h"
 #include <math.h>
 #include <stdlib.h>
 

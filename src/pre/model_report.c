@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/model_report.h"
 
-#include "model/motion.h"
-#include "pre/solid.h"
+#include "model/model.h"
+#include "pre/missile_body.h"
 #include "base/units.h"
 #include "pre/impact.h"
 #include <math.h>

@@ -171,7 +171,8 @@ static sf_status simulate(const sf_cfh_options *o, const setting *s, sf_staging 
     sf_runner runner = {
         .folder = folder, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
     runner.engine.lock = &s->lock;
-    if (!sf_engine_is_local(&o->engine) && runner.engine.per_job == 0) /* the few drops of a step are side by side */
+    if (!sf_engine_is_local(&o->engine) &&
+        runner.engine.per_job == 0) /* the few drops of a step are side by side */
         runner.engine.per_job = 1;
     sf_runner_drop base = {
         .case_path = o->case_path, .material = o->material, .override_count = o->override_count};

@@ -14,7 +14,6 @@
 #include "post/view/plot.h"
 #include "post/view/report.h"
 #include "post/results/results.h"
-#include "post/view/section.h"
 #include "post/view/summary.h"
 #include "post/figures/verdict.h"
 #include "post/view/xdmf.h"

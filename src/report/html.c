@@ -2,7 +2,7 @@
 #include "report/html.h"
 
 #include "io/plain_file.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

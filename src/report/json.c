@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/json.h"
 
-#include "base/utf8.h"
+#include "base/text.h"
 #include <math.h>
 
 static void put_text(FILE *file, const char *text) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/missile.h"
 
-#include "model/motion.h"
-#include "base/rotation.h"
+#include "model/model.h"
+#include "base/mat3.h"
 #include "solver/rigid.h"
 #include <string.h>
 

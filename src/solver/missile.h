@@ -4,7 +4,7 @@
  * on its degrees of freedom.
  *
  * A guided missile has one: a translation along a fixed unit vector, the direction of the missile card. It is
- * pulled by gravity and braked by the pad. A driven missile (sf_missile_is_driven, model/motion.h) follows its
+ * pulled by gravity and braked by the pad. A driven missile (sf_missile_is_driven, model/model.h) follows its
  * prescribed motion along it: it has zero mobility (infinite mass). A missile that turns
  * (sf_missile_turns, docs/adr/0018) has six: its centre of mass moves in space, and it rotates about it
  * (solver/rigid.h).
@@ -16,10 +16,10 @@
 #define SF_SOLVER_MISSILE_H
 
 #include "model/model.h"
-#include "io/numbers.h"
+#include "io/h5_members.h"
 #include "solver/contact/rigid_surface.h"
 
-/* The numbers of the missile in a checkpoint (io/numbers.h). */
+/* The numbers of the missile in a checkpoint (io/h5_members.h). */
 /* clang-format off */
 #define SF_MISSILE_NUMBERS(X)                                                                                          \
     X(double, displacement, , "m", "along, since t = 0")                                                               \
@@ -37,7 +37,7 @@
     X(double, rate, [3], "m s-1", "velocity of the centre at the half step, as `velocity`")                            \
     X(double, rate_now, [3], "m s-1", "at `time`")                                                                     \
     X(double, pull, [3], "m s-2", "acceleration of the centre")                                                        \
-    X(double, quaternion, [4], "1", "orientation, base/rotation.h; 1, 0, 0, 0 at t = 0")                               \
+    X(double, quaternion, [4], "1", "orientation, base/mat3.h; 1, 0, 0, 0 at t = 0")                               \
     X(double, turn, [3], "1", "its change in the last step, sf_rotation_advance")                                      \
     X(double, spin, [3], "kg m2 s-1", "angular momentum about the centre at the half step")                            \
     X(double, spin_now, [3], "kg m2 s-1", "at `time`")                                                                 \
@@ -63,7 +63,7 @@ void sf_missile_translation(const sf_model *model, const sf_missile *missile, do
 /* What instruments in the missile see, at the present time, after sf_missile_kick. */
 typedef struct sf_missile_view {
     double translation[3];          /* m */
-    double quaternion[4];           /* orientation, base/rotation.h */
+    double quaternion[4];           /* orientation, base/mat3.h */
     double velocity[3];             /* m s-1, of the centre */
     double specific_force[3];       /* m s-2: force of the pad, and of the guide, over the mass */
     double angular_velocity[3];     /* rad s-1 */

@@ -6,12 +6,10 @@
 #include "base/error.h"
 #include "model/model.h"
 #include "solver/constraint/constraint.h"
-#include "solver/contact/anvil.h"
-#include "solver/contact/contact_gram.h"
+#include "solver/contact/rigid_surface.h"
+#include "solver/contact/contact_rows.h"
 #include "material/laws.h"
 #include "solver/field/halo.h"
-#include "solver/contact/rigid_surface.h"
-#include "solver/field/pairs.h"
 
 typedef struct sf_operators {
     int64_t law_count;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/rigid.h"
 
-#include "base/rotation.h"
+#include "base/mat3.h"
 
 enum { MOST_ITERATIONS = 20 };
 static const double SETTLED = 4e-16; /* change of the momentum in an iteration, relative */

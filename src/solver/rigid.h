@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rotation of a rigid body: angular momentum L in space, orientation q (base/rotation.h), and the inertia
+/* The rotation of a rigid body: angular momentum L in space, orientation q (base/mat3.h), and the inertia
  * tensor (kg m2, xx, yy, zz, xy, yz, xz) about the centre of mass in the body's axes. docs/adr/0018 */
 #ifndef SF_SOLVER_RIGID_H
 #define SF_SOLVER_RIGID_H

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/state.h"
 
-#include "model/motion.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "model/model.h"
 
 static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy, see start_driven */
 

@@ -1,17 +1,51 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_SOLVER_STATE_H
+#define SF_SOLVER_STATE_H
+#include <stddef.h>
+#include <time.h>
+
+#include "base/error.h"
+#include "io/h5_members.h"
+#include "material/laws.h"
+#include "model/model.h"
+#include "solver/missile.h"
+
+/* Wall time of the phases of a step, for the benchmark. */
+
+typedef enum sf_phase {
+    SF_PHASE_STRESS,        /* F, foam law */
+    SF_PHASE_STABILISATION, /* pairs */
+    SF_PHASE_FORCE,         /* internal forces */
+    SF_PHASE_TIME_STEP,     /* bound and Lanczos products */
+    SF_PHASE_CONTACT,
+    SF_PHASE_CONSTRAINT,
+    SF_PHASE_MOTION, /* accelerations, ledger, checks, displacements */
+    SF_PHASES
+} sf_phase;
+
+typedef struct sf_stopwatch {
+    double mark;               /* s, end of the last phase */
+    double seconds[SF_PHASES]; /* of the present step */
+} sf_stopwatch;
+
+static inline double sf_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Adds the time since the last call to `phase`. Does nothing without a watch. */
+static inline void sf_lap(sf_stopwatch *watch, sf_phase phase) {
+    if (!watch)
+        return;
+    double now = sf_clock();
+    watch->seconds[phase] += now - watch->mark;
+    watch->mark = now;
+}
+
 /* sf_state: everything that changes while a drop is solved. Allocated once; a step allocates nothing. The
  * modelled part only: a quarter model holds a quarter of the pad, and forces and energies of that quarter,
  * unless said otherwise. */
-#ifndef SF_SOLVER_STATE_H
-#define SF_SOLVER_STATE_H
-
-#include "base/error.h"
-#include "model/model.h"
-#include "io/numbers.h"
-#include "solver/missile.h"
-#include "material/laws.h"
-#include "solver/stopwatch.h"
-#include <stddef.h>
 
 enum { SF_CHUNK = 64 }; /* nodes per partial sum: fixes the order of every sum, whatever the threads */
 
@@ -161,5 +195,4 @@ sf_status sf_state_create(const sf_model *model, sf_state *state, sf_error *err)
 /* Can the state be shown: are displacements, velocities, forces and the squares of stresses finite? */
 bool sf_state_is_finite(const sf_model *model, const sf_state *state);
 void sf_state_free(sf_state *state);
-
 #endif

@@ -6,7 +6,6 @@
 #include "base/threads.h"
 #include "solver/contact/contact.h"
 #include "solver/field/domain_stress.h"
-#include "solver/field/internal_force.h"
 #include "solver/ledger.h"
 #include "solver/field/stabilisation.h"
 #include "solver/time_step.h"

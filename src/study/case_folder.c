@@ -2,11 +2,10 @@
 #include "study/case_folder.h"
 
 #include "build_info.h"
-#include "study/key.h"
+#include "study/run_folder.h"
 #include "case/case.h"
 #include "case/parts.h"
 #include "base/hash.h"
-#include "io/path.h"
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "io/tree.h"

@@ -6,7 +6,6 @@
 #define SF_CAMPAIGN_CASE_FOLDER_H
 
 #include "base/error.h"
-#include "base/sink.h"
 
 typedef struct sf_case_folder_request {
     const char *case_path;

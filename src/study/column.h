@@ -1,4 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_STUDY_COLUMN_H
+#define SF_STUDY_COLUMN_H
+#include "material/laws.h"
+#include "post/figures/injury.h"
+#include "post/figures/signal.h"
+#include "post/results/results.h"
+
 /* The drop as uncoupled columns (theory, section "Columns"): every piece of the missile's surface compresses
  * the foam below it as if the neighbouring foam and the pad's mass were not there,
  *
@@ -6,12 +13,6 @@
  *
  * P is the uniaxial nominal stress of the law (sf_law.uniaxial). A three-dimensional pad is somewhat stiffer.
  * It costs a fifth of a millisecond: the surrogate of identification. */
-#ifndef SF_SURROGATE_COLUMN_H
-#define SF_SURROGATE_COLUMN_H
-
-#include "post/results/results.h"
-#include "post/figures/signal.h"
-#include "material/laws.h"
 
 enum { SF_COLUMNS = 48 };
 
@@ -47,4 +48,11 @@ typedef struct sf_columns_figures {
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law,
                              sf_columns_figures *figures, sf_series *filtered, sf_error *err);
 
+/* HIC of a single pulse, a hundred times as fast as the search of post/figures/injury.h, for surrogates. */
+
+/* Of a curve that rises to one peak and falls, both ends of the window have the same deceleration: the
+ * maximum over one level is found instead of that over two instants. The part below a fifth of the peak may
+ * have any shape. Any other curve goes to sf_hic_evaluate; so do pulses whose best level is below a quarter
+ * of the peak. No limit of the window. */
+sf_status sf_pulse_hic(const sf_series *acceleration_g, sf_hic *hic, sf_error *err);
 #endif

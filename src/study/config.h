@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "case/source.h"
+#include "case/grammar.h"
 #include <libconfig.h>
 #include <stdbool.h>
 

@@ -6,7 +6,7 @@
 #ifndef SF_CAMPAIGN_MATERIAL_FILE_H
 #define SF_CAMPAIGN_MATERIAL_FILE_H
 
-#include "model/drop_kinds.h"
+#include "model/good_run.h"
 #include "material/card.h"
 
 typedef struct sf_material_text {

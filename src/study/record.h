@@ -11,7 +11,7 @@ typedef struct sf_run_record {
     sf_grade grade;
     const char *verdict;  /* sf_verdict_line */
     const char *status;   /* /summary/status */
-    const char *geometry; /* the list of what the geometries read (pre/mesh/geometry_files.h) */
+    const char *geometry; /* the list of what the geometries read (pre/mesh/mesh_store.h) */
     double *figure;       /* [of sf_figure_list] sf_figure_number; owned */
     char *text;           /* that the strings are parts of; owned */
 } sf_run_record;

@@ -1,15 +1,41 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The folder of one drop: it holds the log, the model and the checkpoint while the drop is not finished, and
- * the results. */
-#ifndef SF_CAMPAIGN_RUN_FOLDER_H
-#define SF_CAMPAIGN_RUN_FOLDER_H
-
-#include "base/error.h"
+#ifndef SF_STUDY_RUN_FOLDER_H
+#define SF_STUDY_RUN_FOLDER_H
 #include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Beside the folders of the drops: meshes and domains that they share (io/store.h). */
+#include "base/error.h"
+#include "case/case.h"
+
+/* The key of a drop: equal for equal inputs. */
+
+/* A hash of the values of every key of the case, the points of its curves and motion, its geometry files and
+ * the programs that simulate it; the names of files do not count. What a geometry includes or merges is known
+ * only after it was read: sf_campaign_geometry_is_same. */
+sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
+
+/* Why two geometry files of one text in two folders are refused. */
+#define SF_CAMPAIGN_SAME_TEXT                                                                                \
+    "the same text in different folders: they may merge different files; make a difference in their text, "  \
+    "a comment for example"
+
+/* The part of it that is of the case alone, without geometry files and programs. */
+uint64_t sf_campaign_case_hash(const sf_case *c);
+
+/* Has every file that the geometries read, by the list at `text` of the HDF5 file `path` (docs/formats.md,
+ * geometry_files), the content that it had? `folder`: of the pad's and the missile's geometry, where paths in
+ * the list begin; "" without a geometry of the missile. `unlisted`: the answer if there is no such file or
+ * list. */
+bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
+                                  bool unlisted);
+/* That list, from malloc; NULL if there is none. */
+char *sf_campaign_geometry_list(const char *path, const char *text);
+
+/* The folder of one drop: it holds the log, the model and the checkpoint while the drop is not finished, and
+ * the results. */
+
+/* Beside the folders of the drops: meshes and domains that they share (io/folder.h). */
 #define SF_RUN_SHARED "shared"
 
 enum { SF_RUN_PATH_SIZE = PATH_MAX + 128 };
@@ -58,5 +84,4 @@ sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_p
 
 /* Records SF_INTERRUPTED. */
 sf_status sf_run_folder_interrupted(sf_error *err);
-
 #endif

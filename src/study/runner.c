@@ -4,7 +4,6 @@
 #include "study/engine.h"
 #include "study/manifest.h"
 #include "study/record.h"
-#include "study/key.h"
 #include "study/run_folder.h"
 #include "base/hash.h"
 #include "base/units.h"

@@ -1,12 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* gmsh's window and its tree of parameters (ONELAB), by gmsh's C API. The folder src/gui/gmsh is the only
- * part of the window that calls gmsh; nothing in it knows of cases and runs. One thread. */
 #ifndef SF_GUI_GMSH_WINDOW_H
 #define SF_GUI_GMSH_WINDOW_H
-
-#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+
+#include "base/error.h"
+
+/* A user's own geometry in gmsh's window, as in gmsh itself: its language may do there what it may do in
+ * gmsh. A run never uses what is made here: softfall-pre reads the file anew, confined. */
+
+/* Triangles of a surface, in the geometry's length unit. */
+typedef struct sf_triangles {
+    int64_t count;
+    double *corner; /* [count][3][3] owned: free */
+    double low[3], high[3];
+} sf_triangles;
+
+/* Opens the file as the one model that is shown, with its parameters in the tree at the values that the tree
+ * has. SF_ERR_INPUT: the first error that gmsh reports, with its file and line. */
+sf_status sf_geometry_show(const char *path, sf_error *err);
+/* Box of the model that is shown. */
+void sf_geometry_box(double low[3], double high[3]);
+/* Opens the file, meshes its surfaces and forgets it; its parameters stay in the tree. */
+sf_status sf_geometry_read_surface(const char *path, sf_triangles *surface, sf_error *err);
+/* Forgets all models and pictures. */
+void sf_geometry_clear(void);
+
+/* gmsh's window and its tree of parameters (ONELAB), by gmsh's C API. The folder src/gui/gmsh is the only
+ * part of the window that calls gmsh; nothing in it knows of cases and runs. One thread. */
 
 /* What stands at an entry of the tree. */
 typedef enum sf_entry_kind {
@@ -72,5 +94,4 @@ void sf_window_option(const char *name, double value);
 void sf_window_fit(const double low[3], const double high[3], double left, double right, double top);
 /* The picture (without the tree) as a PNG file. */
 sf_status sf_window_write_picture(const char *path, sf_error *err);
-
 #endif

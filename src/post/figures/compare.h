@@ -1,19 +1,52 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_POST_FIGURES_COMPARE_H
+#define SF_POST_FIGURES_COMPARE_H
+#include <stdbool.h>
+
+#include "post/figures/injury.h"
+#include "post/figures/signal.h"
+
+/* A measured acceleration from a CSV file (io/table_csv.h): a time and an acceleration, positive while the
+ * missile is slowed down, in any unit that the heading names. It is treated like the model's curve: sampled
+ * uniformly at SF_SIGNAL_RATE or faster by linear interpolation, then filtered with a channel frequency
+ * class.
+ */
+
+enum { SF_REFERENCE_UNDERSTOOD = 640 };
+
+/* The texts tell the user, in sentences, how to choose otherwise ("--reference-filter none"). All borrowed.
+ */
+typedef struct sf_reference_options {
+    const char *path;
+    const char *column; /* heading of the acceleration; NULL: the only one */
+    double cfc;         /* channel frequency class; 0: the file is filtered already and used as it is */
+    bool invert;        /* the file has the other sign */
+    const char *column_option, *unfiltered_option, *invert_option;
+} sf_reference_options;
+
+typedef struct sf_reference {
+    sf_series raw;   /* the points of the file, s and g, inverted if asked for; owned */
+    sf_series curve; /* sampled and filtered; without a filter the same as raw; owned */
+    char understood[SF_REFERENCE_UNDERSTOOD]; /* how the file was read, for the report */
+} sf_reference;
+
+/* SF_ERR_INPUT names the file, the line and what was expected: also if the samples are further apart than a
+ * tenth of the reciprocal class (SAE J211 asks for a sampling rate of ten times the class), and if the
+ * largest magnitude is negative, as of an inverted channel. Release with sf_reference_free; on failure it is
+ * zeroed. */
+sf_status sf_reference_read(const sf_reference_options *options, sf_reference *reference, sf_error *err);
+void sf_reference_free(sf_reference *reference);
+
 /* Model against measurement (Penta et al., Appl. Sci. 2018, 8(7), 1174, Table 2): over a region of the
  * measured curve, sampled every 0.25 and every 0.50 ms,
  *
  *     R2 = 1 - sum (a_i - m_i)^2 / sum (a_i - mean a)^2,   RMSE = sqrt(sum (a_i - m_i)^2 / n),
  *
- * a measured, m model, both in g and filtered alike (post/figures/reference.h). The measured curve's clock is shifted
- * so that both curves begin contact at the same instant: model time = measured time + shift. Regions and
- * windows are given and reported on the clock of the measured curve. They must lie within it, and over the
- * model's curve: before that, and after it if the missile has left the pad, the model is in free flight (0
- * g), which the fit counts. */
-#ifndef SF_POST_COMPARE_H
-#define SF_POST_COMPARE_H
-
-#include "post/figures/injury.h"
-#include "post/figures/reference.h"
+ * a measured, m model, both in g and filtered alike (post/figures/compare.h). The measured curve's clock is
+ * shifted so that both curves begin contact at the same instant: model time = measured time + shift. Regions
+ * and windows are given and reported on the clock of the measured curve. They must lie within it, and over
+ * the model's curve: before that, and after it if the missile has left the pad, the model is in free flight
+ * (0 g), which the fit counts. */
 
 typedef struct sf_region {
     double begin; /* s, clock of the measured curve */
@@ -75,5 +108,4 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
 sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *comparison,
                          sf_error *err);
 void sf_comparison_free(sf_comparison *comparison);
-
 #endif

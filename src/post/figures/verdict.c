@@ -2,7 +2,7 @@
 #include "post/figures/verdict.h"
 
 #include "base/units.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "post/results/results_check.h"
 #include <stdio.h>
 #include <string.h>
@@ -136,7 +136,7 @@ static const char *first_note(const sf_results *r) {
     return r->notes[k];
 }
 
-/* The sentence of solver/run/ending.c is the reason, not only a failure. */
+/* The sentence of solver/run/run.c is the reason, not only a failure. */
 static bool ended_on_anvil(const sf_results *r) {
     static const char reason[] = SF_ENDED_ON_ANVIL;
     return r->has_summary && strncmp(r->status, reason, sizeof reason - 1) == 0;

@@ -11,7 +11,6 @@
 
 #include "base/mat3.h"
 #include "base/error.h"
-#include "model/frame_field.h"
 #include "model/columns.h"
 #include "io/h5.h"
 #include <stdbool.h>
@@ -21,7 +20,7 @@ typedef struct sf_frame_head {
     char group[24];                 /* "/frames/000012" or "/peak" */
     double time;                    /* s */
     double missile_displacement[3]; /* m, translation of its centre since t = 0 */
-    double missile_quaternion[4];   /* its orientation, base/rotation.h */
+    double missile_quaternion[4];   /* its orientation, base/mat3.h */
     double acceleration;            /* m s-2 */
 } sf_frame_head;
 
@@ -57,7 +56,7 @@ typedef struct sf_results {
                                  say */
     double thickness;         /* m */
     double density;           /* kg m-3, mean */
-    double expected_mesh_error; /* fraction of a_max, see pre/mesh_error.h; NaN: not estimated */
+    double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; NaN: not estimated */
     double slit_fraction;    /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
                                 the file does not say */
     double informed_strain;  /* -, up to which data inform the material (of layers the least); NaN: the file

@@ -2,7 +2,7 @@
 /* sf_results_open and sf_frame_read (post/results/results.h). */
 #include "post/results/results.h"
 
-#include "base/rotation.h"
+#include "base/mat3.h"
 #include "io/provenance.h"
 #include "io/seal.h"
 #include "model/model.h"
@@ -226,7 +226,7 @@ static sf_status read_notes(sf_results *r, sf_error *err) {
         return err->status;
     for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
         sf_error_clean(line);
-        if (strcmp(line, "the missile never touched the pad") == 0) /* solver/run/notes.c */
+        if (strcmp(line, "the missile never touched the pad") == 0) /* solver/run/run.c */
             sf_results_note_ending(r, line);
         else
             sf_results_note(r, "%s", line);

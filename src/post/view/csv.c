@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/csv.h"
 
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mat3.h"
+#include "post/view/cut.h"
+
 sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err) {
     FILE *file = sf_staging_open(output, "history.csv", err);
@@ -72,4 +79,187 @@ sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *
         fprintf(file, ",%.9g\n", raw->value[i]);
     }
     return sf_staging_close(file, "reference.csv", err);
+}
+
+/* Barycentric weights of `x` in the tetrahedron; false if that is flat. */
+static bool tetrahedron_weights(const double *const p[4], const double x[3], double weight[4]) {
+    double e[3][3], b[3], size = 0;
+    for (int k = 0; k < 3; k++) {
+        b[k] = x[k] - p[0][k];
+        for (int j = 0; j < 3; j++) {
+            e[j][k] = p[j + 1][k] - p[0][k];
+            size = fmax(size, fabs(e[j][k]));
+        }
+    }
+    double volume = sf_triple3(e[0], e[1], e[2]);
+    if (fabs(volume) < 1e-9 * size * size * size)
+        return false;
+    weight[1] = sf_triple3(b, e[1], e[2]) / volume;
+    weight[2] = sf_triple3(e[0], b, e[2]) / volume;
+    weight[3] = sf_triple3(e[0], e[1], b) / volume;
+    weight[0] = 1 - weight[1] - weight[2] - weight[3];
+    return true;
+}
+
+static void offer_tetrahedron(const sf_results *r, const int32_t *cell, const int corner[4],
+                              const double x[3], sf_section_point *point) {
+    const double *p[4];
+    double weight[4];
+    for (int k = 0; k < 4; k++)
+        p[k] = &r->position[3 * (int64_t)cell[corner[k]]];
+    if (!tetrahedron_weights(p, x, weight))
+        return;
+    double fit = fmin(fmin(weight[0], weight[1]), fmin(weight[2], weight[3]));
+    if (fit <= point->fit)
+        return;
+    point->fit = fit;
+    for (int k = 0; k < 4; k++) {
+        point->node[k] = cell[corner[k]];
+        point->weight[k] = weight[k];
+    }
+}
+
+/* Finds the tetrahedron of each station under the axis; those in no cell keep a negative fit. */
+static void locate_stations(const sf_results *r, const double axis[2], double bottom, double top,
+                            sf_section_point *station) {
+    for (int s = 0; s < SF_SECTION_STATIONS; s++)
+        station[s].fit = -INFINITY;
+    for (int64_t c = 0; c < r->cell_count; c++) {
+        const int32_t *cell = &r->cell_node[r->cell_ptr[c]];
+        double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+        for (int64_t v = 0; v < r->cell_ptr[c + 1] - r->cell_ptr[c]; v++) {
+            for (int k = 0; k < 3; k++) {
+                low[k] = fmin(low[k], r->position[3 * (int64_t)cell[v] + k]);
+                high[k] = fmax(high[k], r->position[3 * (int64_t)cell[v] + k]);
+            }
+        }
+        double slack = 1e-6 * (high[2] - low[2]);
+        if (axis[0] < low[0] - slack || axis[0] > high[0] + slack || axis[1] < low[1] - slack ||
+            axis[1] > high[1] + slack)
+            continue;
+        const int(*tetrahedra)[4];
+        int count = sf_cell_tetrahedra(r->cell_type[c], &tetrahedra);
+        for (int s = 0; s < SF_SECTION_STATIONS; s++) {
+            double z = top + (bottom - top) * s / (SF_SECTION_STATIONS - 1);
+            const double x[3] = {axis[0], axis[1], z};
+            for (int t = 0; t < count && z >= low[2] - slack && z <= high[2] + slack; t++)
+                offer_tetrahedron(r, cell, tetrahedra[t], x, &station[s]);
+        }
+    }
+}
+
+double sf_section_stations(const sf_results *r, sf_section_point station[SF_SECTION_STATIONS]) {
+    double axis[2], bottom = INFINITY, top = -INFINITY;
+    for (int64_t i = 0; i < r->node_count; i++) {
+        bottom = fmin(bottom, r->position[3 * i + 2]);
+        top = fmax(top, r->position[3 * i + 2]);
+    }
+    sf_axis_find(r, axis);
+    for (int s = 0; s < SF_SECTION_STATIONS; s++)
+        station[s] = (sf_section_point){0};
+    locate_stations(r, axis, bottom, top, station);
+    return top;
+}
+
+bool sf_section_inside(const sf_section_point *point) {
+    return point->fit >= -1e-6;
+}
+
+double sf_section_mean(const double *field, int components, int component, const sf_section_point *point) {
+    double sum = 0;
+    for (int k = 0; k < 4; k++)
+        sum += point->weight[k] * field[components * (int64_t)point->node[k] + component];
+    return sum;
+}
+
+static void write_point(FILE *file, const sf_results *r, const sf_frame *frame, double top,
+                        const sf_section_point *p) {
+    for (int k = 0; k < 3; k++)
+        fprintf(file, ",%.9g", 1e3 * sf_section_mean(r->position, 3, k, p));
+    fprintf(file, ",%.9g", 1e3 * (top - sf_section_mean(r->position, 3, 2, p)));
+    for (int k = 0; k < 3; k++) {
+        fputc(',', file);
+        if (frame->field[SF_FRAME_DISPLACEMENT])
+            fprintf(file, "%.9g", 1e3 * sf_section_mean(frame->field[SF_FRAME_DISPLACEMENT], 3, k, p));
+    }
+    fprintf(file, ",%.9g,", 1e-3 * sf_section_mean(frame->field[SF_FRAME_VON_MISES], 1, 0, p));
+    if (frame->field[SF_FRAME_CAUCHY_STRESS])
+        fprintf(file, "%.9g", 1e-3 * sf_section_mean(frame->field[SF_FRAME_CAUCHY_STRESS], 9, 8, p));
+    fputc(',', file);
+    if (frame->field[SF_FRAME_LARGEST_COMPRESSION])
+        fprintf(file, "%.9g", sf_section_mean(frame->field[SF_FRAME_LARGEST_COMPRESSION], 1, 0, p));
+    fputc('\n', file);
+}
+
+/* Top to bottom, then along x. */
+static int by_depth(const void *a, const void *b, void *positions) {
+    const double *x = (const double *)positions + 3 * (int64_t) * (const int32_t *)a;
+    const double *y = (const double *)positions + 3 * (int64_t) * (const int32_t *)b;
+    if (x[2] != y[2])
+        return x[2] > y[2] ? -1 : 1;
+    return (x[0] > y[0]) - (x[0] < y[0]);
+}
+
+static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *frame, sf_error *err) {
+    double axis[2], top;
+    sf_section_point station[SF_SECTION_STATIONS];
+    int32_t *nodes = sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
+    size_t count = 0;
+    if (!nodes)
+        return err->status;
+    sf_axis_find(r, axis);
+    top = sf_section_stations(r, station);
+    for (int64_t i = 0; i < r->node_count; i++) {
+        if (fabs(r->position[3 * i + 1] - axis[1]) < 0.499 * cbrt(r->volume[i]))
+            nodes[count++] = (int32_t)i;
+    }
+    qsort_r(nodes, count, sizeof *nodes, by_depth, r->position);
+    for (size_t i = 0; i < count; i++) {
+        sf_section_point point = {.node = {nodes[i]}, .weight = {1}};
+        fprintf(file, "section,%d", nodes[i]);
+        write_point(file, r, frame, top, &point);
+    }
+    free(nodes);
+    for (int s = 0; s < SF_SECTION_STATIONS; s++) {
+        if (!sf_section_inside(&station[s]))
+            continue;
+        fputs("axis,", file);
+        write_point(file, r, frame, top, &station[s]);
+    }
+    return SF_OK;
+}
+
+/* /peak, or the frame of the largest acceleration; NULL if there is neither. */
+static const sf_frame_head *peak_head(const sf_results *r) {
+    if (r->has_peak)
+        return &r->peak;
+    const sf_frame_head *best = r->frame_count > 0 ? &r->frames[0] : NULL;
+    for (int64_t k = 1; k < r->frame_count; k++)
+        if (r->frames[k].acceleration > best->acceleration)
+            best = &r->frames[k];
+    return best;
+}
+
+sf_status sf_section_write(const sf_staging *output, const sf_results *results, bool *written,
+                           sf_error *err) {
+    const sf_frame_head *head = peak_head(results);
+    sf_frame frame = {0};
+    FILE *file = NULL;
+    *written = false;
+    if (!head)
+        return SF_OK;
+    if (sf_frame_read(results, head, &frame, err) != SF_OK || !frame.field[SF_FRAME_VON_MISES])
+        goto done;
+    file = sf_staging_open(output, "section.csv", err);
+    if (!file)
+        goto done;
+    fputs("set,node,x_mm,y_mm,z_mm,depth_mm,displacement_x_mm,displacement_y_mm,displacement_z_mm,von_mises_"
+          "kPa,stress_zz_kPa,largest_compression_1\n",
+          file);
+    write_rows(file, results, &frame, err);
+    if (sf_staging_close(file, "section.csv", err) == SF_OK)
+        *written = true;
+done:
+    sf_frame_free(&frame);
+    return err->status;
 }

@@ -1,11 +1,112 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/cut.h"
 
-#include "post/view/axis.h"
-#include "post/view/cells.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "model/model.h"
+
+int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]) {
+    static const int simple[1][4] = {{0, 1, 2, 3}};
+    static const int pyramid[2][4] = {{0, 1, 2, 4}, {0, 2, 3, 4}};
+    static const int prism[3][4] = {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 4, 3, 5}};
+    static const int hexahedron[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
+                                         {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+    switch (type) {
+    case SF_CELL_PYRAMID:
+        *tetrahedra = pyramid;
+        return 2;
+    case SF_CELL_PRISM:
+        *tetrahedra = prism;
+        return 3;
+    case SF_CELL_HEXAHEDRON:
+        *tetrahedra = hexahedron;
+        return 6;
+    default:
+        *tetrahedra = simple;
+        return 1;
+    }
+}
+
+int sf_cell_faces(int type, const int (**faces)[4]) {
+    static const int tetrahedron[4][4] = {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}};
+    static const int pyramid[5][4] = {
+        {0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}};
+    static const int prism[5][4] = {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
+    static const int hexahedron[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                         {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    switch (type) {
+    case SF_CELL_PYRAMID:
+        *faces = pyramid;
+        return 5;
+    case SF_CELL_PRISM:
+        *faces = prism;
+        return 5;
+    case SF_CELL_HEXAHEDRON:
+        *faces = hexahedron;
+        return 6;
+    default:
+        *faces = tetrahedron;
+        return 4;
+    }
+}
+
+/* Of the thickness: what lies closer to an end is at it. */
+static const double AT_END = 1e-6;
+
+/* Extent of points along x (0) or y. */
+static void find_extent(const double *position, int64_t count, int k, double extent[2]) {
+    extent[0] = INFINITY;
+    extent[1] = -INFINITY;
+    for (int64_t i = 0; i < count; i++) {
+        extent[0] = fmin(extent[0], position[3 * i + k]);
+        extent[1] = fmax(extent[1], position[3 * i + k]);
+    }
+}
+
+/* Files of earlier versions do not say where the planes are, nor do those where all nodes of a plane are of
+ * the base too. A symmetry plane is an end of the modelled pad, where a whole missile has its middle, or one
+ * that is modelled in part ends too: how many of the pad's two ends are such; *place (m) of the last. */
+static int count_common_ends(const sf_results *r, int k, double *place) {
+    double pad[2], missile[2];
+    int count = 0;
+    find_extent(r->position, r->node_count, k, pad);
+    find_extent(r->surface_position, r->surface_node_count, k, missile);
+    const double marks[3] = {0.5 * (missile[0] + missile[1]), missile[0], missile[1]};
+    for (int end = 0; end < 2; end++) {
+        double off = INFINITY;
+        for (int mark = 0; mark < 3; mark++)
+            off = fmin(off, fabs(marks[mark] - pad[end]));
+        if (off > AT_END * r->thickness)
+            continue;
+        *place = pad[end];
+        count++;
+    }
+    return count;
+}
+
+bool sf_axis_planes(const sf_results *r, double place[2]) {
+    place[0] = r->symmetry_place[0];
+    place[1] = r->symmetry_place[1];
+    if (r->symmetry_factor == 1 << (isfinite(place[0]) + isfinite(place[1])))
+        return true;
+    double end[2];
+    const int count[2] = {count_common_ends(r, 0, &end[0]), count_common_ends(r, 1, &end[1])};
+    bool known = r->symmetry_factor == 4 ? count[0] == 1 && count[1] == 1 : count[0] + count[1] == 1;
+    for (int k = 0; k < 2; k++)
+        place[k] = known && count[k] ? end[k] : NAN;
+    return known;
+}
+
+void sf_axis_find(const sf_results *r, double axis[2]) {
+    double place[2], missile[2];
+    sf_axis_planes(r, place);
+    for (int k = 0; k < 2; k++) {
+        find_extent(r->surface_position, r->surface_node_count, k, missile);
+        axis[k] = isfinite(place[k]) ? place[k] : 0.5 * (missile[0] + missile[1]);
+    }
+}
 
 /* The array with room for one more item; NULL, and the array as it was, if there is no memory. */
 static void *grow(void *items, int64_t count, int64_t *room, size_t size, sf_error *err) {

@@ -1,11 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_POST_VIEW_CUT_H
+#define SF_POST_VIEW_CUT_H
+#include <stdbool.h>
+
+#include "post/results/results.h"
+
+/* The cells of the background mesh, as tetrahedra and by their faces; positions in a cell's vertex list. */
+
+/* Tetrahedra that fill a cell of this type (SF_CELL_*), static storage; returns how many. */
+int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]);
+
+/* Faces in order around them, -1 in the fourth place of a triangle; returns how many. */
+int sf_cell_faces(int type, const int (**faces)[4]);
+
+/* Where the symmetry planes of a model and the missile's axis lie: what every picture and section of the pad
+ * is laid out by. */
+
+/* Places (m) of the symmetry planes normal to x and y; NaN: none. False: the model is a half or a quarter,
+ * and its planes cannot be told (results of earlier versions). */
+bool sf_axis_planes(const sf_results *results, double place[2]);
+
+/* Reference x and y (m) of the missile's axis: in the symmetry planes, else in the middle of its surface. */
+void sf_axis_find(const sf_results *results, double axis[2]);
+
 /* The undeformed pad and the missile cut by the vertical plane y = constant through the missile's axis: what
  * the pictures of a report show, deformed. Where a symmetry plane is the picture's plane the cut lies a
  * millionth of the pad's size inside. */
-#ifndef SF_POST_CUT_H
-#define SF_POST_CUT_H
-
-#include "post/results/results.h"
 
 /* A point on an edge of the mesh: (1 - weight) of the first node and weight of the second. */
 typedef struct sf_cut_point {
@@ -44,5 +64,4 @@ bool sf_cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t trian
 
 /* Value of a field ([node_count][components]) at a point. */
 double sf_cut_value(const sf_cut_point *point, const double *field, int components, int component);
-
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures of the deformed pad and the missile in the cut of post/view/cut.h, side by side, as one SVG element
- * with one scale of colours: bands of a field that is linear in each tetrahedron. */
+/* Pictures of the deformed pad and the missile in the cut of post/view/cut.h, side by side, as one SVG
+ * element with one scale of colours: bands of a field that is linear in each tetrahedron. */
 #ifndef SF_POST_PICTURE_H
 #define SF_POST_PICTURE_H
 

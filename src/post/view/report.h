@@ -1,11 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_POST_VIEW_REPORT_H
+#define SF_POST_VIEW_REPORT_H
+#include "post/view/summary.h"
+#include "report/html.h"
+
+/* The material and the case in a report, from their texts (post/results/origin.h). */
+
+/* The section Material: the keys that the case gives, and the comments of the material. */
+void sf_origin_put_material(FILE *page, const char *case_text, const char *parameters);
+
+/* A row with the value of a key, without the brackets of the case's syntax; none if the key is absent. */
+void sf_origin_put_key(sf_html_table *table, const char *parameters, const char *name, const char *title);
+
 /* report.html: one page to hand on, self-contained, usually two sides of A4: verdict, what was dropped on
  * what, the deformed pad at the peak, the mid-section at three instants, curves, figures, material, mesh and
  * where it all comes from. A picture that cannot be made is replaced by the reason. */
-#ifndef SF_POST_REPORT_H
-#define SF_POST_REPORT_H
-
-#include "post/view/summary.h"
 
 typedef struct sf_report {
     const sf_summary *summary;
@@ -14,5 +23,4 @@ typedef struct sf_report {
 
 /* After sf_plot_write, whose picture the page takes in. */
 sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_error *err);
-
 #endif

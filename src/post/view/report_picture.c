@@ -6,7 +6,7 @@
 #include "post/view/cut.h"
 #include "post/view/picture.h"
 #include "post/view/plot.h"
-#include "post/view/section.h"
+#include "post/view/csv.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

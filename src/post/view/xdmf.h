@@ -1,4 +1,54 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_POST_VIEW_XDMF_H
+#define SF_POST_VIEW_XDMF_H
+#include "io/staging.h"
+#include "post/results/results.h"
+
+/* What pad.xdmf speaks of: which frames are shown, and their data as an HDF5 file. */
+
+typedef struct sf_xdmf_options {
+    const char *command_line;
+    bool full; /* doubles as they are in results.h5; else floats, see SF_XDMF_BITS */
+} sf_xdmf_options;
+
+/* The largest magnitude of an array in a frame has so many bits as a float, and all its values are whole
+ * multiples of the last one, so that compression has something to take: the error is at most a millionth of
+ * that magnitude. */
+enum { SF_XDMF_BITS = 20 };
+
+/* The frames of results.h5 and, in its place among them by time, /peak. */
+typedef struct sf_shown {
+    int64_t count;                   /* of those that could be read, once the data are written */
+    int64_t peak;                    /* which is /peak, -1: none */
+    const sf_frame_head **head;      /* [count] of the results; owned */
+    double largest[SF_FRAME_FIELDS]; /* magnitude in the data */
+    int *fields;                     /* [count] SF_FIELD_* bits; known once the data are written; owned */
+} sf_shown;
+
+/* An array of the missile, in each frame: of all its nodes, as it is rigid. */
+typedef struct sf_missile_array {
+    const char *name, *units, *description;
+    int components;
+} sf_missile_array;
+enum {
+    SF_MISSILE_SPEED,
+    SF_MISSILE_ACCELERATION,
+    SF_MISSILE_FORCE,
+    SF_MISSILE_CENTRE, /* only of a missile that is an exact sphere: the last */
+    SF_MISSILE_ARRAYS
+};
+extern const sf_missile_array sf_missile_arrays[SF_MISSILE_ARRAYS];
+/* How many of them the missile of these results has. */
+int sf_missile_array_count(const sf_results *results);
+
+/* Release with sf_shown_free. */
+sf_status sf_shown_find(const sf_results *results, sf_shown *shown, sf_error *err);
+void sf_shown_free(sf_shown *shown);
+
+/* Writes the file; `shown` is cut at the first frame that cannot be read, see sf_xdmf_write. */
+sf_status sf_xdmf_write_data(const char *path, sf_results *results, const sf_xdmf_options *options,
+                             sf_shown *shown, sf_error *err);
+
 /* pad.xdmf and its data, pad-HASH.h5: the deformed pad with its cells, materials and fields, and the
  * missile's surface with its speed, deceleration and contact force, at every frame and at the peak, for
  * ParaView. Written so that all three XDMF readers of ParaView 5.11 take it: the topology is repeated in
@@ -6,11 +56,6 @@
  * nine components. The data bear the hash of their content in their name: a pad.xdmf never speaks of those of
  * another run, at whatever instant softfall-post is killed. Array names carry their units, e.g. von_mises_Pa.
  */
-#ifndef SF_POST_XDMF_H
-#define SF_POST_XDMF_H
-
-#include "io/staging.h"
-#include "post/view/xdmf_data.h"
 
 enum { SF_XDMF_NAME_SIZE = 32 };
 
@@ -29,5 +74,4 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_
 /* Removes data of earlier runs from the directory, after pad.xdmf is in its place: files pad-HASH.h5 with
  * that hash that no .xdmf file there names, but not `data`. */
 void sf_xdmf_remove_old(const char *directory, const char *data);
-
 #endif

@@ -3,7 +3,7 @@
 
 #include "base/hash.h"
 #include "io/plain_file.h"
-#include "io/store.h"
+#include "io/folder.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The smoothing domains of a mesh, kept in a store (io/store.h) for the drops of a campaign. */
+/* The smoothing domains of a mesh, kept in a store (io/folder.h) for the drops of a campaign. */
 #ifndef SF_PRE_CLOUD_DOMAIN_STORE_H
 #define SF_PRE_CLOUD_DOMAIN_STORE_H
 

@@ -2,8 +2,7 @@
 #include "pre/cloud/domains.h"
 
 #include "pre/cloud/mls.h"
-#include "pre/cloud/neighbours.h"
-#include "pre/cloud/visibility.h"
+#include "pre/cloud/cloud.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_PRE_CLOUD_DUAL_H
+#define SF_PRE_CLOUD_DUAL_H
+#include <stdint.h>
+
+#include "base/error.h"
+#include "pre/mesh/mesh.h"
+
 /* Topology of the median dual of the background mesh: its edges with the cells around each, and its boundary
  * faces. The smoothing domain of a node is bounded, in each cell, by one facet per cell edge that ends at the
  * node: the quadrangle (edge midpoint, face centroid, cell centroid, face centroid), as two triangles
  * (theory, section 2). */
-#ifndef SF_PRE_CLOUD_DUAL_H
-#define SF_PRE_CLOUD_DUAL_H
-
-#include "base/error.h"
-#include "pre/mesh/mesh.h"
-#include <stdint.h>
 
 /* One appearance of an edge in a cell. `reversed`: the cell's edge runs from the higher node to the lower
  * one. */
@@ -65,4 +66,23 @@ void sf_dual_facet(const sf_mesh *mesh, const sf_edge_use *use, sf_facet_triangl
 void sf_dual_boundary(const sf_mesh *mesh, const sf_boundary_face *face, int corner, sf_facet_triangle out[2],
                       double weight[2][4]);
 
+/* A surface group as faces: the boundary faces whose nodes all belong to it. Its area by nodes, and the way
+ * it looks. */
+
+enum { SF_ANY_LAYER = -1 };
+
+/* Adds to area [mesh->node_count], m2, the share of each node by the median dual, as the volumes do; of the
+ * faces of one layer only, unless it is SF_ANY_LAYER. */
+sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, int layer,
+                          double *area, sf_error *err);
+
+typedef struct sf_surface_sides {
+    double area;   /* m2 */
+    double facing; /* m2, projected against the direction; negative: the group faces along it */
+    double away;   /* m2, of the faces whose outward normal is within 60 degrees of the direction */
+} sf_surface_sides;
+
+/* How the group faces what comes along `direction` (unit vector). */
+sf_status sf_surface_look(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
+                          const double direction[3], sf_surface_sides *sides, sf_error *err);
 #endif

@@ -2,7 +2,7 @@
 #include "pre/cloud/layers.h"
 
 #include "base/mat3.h"
-#include "pre/cloud/surface_area.h"
+#include "pre/cloud/dual.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

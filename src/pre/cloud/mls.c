@@ -2,6 +2,188 @@
 #include "pre/cloud/mls.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A path may lead as far away as this times the distance of its ends: around the tip of a slit, not around
+ * the slit. */
+static const double DETOUR = 1.5;
+
+enum { MOST = 4096 }; /* candidates; the shape functions allow a quarter */
+
+/* One thread's search about one node. */
+typedef struct searcher {
+    const sf_mesh *mesh;
+    const sf_dual *dual;
+    const double *centre;
+    int32_t turn;
+    int32_t *seen;  /* [nodes] = turn: known to lead to the centre (descend), or queued once (spread) */
+    double *level;  /* [nodes] m2, smallest square of a radius that holds a path to the centre */
+    int32_t *queue; /* [nodes] ring */
+    uint8_t *queued;
+    int32_t candidate[MOST];
+    bool failed; /* out of memory */
+} searcher;
+
+static double square_to(const searcher *s, int32_t node) {
+    const double *p = &s->mesh->position[3 * (int64_t)node];
+    double dx = p[0] - s->centre[0], dy = p[1] - s->centre[1], dz = p[2] - s->centre[2];
+    return dx * dx + dy * dy + dz * dz;
+}
+
+/* Steps along edges, each nearer to the centre, until a node that is known to lead there; false at a dead
+ * end. In a convex body with a sound mesh there is none. */
+static bool descend(searcher *s, int32_t node) {
+    double square = square_to(s, node);
+    while (s->seen[node] != s->turn) {
+        int64_t k = s->dual->edge_ptr[node], end = s->dual->edge_ptr[node + 1];
+        s->seen[node] = s->turn;
+        for (; k < end; k++) {
+            double next = square_to(s, s->dual->edge_node[k]);
+            if (next < square) {
+                square = next;
+                node = s->dual->edge_node[k];
+                break;
+            }
+        }
+        if (k == end)
+            return false;
+    }
+    return true;
+}
+
+/* Finds the levels of all nodes with paths inside the ball of square radius `limit`. */
+static void spread(searcher *s, int32_t start, double limit) {
+    int64_t n = s->mesh->node_count, head = 0, count = 1;
+    s->turn++;
+    s->queue[0] = start;
+    s->seen[start] = s->turn;
+    s->level[start] = 0;
+    while (count > 0) {
+        int32_t node = s->queue[head];
+        head = (head + 1) % n;
+        count--;
+        s->queued[node] = 0;
+        for (int64_t k = s->dual->edge_ptr[node]; k < s->dual->edge_ptr[node + 1]; k++) {
+            int32_t next = s->dual->edge_node[k];
+            double own = square_to(s, next), level = own > s->level[node] ? own : s->level[node];
+            if (own > limit || (s->seen[next] == s->turn && s->level[next] <= level))
+                continue;
+            s->seen[next] = s->turn;
+            s->level[next] = level;
+            if (!s->queued[next])
+                s->queue[(head + count++) % n] = next;
+            s->queued[next] = 1;
+        }
+    }
+}
+
+static int by_value(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The candidates with no path near enough. */
+static void list_hidden(searcher *s, int32_t node, int64_t count, sf_hidden *out) {
+    double far = 0;
+    int64_t used = 0;
+    for (int64_t k = 0; k < count; k++) {
+        double square = square_to(s, s->candidate[k]);
+        far = square > far ? square : far;
+    }
+    spread(s, node, DETOUR * DETOUR * far);
+    for (int64_t k = 0; k < count; k++) {
+        int32_t other = s->candidate[k];
+        if (s->seen[other] != s->turn || s->level[other] > DETOUR * DETOUR * square_to(s, other))
+            s->candidate[used++] = other;
+    }
+    qsort(s->candidate, (size_t)used, sizeof *s->candidate, by_value);
+    out->node = used > 0 ? malloc((size_t)used * sizeof *out->node) : NULL;
+    s->failed = s->failed || (used > 0 && !out->node);
+    if (!out->node)
+        return;
+    memcpy(out->node, s->candidate, (size_t)used * sizeof *out->node);
+    out->count = used;
+}
+
+static void look_around(searcher *s, const sf_grid *grid, double reach, int32_t node, sf_hidden *out) {
+    bool all = true;
+    s->centre = &s->mesh->position[3 * (int64_t)node];
+    int64_t count = sf_grid_gather(grid, s->centre, reach, MOST, s->candidate);
+    count = count < MOST ? count : MOST;
+    s->seen[node] = ++s->turn;
+    for (int64_t k = 0; k < count && all; k++)
+        all = descend(s, s->candidate[k]);
+    if (!all)
+        list_hidden(s, node, count, out);
+}
+
+static void release(searcher *s) {
+    if (!s)
+        return;
+    free(s->seen);
+    free(s->level);
+    free(s->queue);
+    free(s->queued);
+    free(s);
+}
+
+static searcher *make_searcher(const sf_mesh *mesh, const sf_dual *dual) {
+    size_t n = (size_t)mesh->node_count;
+    searcher *s = calloc(1, sizeof *s);
+    if (!s)
+        return NULL;
+    s->mesh = mesh;
+    s->dual = dual;
+    s->seen = calloc(n, sizeof *s->seen);
+    s->level = calloc(n, sizeof *s->level);
+    s->queue = calloc(n, sizeof *s->queue);
+    s->queued = calloc(n, sizeof *s->queued);
+    if (s->seen && s->level && s->queue && s->queued)
+        return s;
+    release(s);
+    return NULL;
+}
+
+sf_hidden *sf_visibility_build(const sf_mesh *mesh, const sf_dual *dual, const sf_grid *grid,
+                               const double *reach, sf_error *err) {
+    sf_hidden *hidden = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *hidden, "hidden nodes");
+    bool failed = !hidden;
+#pragma omp parallel if (hidden != NULL)
+    {
+        searcher *s = hidden ? make_searcher(mesh, dual) : NULL;
+#pragma omp for schedule(dynamic, 256)
+        for (int64_t i = 0; i < mesh->node_count; i++)
+            if (s)
+                look_around(s, grid, reach[i], (int32_t)i, &hidden[i]);
+#pragma omp critical
+        failed = failed || !s || s->failed;
+        release(s);
+    }
+    if (!failed)
+        return hidden;
+    SF_FAIL(err, SF_ERR_MEMORY, "out of memory for what %lld nodes see", (long long)mesh->node_count);
+    sf_visibility_free(hidden, mesh->node_count);
+    return NULL;
+}
+
+void sf_visibility_free(sf_hidden *hidden, int64_t node_count) {
+    for (int64_t i = 0; hidden && i < node_count; i++)
+        free(hidden[i].node);
+    free(hidden);
+}
+
+int64_t sf_visibility_filter(const sf_hidden *hidden, int64_t count, int32_t *candidate) {
+    int64_t kept = 0;
+    for (int64_t k = 0, h = 0; k < count; k++) {
+        while (h < hidden->count && hidden->node[h] < candidate[k])
+            h++;
+        if (h == hidden->count || hidden->node[h] != candidate[k])
+            candidate[kept++] = candidate[k];
+    }
+    return kept;
+}
 
 double sf_mls_weight(double q) {
     if (q >= 1)

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/gmsh_session.h"
 
-#include "pre/mesh/memory.h"
+#include "pre/mesh/mesher.h"
 #include "pre/mesh/mesh_raw.h"
 #include "pre/mesh/mesh_store.h"
-#include "pre/mesh/mesher.h"
 #include "pre/mesh/mesher_protocol.h"
 
 #include <limits.h>

@@ -7,8 +7,7 @@
 
 #include "base/error.h"
 #include "case/case.h"
-#include "base/sink.h"
-#include "pre/mesh/geometry_files.h"
+#include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesh.h"
 #include <stdbool.h>
 

@@ -1,11 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The background mesh of the pad and the missile's surface, as read from a geometry: metres, nodes renumbered
- * from 0 in gmsh's order without orphans. Everything is owned by the struct. */
 #ifndef SF_PRE_MESH_MESH_H
 #define SF_PRE_MESH_MESH_H
+#include <stdint.h>
 
 #include "base/error.h"
-#include <stdint.h>
+
+/* Vertices, edges and outward faces of the linear cells, in VTK vertex order. */
+
+typedef struct sf_cell_topology {
+    int vertices;
+    int edges;
+    int faces;
+    int edge[12][2];
+    int face_size[6];
+    int face[6][4];       /* vertices, counter-clockwise seen from outside */
+    int edge_face[12][2]; /* the face that runs along edge (a, b) from a to b, and the one from b to a */
+} sf_cell_topology;
+
+/* Table of a cell type (SF_CELL_*); NULL for any other code. Static storage. */
+const sf_cell_topology *sf_cell_topology_of(int type);
+
+/* The background mesh of the pad and the missile's surface, as read from a geometry: metres, nodes renumbered
+ * from 0 in gmsh's order without orphans. Everything is owned by the struct. */
 
 /* A named set of nodes: those of a physical surface group. */
 typedef struct sf_node_set {
@@ -65,5 +81,4 @@ int64_t sf_mesh_orient(sf_mesh *mesh);
  * centroid. On success
  * `*volume` is the mesh volume in m3. */
 sf_status sf_mesh_check(const sf_mesh *mesh, double *volume, sf_error *err);
-
 #endif

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The raw mesh of a mesh generator: nodes by tag, cells and faces by node tags; and its conversion to
- * sf_mesh. */
 #ifndef SF_PRE_MESH_MESH_RAW_H
 #define SF_PRE_MESH_MESH_RAW_H
-
-#include "base/error.h"
-#include "pre/mesh/mesh.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#include "base/error.h"
+#include "pre/mesh/mesh.h"
+
+/* The raw mesh of a mesh generator: nodes by tag, cells and faces by node tags; and its conversion to
+ * sf_mesh. */
 
 enum { SF_RAW_CELL = 8, SF_RAW_FACE = 4 };
 
@@ -64,5 +65,4 @@ sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *s
 /* Adds the hull to a surface that was assembled from the same mesh: of all cells that are joined through
  * faces to one behind it. Without cells there is none. */
 sf_status sf_hull_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err);
-
 #endif

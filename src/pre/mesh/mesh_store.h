@@ -1,10 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The mesh of a geometry, kept in a store (io/store.h) for the drops of a campaign: as gmsh made it, with the
- * list of what gmsh read. It is used again as long as these files are as they were. */
 #ifndef SF_PRE_MESH_MESH_STORE_H
 #define SF_PRE_MESH_MESH_STORE_H
+#include <stdbool.h>
 
 #include "pre/mesh/mesher.h"
+
+/* The list of what geometries read (sf_gmsh_files), compared with the files as they are. */
+
+#define SF_GMSH_FILES_OF "geometry"
+#define SF_GMSH_UNKNOWN_FILES "unknown"
+
+/* Has every file of the list the content that it had, and has none got options beside it? `folder`: of the
+ * pad's and of the missile's geometry, where paths in the list begin; "" without a geometry of the missile.
+ * False, too, where the list does not know all files. */
+bool sf_geometry_files_are_same(const char *const folder[2], const char *files);
+
+/* The mesh of a geometry, kept in a store (io/folder.h) for the drops of a campaign: as gmsh made it, with
+ * the list of what gmsh read. It is used again as long as these files are as they were. */
 
 /* Of the geometry's own file, its parameters and softfall-mesh. False: not known, and nothing is shared. */
 bool sf_mesh_store_key(const sf_geo_source *source, uint64_t *key);
@@ -14,5 +26,4 @@ bool sf_mesh_store_find(const char *folder, const sf_geo_source *source, sf_mesh
 /* Keeps the mesh of a confined gmsh. */
 void sf_mesh_store_keep(const char *folder, const sf_geo_source *source, const sf_meshed *meshed,
                         const char *files);
-
 #endif

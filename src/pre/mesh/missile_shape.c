@@ -1,10 +1,349 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/missile_shape.h"
 
-#include "base/mat3.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>
 #include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mat3.h"
+#include "pre/mesh/mesh.h"
+#include "pre/mesh/mesh_raw.h"
+
+static const double EDGE_ON = 1e-3; /* share of the area: below it a surface faces neither way */
+
+typedef struct use {
+    int32_t low, high;
+    int64_t slot; /* 3 triangle + edge */
+    bool rising;  /* the triangle runs from low to high */
+} use;
+
+static int by_ends(const void *a, const void *b) {
+    const use *p = a, *q = b;
+    if (p->low != q->low)
+        return p->low < q->low ? -1 : 1;
+    if (p->high != q->high)
+        return p->high < q->high ? -1 : 1;
+    return (p->slot > q->slot) - (p->slot < q->slot);
+}
+
+typedef struct orienter {
+    const sf_surface *surface;
+    int64_t *beyond;  /* [triangles][3] triangle across the edge; -1: none, or more than one */
+    uint8_t *twisted; /* [triangles][3] that triangle runs through the edge in the same sense */
+    uint8_t *part;    /* [triangles] 1: reached */
+    uint8_t *flip;    /* [triangles] against the part's first triangle */
+    int64_t *member;  /* [triangles] of the part */
+} orienter;
+
+static sf_status find_neighbours(orienter *o, sf_error *err) {
+    int64_t count = 3 * o->surface->triangle_count;
+    const int32_t *node = o->surface->triangle;
+    use *list = sf_alloc(err, (size_t)count, sizeof *list, "edges of the missile");
+    if (!list)
+        return err->status;
+    for (int64_t k = 0; k < count; k++) {
+        int32_t a = node[k], b = node[k % 3 == 2 ? k - 2 : k + 1];
+        list[k] = (use){a < b ? a : b, a < b ? b : a, k, a < b};
+        o->beyond[k] = -1;
+    }
+    qsort(list, (size_t)count, sizeof *list, by_ends);
+    for (int64_t first = 0, end; first < count; first = end) {
+        for (end = first + 1;
+             end < count && list[end].low == list[first].low && list[end].high == list[first].high; end++)
+            ;
+        if (end - first != 2)
+            continue;
+        for (int k = 0; k < 2; k++) {
+            o->beyond[list[first + k].slot] = list[first + 1 - k].slot / 3;
+            o->twisted[list[first + k].slot] = list[first].rising == list[first + 1].rising;
+        }
+    }
+    free(list);
+    return SF_OK;
+}
+
+static const double *vertex(const sf_surface *s, int64_t triangle, int corner) {
+    return &s->position[3 * (int64_t)s->triangle[3 * triangle + corner]];
+}
+
+static void area_vector(const sf_surface *s, int64_t t, double area[3]) {
+    double u[3], v[3];
+    for (int c = 0; c < 3; c++) {
+        u[c] = vertex(s, t, 1)[c] - vertex(s, t, 0)[c];
+        v[c] = vertex(s, t, 2)[c] - vertex(s, t, 0)[c];
+    }
+    sf_cross3(u, v, area);
+    for (int c = 0; c < 3; c++)
+        area[c] *= 0.5;
+}
+
+/* Collects the part of `seed` into member[0 .. *count). */
+static sf_status walk(orienter *o, int64_t seed, int64_t *count, sf_error *err) {
+    *count = 1;
+    o->member[0] = seed;
+    o->part[seed] = 1;
+    for (int64_t k = 0; k < *count; k++)
+        for (int e = 0; e < 3; e++) {
+            int64_t t = o->member[k], next = o->beyond[3 * t + e];
+            if (next < 0)
+                continue;
+            uint8_t flip = o->flip[t] ^ o->twisted[3 * t + e];
+            if (o->part[next] && o->flip[next] == flip)
+                continue;
+            if (o->part[next]) {
+                const double *x = vertex(o->surface, t, e);
+                return SF_FAIL(err, SF_ERR_INPUT,
+                               "the missile's surface is one-sided, like a Moebius strip, near (%.4g, %.4g, "
+                               "%.4g) m of its geometry: it has no outside for the pad to touch",
+                               x[0], x[1], x[2]);
+            }
+            o->part[next] = 1;
+            o->flip[next] = flip;
+            o->member[(*count)++] = next;
+        }
+    return SF_OK;
+}
+
+/* Is the part, with the flips of the walk, to be turned over? */
+static bool is_inverted(const orienter *o, int64_t count, const double direction[3]) {
+    double area = 0, facing = 0, given = 0, volume = 0;
+    bool closed = true;
+    for (int64_t k = 0; k < count; k++) {
+        int64_t t = o->member[k];
+        double a[3], sign = o->flip[t] ? -1 : 1;
+        area_vector(o->surface, t, a);
+        double size = sqrt(sf_dot3(a, a));
+        area += size;
+        given += sign * size;
+        facing += sign * sf_dot3(a, direction);
+        volume += sign * sf_dot3(a, vertex(o->surface, t, 0));
+        for (int e = 0; e < 3; e++)
+            closed = closed && o->beyond[3 * t + e] >= 0;
+    }
+    if (closed)
+        return volume < 0;
+    return fabs(facing) > EDGE_ON * area ? facing < 0 : given < 0;
+}
+
+static void turn_part(const orienter *o, int64_t count, const double direction[3], sf_surface *surface) {
+    for (int64_t k = 0; surface->solid && k < count; k++)
+        if (surface->solid[o->member[k]])
+            return;
+    bool inverted = is_inverted(o, count, direction);
+    for (int64_t k = 0; k < count; k++) {
+        int32_t *node = &surface->triangle[3 * o->member[k]];
+        if (o->flip[o->member[k]] == inverted)
+            continue;
+        int32_t swap = node[1];
+        node[1] = node[2];
+        node[2] = swap;
+    }
+}
+
+static sf_status check_facing(const sf_surface *s, const double direction[3], sf_error *err) {
+    double facing = 0, area = 0;
+    for (int64_t t = 0; t < s->triangle_count; t++) {
+        double a[3];
+        area_vector(s, t, a);
+        facing += fmax(sf_dot3(a, direction), 0);
+        area += sqrt(sf_dot3(a, a));
+    }
+    if (facing > EDGE_ON * area)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "missile.group: no part of the missile's surface faces along its motion (%g, %g, %g): the "
+                   "cells lie on the pad's side of it, so the pad can never touch it",
+                   direction[0], direction[1], direction[2]);
+}
+
+sf_status sf_surface_orient(sf_surface *surface, const double direction[3], sf_error *err) {
+    size_t n = (size_t)surface->triangle_count;
+    orienter o = {.surface = surface,
+                  .beyond = sf_alloc(err, 3 * n, sizeof *o.beyond, "missile edges"),
+                  .twisted = sf_alloc(err, 3 * n, 1, "missile edges"),
+                  .part = sf_alloc(err, n, 1, "missile triangles"),
+                  .flip = sf_alloc(err, n, 1, "missile triangles"),
+                  .member = sf_alloc(err, n, sizeof *o.member, "missile triangles")};
+    if (err->status == SF_OK && find_neighbours(&o, err) == SF_OK)
+        for (int64_t t = 0, count; t < surface->triangle_count && err->status == SF_OK; t++)
+            if (!o.part[t] && walk(&o, t, &count, err) == SF_OK)
+                turn_part(&o, count, direction, surface);
+    free(o.beyond);
+    free(o.twisted);
+    free(o.part);
+    free(o.flip);
+    free(o.member);
+    return err->status == SF_OK ? check_facing(surface, direction, err) : err->status;
+}
+
+/* The outer surface of the missile's cells, whatever part of it is the group that touches the pad. */
+
+/* A face of a cell by its tags in ascending order. */
+typedef struct cell_face {
+    size_t tag[SF_RAW_FACE];
+    size_t cell;
+    int face;
+} cell_face;
+
+static int compare_face(const void *a, const void *b) {
+    const cell_face *p = a, *q = b;
+    int tags = sf_raw_face_compare(p->tag, q->tag);
+    return tags ? tags : (p->cell > q->cell) - (p->cell < q->cell);
+}
+
+typedef struct hull_builder {
+    const sf_raw_mesh *raw;
+    sf_tag_index *nodes;
+    cell_face *list; /* [count] sorted */
+    size_t count;
+    size_t *parent; /* [cell_count] union of cells joined by faces */
+    uint8_t *ours;  /* [cell_count] by parent: of the missile */
+} hull_builder;
+
+static size_t find_root(size_t *parent, size_t cell) {
+    while (parent[cell] != cell)
+        cell = parent[cell] = parent[parent[cell]];
+    return cell;
+}
+
+static sf_status list_faces(hull_builder *b, sf_error *err) {
+    const sf_raw_mesh *raw = b->raw;
+    b->list = sf_alloc(err, 6 * raw->cell_count, sizeof *b->list, "faces of the missile");
+    b->parent = sf_alloc(err, raw->cell_count, sizeof *b->parent, "cells of the missile");
+    b->ours = sf_alloc(err, raw->cell_count, 1, "cells of the missile");
+    if (err->status != SF_OK)
+        return err->status;
+    for (size_t k = 0; k < raw->cell_count; k++) {
+        const sf_cell_topology *shape = sf_cell_topology_of(raw->cell_type[k]);
+        b->parent[k] = k;
+        for (int f = 0; f < shape->faces; f++) {
+            cell_face *face = &b->list[b->count++];
+            *face = (cell_face){.cell = k, .face = f};
+            for (int a = 0; a < shape->face_size[f]; a++)
+                face->tag[a] = raw->cell_node[SF_RAW_CELL * k + (size_t)shape->face[f][a]];
+            sf_raw_face_sort(face->tag);
+        }
+    }
+    qsort(b->list, b->count, sizeof *b->list, compare_face);
+    return SF_OK;
+}
+
+/* Does the face at i of the list belong to one cell only? */
+static bool is_outer(const hull_builder *b, size_t i) {
+    return (i == 0 || sf_raw_face_compare(b->list[i - 1].tag, b->list[i].tag) != 0) &&
+           (i + 1 == b->count || sf_raw_face_compare(b->list[i + 1].tag, b->list[i].tag) != 0);
+}
+
+/* Joins cells through faces, and marks those that a face of the group belongs to. */
+static void find_cells(hull_builder *b) {
+    const sf_raw_mesh *raw = b->raw;
+    for (size_t i = 1; i < b->count; i++)
+        if (sf_raw_face_compare(b->list[i - 1].tag, b->list[i].tag) == 0)
+            b->parent[find_root(b->parent, b->list[i].cell)] = find_root(b->parent, b->list[i - 1].cell);
+    for (size_t f = 0; f < raw->face_count; f++) {
+        size_t wanted[SF_RAW_FACE], low = 0, high = b->count;
+        memcpy(wanted, raw->face_node + SF_RAW_FACE * f, sizeof wanted);
+        sf_raw_face_sort(wanted);
+        while (low < high) {
+            size_t middle = (low + high) / 2;
+            if (sf_raw_face_compare(b->list[middle].tag, wanted) < 0)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        if (low < b->count && sf_raw_face_compare(b->list[low].tag, wanted) == 0)
+            b->ours[find_root(b->parent, b->list[low].cell)] = 1;
+    }
+}
+
+static bool is_hull(const hull_builder *b, size_t i) {
+    return is_outer(b, i) && b->ours[find_root(b->parent, b->list[i].cell)];
+}
+
+static const double *place_of(const hull_builder *b, size_t tag) {
+    size_t place = sf_raw_mesh_find(b->raw, b->nodes, tag);
+    return place != SIZE_MAX ? &b->raw->xyz[3 * place] : NULL;
+}
+
+/* Does the face, in the order of its topology, face away from its cell? */
+static bool faces_outwards(const hull_builder *b, const cell_face *f, const size_t *node, int size) {
+    const sf_cell_topology *shape = sf_cell_topology_of(b->raw->cell_type[f->cell]);
+    double out[3] = {0}, u[3], v[3];
+    for (int c = 0; c < 3; c++) {
+        for (int a = 0; a < size; a++)
+            out[c] += place_of(b, node[a])[c] / size;
+        for (int a = 0; a < shape->vertices; a++)
+            out[c] -= place_of(b, b->raw->cell_node[SF_RAW_CELL * f->cell + (size_t)a])[c] / shape->vertices;
+        u[c] = place_of(b, node[1])[c] - place_of(b, node[0])[c];
+        v[c] = place_of(b, node[2])[c] - place_of(b, node[0])[c];
+    }
+    return sf_triple3(out, u, v) > 0;
+}
+
+static void add_face(const hull_builder *b, const cell_face *f, int32_t *number, sf_surface *s) {
+    const sf_cell_topology *shape = sf_cell_topology_of(b->raw->cell_type[f->cell]);
+    int size = shape->face_size[f->face];
+    size_t node[SF_RAW_FACE] = {0};
+    for (int a = 0; a < size; a++)
+        node[a] = b->raw->cell_node[SF_RAW_CELL * f->cell + (size_t)shape->face[f->face][a]];
+    bool outwards = faces_outwards(b, f, node, size);
+    for (int t = 0; t < size - 2; t++) {
+        const size_t corner[3] = {node[0], node[t + (outwards ? 1 : 2)], node[t + (outwards ? 2 : 1)]};
+        for (int a = 0; a < 3; a++)
+            s->hull_triangle[3 * s->hull_triangle_count + a] =
+                number[sf_raw_mesh_find(b->raw, b->nodes, corner[a])];
+        s->hull_triangle_count++;
+    }
+}
+
+/* All cells of the missile have nodes that exist. */
+static bool has_nodes(const hull_builder *b) {
+    for (size_t k = 0; k < b->raw->cell_count; k++)
+        for (int a = 0; a < sf_cell_topology_of(b->raw->cell_type[k])->vertices; a++)
+            if (!place_of(b, b->raw->cell_node[SF_RAW_CELL * k + (size_t)a]))
+                return false;
+    return true;
+}
+
+static sf_status write_hull(const hull_builder *b, double unit, sf_surface *s, sf_error *err) {
+    const sf_raw_mesh *raw = b->raw;
+    size_t most = 0;
+    for (size_t i = 0; i < b->count; i++)
+        most += is_hull(b, i) ? 2 : 0;
+    int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "nodes of the missile");
+    s->hull_position = sf_alloc(err, 3 * raw->node_count, sizeof(double), "nodes of the missile");
+    s->hull_triangle = sf_alloc(err, 3 * most, sizeof(int32_t), "surface of the missile");
+    if (err->status == SF_OK) {
+        s->hull_node_count = (int64_t)raw->node_count;
+        for (size_t n = 0; n < raw->node_count; n++)
+            number[n] = (int32_t)n;
+        for (size_t n = 0; n < 3 * raw->node_count; n++)
+            s->hull_position[n] = unit * raw->xyz[n];
+        for (size_t i = 0; i < b->count; i++)
+            if (is_hull(b, i))
+                add_face(b, &b->list[i], number, s);
+    }
+    free(number);
+    return err->status;
+}
+
+sf_status sf_hull_assemble(const sf_raw_mesh *raw, double unit, sf_surface *s, sf_error *err) {
+    hull_builder b = {.raw = raw};
+    if (raw->cell_count == 0)
+        return SF_OK;
+    b.nodes = sf_raw_mesh_index(raw, err);
+    if (b.nodes && has_nodes(&b) && list_faces(&b, err) == SF_OK) {
+        find_cells(&b);
+        write_hull(&b, unit, s, err);
+    }
+    free(b.nodes);
+    free(b.list);
+    free(b.parent);
+    free(b.ours);
+    return err->status;
+}
 
 static const double SPHERE_TOLERANCE = 1e-6;
 

@@ -1,11 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The missile's surface: is it a sphere cap, and where does it first touch the pad? */
 #ifndef SF_PRE_MESH_MISSILE_SHAPE_H
 #define SF_PRE_MESH_MISSILE_SHAPE_H
-
 #include "base/error.h"
 #include "model/model.h"
 #include "pre/mesh/mesh.h"
+
+/* Turns the missile's surface towards the pad: contact sees only what its normals face. */
+
+/* Parts (triangles joined by edges) without cells behind them are turned as one: a closed part outwards, an
+ * open one so that its area faces along `direction`, the missile's motion. Parts with cells behind them stay
+ * as they are. SF_ERR_INPUT: a part is one-sided (a Moebius strip), or no triangle faces along `direction`.
+ */
+sf_status sf_surface_orient(sf_surface *surface, const double direction[3], sf_error *err);
+
+/* The missile's surface: is it a sphere cap, and where does it first touch the pad? */
 
 /* Least-squares sphere through the surface's nodes. `*deviation` is the largest distance of a node from it
  * divided by the radius. Fails on fewer than 4 nodes or coplanar ones. */
@@ -23,5 +31,4 @@ sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *
 
 /* The same distance to one point; infinity if the path misses it. */
 double sf_missile_travel(const sf_surface *surface, const sf_missile_card *card, const double x[3]);
-
 #endif

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Kinematics and stress of every smoothing domain: F = I + sum d_J B_J^T, material law, V P (theory eq. 7,
- * section "Foam"). Writes f, stress, history, energy, stiffness, tangent, and the domains' partial sums. */
 #ifndef SF_SOLVER_FIELD_DOMAIN_STRESS_H
 #define SF_SOLVER_FIELD_DOMAIN_STRESS_H
-
 #include "solver/operators.h"
 #include "solver/state.h"
+
+/* Kinematics and stress of every smoothing domain: F = I + sum d_J B_J^T, material law, V P (theory eq. 7,
+ * section "Foam"). Writes f, stress, history, energy, stiffness, tangent, and the domains' partial sums. */
 
 /* dt_old is the step that led to the present coefficients; 0 at the start. In a parallel region all threads
  * must call it and share the work; it ends with a barrier. */
@@ -16,4 +16,10 @@ void sf_domain_stress(const sf_model *model, const sf_operators *operators, sf_s
 void sf_domain_law(const sf_model *model, const sf_operators *operators, const sf_state *state, int64_t block,
                    sf_law_batch *batch);
 
+/* Internal forces f_I = - sum_L (V P)_L B_I^L, scattered by groups of domains (halo.h), then summed by node
+ * (theory eq. 8). */
+
+/* Adds them to force. In a parallel region all threads must call it and share the work; it ends with a
+ * barrier. */
+void sf_internal_force(const sf_model *model, const sf_operators *operators, sf_state *state);
 #endif

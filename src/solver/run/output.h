@@ -1,17 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_SOLVER_RUN_OUTPUT_H
+#define SF_SOLVER_RUN_OUTPUT_H
+#include "base/error.h"
+#include "io/h5.h"
+#include "io/provenance.h"
+#include "io/replace.h"
+#include "model/model.h"
+#include "solver/operators.h"
+#include "solver/state.h"
+
+/* results.h5 before the first step: provenance and the part of the model that post-processing needs. */
+
+/* Creates `path` (truncating) with /provenance, the model's provenance from `model_file`, and /model. On
+ * success the caller owns `*file`. */
+sf_status sf_results_create(const char *path, const sf_model *model, const sf_h5 *model_file,
+                            const sf_provenance *provenance, sf_h5 **file, sf_error *err);
+
 /* results.h5 while it grows (docs/formats.md, section "While a run goes on"). Every file is written under
  * another name and renamed, so that results.h5 is complete at any instant. During the run, results.h5 holds
  * the history and links to the model and the frames, which are files of their own in the folder
  * results.h5.run, like the fields at the peak; in the end everything is copied into results.h5 and the folder
  * removed. The files of the folder are sealed (io/seal.h) and checked before anything is taken from them. */
-#ifndef SF_SOLVER_RUN_OUTPUT_H
-#define SF_SOLVER_RUN_OUTPUT_H
-
-#include "io/h5.h"
-#include "io/provenance.h"
-#include "io/replace.h"
-#include "solver/operators.h"
-#include "solver/state.h"
 
 typedef struct sf_output {
     char results[SF_PATH_SIZE];
@@ -66,5 +75,4 @@ sf_status sf_output_commit(sf_output *output, sf_h5 **file, sf_error *err);
 
 /* Removes the folder with its files. */
 void sf_output_clear(const sf_output *output);
-
 #endif

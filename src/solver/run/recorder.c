@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/recorder.h"
 
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include "base/mat3.h"
 #include "io/h5_members.h"
-#include <stddef.h>
-#include <string.h>
 
 static const double PEAK_GROWTH = 1.001; /* of the acceleration from one kept maximum to the next */
 
@@ -126,5 +130,140 @@ sf_status sf_recorder_read(sf_recorder *r, const sf_model *m, const sf_state *s,
                        "next at %g s after %g s",
                        (long long)r->history.rows, (long long)s->step, (long long)r->frames, r->next_frame,
                        s->time);
+    return SF_OK;
+}
+
+enum { FIRST_ROWS = 4096 };
+
+/* Area (m2) of the undeformed surface whose points have a contact force, of the modelled part. */
+static double area_in_contact(const sf_model *m, const sf_state *s) {
+    double area = 0;
+    for (int64_t n = 0; n < s->contact_near_count; n++) {
+        int64_t k = s->contact_near[n];
+        if (!sf_model_point_rests(m, k) && sf_dot3(&s->contact_force[3 * k], &s->contact_force[3 * k]) > 0)
+            area += m->contact_area[k];
+    }
+    return area;
+}
+
+/* The value of each column of model/columns.h. m: the model; s: the state after sf_step_evaluate; whole:
+ * modelled parts that make the whole. */
+#define VALUE(name, value)                                                                                   \
+    static double name##_now(const sf_model *m, const sf_state *s, double whole) {                           \
+        (void)m, (void)s, (void)whole;                                                                       \
+        return value;                                                                                        \
+    }
+
+/* clang-format off */
+VALUE(time, s->time)
+VALUE(acceleration, sf_missile_reading(m, &s->missile))
+VALUE(velocity, s->missile.velocity_now)
+VALUE(displacement, s->missile.displacement)
+VALUE(indentation, fmax(0, sf_missile_depth(m, &s->missile)))
+VALUE(contact_force, whole * sf_missile_contact_force(m, &s->missile))
+VALUE(friction_force, whole * s->missile.friction)
+VALUE(base_reaction, whole * s->base_reaction[2])
+VALUE(energy_kinetic_missile, whole * s->ledger.kinetic_missile)
+VALUE(energy_kinetic_pad, whole * s->ledger.kinetic_pad)
+VALUE(energy_stored, whole * s->ledger.stored)
+VALUE(energy_hysteresis, whole * s->ledger.hysteresis)
+VALUE(energy_viscous, whole * s->ledger.viscous)
+VALUE(energy_stabilisation, whole * s->ledger.stabilisation)
+VALUE(energy_contact, whole * s->ledger.contact)
+VALUE(energy_friction, whole * s->ledger.friction)
+VALUE(energy_external, whole * s->ledger.external)
+VALUE(energy_weight, whole * s->ledger.weight)
+VALUE(energy_anvil, whole * s->ledger.anvil)
+VALUE(energy_error, s->ledger.error)
+VALUE(momentum_error, s->ledger.momentum_error)
+VALUE(translation_x, sf_missile_look(m, &s->missile).translation[0])
+VALUE(translation_y, sf_missile_look(m, &s->missile).translation[1])
+VALUE(translation_z, sf_missile_look(m, &s->missile).translation[2])
+VALUE(quaternion_w, s->missile.quaternion[0])
+VALUE(quaternion_x, s->missile.quaternion[1])
+VALUE(quaternion_y, s->missile.quaternion[2])
+VALUE(quaternion_z, s->missile.quaternion[3])
+VALUE(velocity_x, sf_missile_look(m, &s->missile).velocity[0])
+VALUE(velocity_y, sf_missile_look(m, &s->missile).velocity[1])
+VALUE(velocity_z, sf_missile_look(m, &s->missile).velocity[2])
+VALUE(specific_force_x, sf_missile_look(m, &s->missile).specific_force[0])
+VALUE(specific_force_y, sf_missile_look(m, &s->missile).specific_force[1])
+VALUE(specific_force_z, sf_missile_look(m, &s->missile).specific_force[2])
+VALUE(angular_velocity_x, sf_missile_look(m, &s->missile).angular_velocity[0])
+VALUE(angular_velocity_y, sf_missile_look(m, &s->missile).angular_velocity[1])
+VALUE(angular_velocity_z, sf_missile_look(m, &s->missile).angular_velocity[2])
+VALUE(angular_acceleration_x, sf_missile_look(m, &s->missile).angular_acceleration[0])
+VALUE(angular_acceleration_y, sf_missile_look(m, &s->missile).angular_acceleration[1])
+VALUE(angular_acceleration_z, sf_missile_look(m, &s->missile).angular_acceleration[2])
+VALUE(momentum_error_space, s->ledger.vector_error)
+VALUE(angular_momentum_error, s->ledger.angular_error)
+VALUE(largest_compression, s->largest_compression)
+VALUE(smallest_jacobian, s->smallest_jacobian)
+VALUE(contact_nodes, (double)s->contact_count)
+VALUE(anvil_nodes, (double)s->anvil_count)
+VALUE(contact_area, whole * area_in_contact(m, s))
+VALUE(penetration, s->penetration)
+VALUE(constraint_residual, s->constraint_residual)
+VALUE(time_step, s->dt)
+/* clang-format on */
+
+typedef double (*value_of)(const sf_model *m, const sf_state *s, double whole);
+#define NOW(name, ...) name##_now,
+static const value_of values[SF_HISTORY_COUNT] = {SF_HISTORY_COLUMNS(NOW)};
+
+/* Room for one row more. */
+static sf_status grow(sf_history *h, sf_error *err) {
+    if (h->rows < h->room)
+        return SF_OK;
+    int64_t room = h->room > 0 ? 2 * h->room : FIRST_ROWS;
+    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
+        double *grown = realloc(h->column[k], (size_t)room * sizeof *grown);
+        if (!grown)
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a history of %lld rows", (long long)room);
+        h->column[k] = grown;
+    }
+    h->room = room;
+    return SF_OK;
+}
+
+sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf_error *err) {
+    double whole = sf_model_whole(m);
+    if (grow(h, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < SF_HISTORY_COUNT; k++)
+        h->column[k][h->rows] = values[k](m, s, whole);
+    h->rows++;
+    return SF_OK;
+}
+
+/* The dataset of column k; its path is in `path`. */
+static sf_h5_info dataset(int k, char path[64]) {
+    const sf_history_column *column = sf_history_column_get(k);
+    snprintf(path, 64, "/history/%s", column->name);
+    return (sf_h5_info){path, column->units, column->description};
+}
+
+sf_status sf_history_write(const sf_history *h, sf_h5 *file, sf_error *err) {
+    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
+        char path[64];
+        sf_h5_info info = dataset(k, path);
+        if (sf_h5_write(file, &info, SF_H5_F64, 1, &h->rows, h->column[k], err) != SF_OK)
+            return err->status;
+    }
+    return SF_OK;
+}
+
+sf_status sf_history_read(sf_history *h, const sf_h5 *file, sf_error *err) {
+    int64_t rows = -1;
+    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
+        char path[64];
+        void *data = NULL;
+        if (sf_h5_read(file, dataset(k, path).path, SF_H5_F64, 1, &rows, &data, err) != SF_OK) {
+            sf_history_free(h);
+            return err->status;
+        }
+        h->column[k] = data;
+    }
+    h->rows = h->room = rows;
     return SF_OK;
 }

@@ -1,10 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Data that a run carries from step to step beside the state: the history, the peak, and the times at which
- * the fields are due, as a frame or as the fields at the peak (output.h writes them). */
 #ifndef SF_SOLVER_RUN_RECORDER_H
 #define SF_SOLVER_RUN_RECORDER_H
+#include "base/error.h"
+#include "io/h5.h"
+#include "model/columns.h"
+#include "model/model.h"
+#include "solver/state.h"
 
-#include "solver/run/history.h"
+/* The rows of a run's history (model/columns.h): one per time step, kept in memory and written to /history as
+ * a whole, scaled to the whole pad. */
+
+/* Adds the present state as a row of a history that began empty ({0}); release with sf_history_free. */
+sf_status sf_history_add(sf_history *history, const sf_model *model, const sf_state *state, sf_error *err);
+
+/* All rows to /history, and back; a history that is read must be empty. */
+sf_status sf_history_write(const sf_history *history, sf_h5 *file, sf_error *err);
+sf_status sf_history_read(sf_history *history, const sf_h5 *file, sf_error *err);
+
+/* Data that a run carries from step to step beside the state: the history, the peak, and the times at which
+ * the fields are due, as a frame or as the fields at the peak (output.h writes them). */
 
 /* The numbers of a recorder in a checkpoint, beside the history; a list as in state.h. */
 /* clang-format off */
@@ -72,5 +86,4 @@ bool sf_recorder_frame_due(sf_recorder *recorder, const sf_model *model, const s
 sf_status sf_recorder_write(const sf_recorder *recorder, sf_h5 *file, sf_error *err);
 sf_status sf_recorder_read(sf_recorder *recorder, const sf_model *model, const sf_state *state,
                            const sf_h5 *file, sf_error *err);
-
 #endif

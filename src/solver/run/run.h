@@ -1,20 +1,48 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A whole run: steps until the end, with history, frames, the peak and the summary in results.h5, and
- * checkpoints from which it can be resumed. */
 #ifndef SF_SOLVER_RUN_RUN_H
 #define SF_SOLVER_RUN_RUN_H
+#include <signal.h>
+#include <stdio.h>
 
 #include "base/error.h"
 #include "model/model.h"
-#include "base/sink.h"
-#include "solver/run/checkpoint.h"
 #include "solver/operators.h"
+#include "solver/run/checkpoint.h"
 #include "solver/run/output.h"
 #include "solver/run/recorder.h"
 #include "solver/state.h"
 
-#include <signal.h>
-#include <stdio.h>
+/* When a run is over. */
+
+/* The missile has left the pad for good, and the run shall end then. A driven missile may come back. */
+bool sf_ending_rebounded(const sf_model *model, const sf_state *state);
+
+/* The missile's lowest point is on the anvil: what follows is the impact of two rigid bodies, of which the
+ * model says nothing. */
+bool sf_ending_on_anvil(const sf_model *model, const sf_state *state);
+/* Records SF_ERR_NUMERIC with a sentence for that. */
+sf_status sf_ending_fail_on_anvil(const sf_state *state, sf_error *err);
+
+/* The end time is reached. */
+bool sf_ending_finished(const sf_model *model, const sf_state *state);
+
+/* What the user of a run's figures should know of it, beside the checks of model/good_run.h: for the
+ * terminal, and for /summary/notes in results.h5. */
+
+/* Tells the sink; `state` is that of the last step. */
+void sf_run_tell(const sf_model *model, const sf_state *state, const sf_extremes *extremes,
+                 const sf_sink *sink);
+
+/* Lines, each ended by '\n'. */
+typedef struct sf_run_notes {
+    char text[4096]; /* cut */
+} sf_run_notes;
+
+/* A sink that adds a line to `notes`; borrowed. */
+sf_sink sf_run_notes_sink(sf_run_notes *notes);
+
+/* A whole run: steps until the end, with history, frames, the peak and the summary in results.h5, and
+ * checkpoints from which it can be resumed. */
 
 typedef struct sf_run {
     const volatile sig_atomic_t *stop; /* non-zero asks the run to end after the present step; borrowed */
@@ -44,5 +72,4 @@ typedef struct sf_run {
  * the last checkpoint with it. */
 sf_status sf_run_drop(const sf_model *model, const sf_operators *operators, sf_state *state, sf_run *run,
                       sf_output *output, const sf_checkpoint *checkpoint, sf_error *err);
-
 #endif

@@ -8,7 +8,7 @@
 #include "report/html.h"
 #include "report/json.h"
 #include "post/results/origin.h"
-#include "post/view/origin_page.h"
+#include "post/view/report.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

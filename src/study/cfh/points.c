@@ -1,9 +1,246 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/cfh/points.h"
 
-#include "base/units.h"
 #include <assert.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_fit.h>
+#include <gsl/gsl_multifit.h>
+#include <gsl/gsl_poly.h>
 #include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "io/table_csv.h"
+
+static const double MAX_SPEED_RATIO = 1.03; /* to free fall: beyond it a pair is wrong, not merely measured */
+
+double sf_cfh_speed(double free_fall_height) {
+    return sqrt(2 * SF_STANDARD_GRAVITY * free_fall_height);
+}
+
+double sf_cfh_free_fall_height(double speed) {
+    return speed * speed / (2 * SF_STANDARD_GRAVITY);
+}
+
+sf_cfh_rig sf_cfh_free_fall(void) {
+    return (sf_cfh_rig){.gravity = SF_STANDARD_GRAVITY};
+}
+
+sf_status sf_cfh_rig_fit(const char *name, int pairs, const double *height, const double *speed,
+                         sf_cfh_rig *rig, sf_error *err) {
+    double x[SF_CFH_MAX_PAIRS], y[SF_CFH_MAX_PAIRS], variance = 0, residual = 0;
+    *rig = sf_cfh_free_fall();
+    if (pairs < 2 || pairs > SF_CFH_MAX_PAIRS)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s has %d pairs of height and speed, 2 to %d are needed", name,
+                       pairs, SF_CFH_MAX_PAIRS);
+    for (int k = 0; k < pairs; k++) {
+        if (!(height[k] > 0) || !(speed[k] > 0))
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: pair %d, %g m and %g m/s, is not positive", name, k + 1,
+                           height[k], speed[k]);
+        if (speed[k] > MAX_SPEED_RATIO * sf_cfh_speed(height[k]))
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: pair %d, %g m/s from %g m, is faster than free fall (%.4g m/s)", name, k + 1,
+                           speed[k], height[k], sf_cfh_speed(height[k]));
+        x[k] = 2 * height[k];
+        y[k] = speed[k] * speed[k];
+    }
+    gsl_fit_mul(x, 1, y, 1, (size_t)pairs, &rig->gravity, &variance, &residual);
+    rig->pairs = pairs;
+    rig->standard_error = sqrt(variance);
+    rig->margin = gsl_cdf_tdist_Pinv(0.975, pairs - 1) * rig->standard_error / rig->gravity;
+    return SF_OK;
+}
+
+static sf_status check_pair(const sf_table_point *p, sf_error *err) {
+    if (p->index == SF_CFH_MAX_PAIRS)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: more than %d pairs", p->path, p->line, SF_CFH_MAX_PAIRS);
+    return SF_OK;
+}
+
+static const sf_table_name names[] = {{"height_m", 0, 1, "m"},
+                                      {"h_m", 0, 1, "m"},
+                                      {"h_m_m", 0, 1, "m"},
+                                      {"speed_m_s", 1, 1, "m/s"},
+                                      {"v_test_m_s", 1, 1, "m/s"}};
+
+static const sf_table_layout layout = {
+    .what = "rig",
+    .column = {"height", "speed"},
+    .wanted = {"height_m, h_m or h_m_m", "speed_m_s or v_test_m_s"},
+    .names = names,
+    .name_count = sizeof names / sizeof *names,
+    .words = {"height|h|*höhe|*hoehe|hauteur|altura|altezza",
+              "speed|velocity|v|*geschwindigkeit|vitesse|velocidad|velocità"},
+    .kind = {SF_LENGTH, SF_SPEED},
+    .ragged = true,
+    .check = check_pair,
+};
+
+sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err) {
+    sf_table table;
+    *rig = sf_cfh_free_fall();
+    if (sf_table_read(path, &layout, &table, err) != SF_OK)
+        return err->status;
+    sf_cfh_rig_fit(path, (int)table.count, table.value[0], table.value[1], rig, err);
+    memcpy(rig->understood, table.understood, sizeof rig->understood);
+    sf_table_free(&table);
+    return err->status;
+}
+
+static const double WINDOW = 0.47;      /* ln(1.6): how far from the crossing points belong to the fit */
+static const double MAX_FALL = 0.02;    /* between two heights; less is the scatter of single runs */
+static const double CONFIDENCE = 0.975; /* each side of the 95 % interval */
+
+double sf_cfh_fit_at(const sf_cfh_fit *fit, double height) {
+    return exp(gsl_poly_eval(fit->c, 3, log(height) - fit->centre));
+}
+
+static sf_status check_points(const char *name, int count, const double *height, const double *value,
+                              sf_error *err) {
+    double largest = 0, at = 0;
+    for (int k = 0; k < count; k++) {
+        if (!(value[k] > 0) || !isfinite(value[k]) || !(height[k] > (k ? height[k - 1] : 0)))
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: point %d, %g at %g m, is not positive or out of order",
+                           name, k + 1, value[k], height[k]);
+        if (value[k] < (1 - MAX_FALL) * largest)
+            return SF_FAIL(err, SF_ERR_NUMERIC,
+                           "%s falls from %.4g at %.4g m to %.4g at %.4g m: it does not grow with the "
+                           "height, so no critical height can be read",
+                           name, largest, at, value[k], height[k]);
+        if (value[k] > largest) {
+            largest = value[k];
+            at = height[k];
+        }
+    }
+    return SF_OK;
+}
+
+/* ln(height) of the crossing by the two points around it, or of the end nearest the limit. */
+static double rough_crossing(sf_cfh_side side, int count, const double *height, const double *value,
+                             double limit) {
+    int k = 0;
+    if (side == SF_CFH_EXCEEDED)
+        return log(height[0]);
+    if (side == SF_CFH_NOT_REACHED)
+        return log(height[count - 1]);
+    while (value[k + 1] < limit)
+        k++;
+    double share = log(limit / value[k]) / log(value[k + 1] / value[k]);
+    return log(height[k]) + share * log(height[k + 1] / height[k]);
+}
+
+/* The run of points within the window, widened to the nearest four. */
+static void choose_points(double centre, int count, const double *height, sf_cfh_fit *fit) {
+    int first = 0, last = count - 1;
+    while (last - first + 1 > SF_CFH_MIN_POINTS) {
+        double below = centre - log(height[first]), above = log(height[last]) - centre;
+        if (fmax(below, above) <= WINDOW)
+            break;
+        if (below > above)
+            first++;
+        else
+            last--;
+    }
+    fit->first = first;
+    fit->count = last - first + 1;
+    fit->centre = centre;
+}
+
+static sf_status fit_quadratic(const double *height, const double *value, sf_cfh_fit *fit, sf_error *err) {
+    size_t n = (size_t)fit->count;
+    double square_sum = 0;
+    gsl_matrix *design = gsl_matrix_alloc(n, 3), *covariance = gsl_matrix_alloc(3, 3);
+    gsl_vector *y = gsl_vector_alloc(n), *c = gsl_vector_alloc(3);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, 3);
+    if (!design || !covariance || !y || !c || !work) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit of %zu points", n);
+        goto done;
+    }
+    for (size_t k = 0; k < n; k++) {
+        double d = log(height[fit->first + (int)k]) - fit->centre;
+        gsl_matrix_set(design, k, 0, 1);
+        gsl_matrix_set(design, k, 1, d);
+        gsl_matrix_set(design, k, 2, d * d);
+        gsl_vector_set(y, k, log(value[fit->first + (int)k]));
+    }
+    if (gsl_multifit_linear(design, y, c, covariance, &square_sum, work) != 0) {
+        SF_FAIL(err, SF_ERR_LIBRARY, "GSL cannot fit a quadratic to %zu points", n);
+        goto done;
+    }
+    fit->rms = sqrt(square_sum / (double)n);
+    for (size_t i = 0; i < 3; i++) {
+        fit->c[i] = gsl_vector_get(c, i);
+        for (size_t j = 0; j < 3; j++)
+            fit->covariance[i][j] = gsl_matrix_get(covariance, i, j);
+    }
+done:
+    gsl_multifit_linear_free(work);
+    gsl_vector_free(c);
+    gsl_vector_free(y);
+    gsl_matrix_free(covariance);
+    gsl_matrix_free(design);
+    return err->status;
+}
+
+/* Distance from the fit's centre at which it rises through ln(limit); NaN if there is none among its points.
+ */
+static double rising_root(const sf_cfh_fit *fit, const double *height, double limit) {
+    double low = log(height[fit->first]) - fit->centre, root[2];
+    double high = log(height[fit->first + fit->count - 1]) - fit->centre;
+    int count = gsl_poly_solve_quadratic(fit->c[2], fit->c[1], fit->c[0] - log(limit), &root[0], &root[1]);
+    for (int k = 0; k < count; k++)
+        if (root[k] >= low && root[k] <= high && fit->c[1] + 2 * fit->c[2] * root[k] > 0)
+            return root[k];
+    return NAN;
+}
+
+static double half_width(const sf_cfh_fit *fit, double d) {
+    const double row[3] = {1, d, d * d};
+    double variance = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            variance += row[i] * fit->covariance[i][j] * row[j];
+    double quantile = gsl_cdf_tdist_Pinv(CONFIDENCE, fit->count - 3);
+    return quantile * sqrt(fmax(variance, 0)) / (fit->c[1] + 2 * fit->c[2] * d);
+}
+
+static sf_status find_crossing(const char *name, const double *height, double limit, sf_cfh_crossing *out,
+                               sf_error *err) {
+    double d = rising_root(&out->fit, height, limit);
+    if (isnan(d))
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "the quadratic through the points of %s does not rise through %g: simulate more "
+                       "heights near %.4g m",
+                       name, limit, exp(out->fit.centre));
+    out->height = exp(out->fit.centre + d);
+    out->margin = half_width(&out->fit, d);
+    out->low = out->height * exp(-out->margin);
+    out->high = out->height * exp(out->margin);
+    return SF_OK;
+}
+
+sf_status sf_cfh_cross(const char *name, int count, const double *height, const double *value, double limit,
+                       sf_cfh_crossing *out, sf_error *err) {
+    *out = (sf_cfh_crossing){.height = NAN, .margin = NAN, .low = NAN, .high = NAN};
+    if (count < 1)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s has no points", name);
+    if (check_points(name, count, height, value, err) != SF_OK)
+        return err->status;
+    bool below = value[0] < limit, reached = false;
+    for (int k = 0; k < count; k++)
+        reached = reached || value[k] >= limit;
+    out->side = !reached ? SF_CFH_NOT_REACHED : below ? SF_CFH_CROSSED : SF_CFH_EXCEEDED;
+    if (count < SF_CFH_MIN_POINTS && out->side == SF_CFH_CROSSED)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s has %d points, at least %d are needed for a crossing", name,
+                       count, SF_CFH_MIN_POINTS);
+    if (count < SF_CFH_MIN_POINTS)
+        return SF_OK;
+    choose_points(rough_crossing(out->side, count, height, value, limit), count, height, &out->fit);
+    if (fit_quadratic(height, value, &out->fit, err) == SF_OK && out->side == SF_CFH_CROSSED)
+        find_crossing(name, height, limit, out, err);
+    return err->status;
+}
 
 void sf_cfh_points_add(sf_cfh_points *points, const sf_cfh_point *point) {
     int k = points->count++;

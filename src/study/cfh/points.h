@@ -1,13 +1,84 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_STUDY_CFH_POINTS_H
+#define SF_STUDY_CFH_POINTS_H
+#include <stdbool.h>
+
+#include "base/error.h"
+#include "io/table_csv.h"
+#include "post/figures/verdict.h"
+
+/* Drop height and speed at contact. In free fall v^2 = 2 g h with g = 9.80665 m s-2. On a rig whose guides
+ * rub, v^2 = 2 g_eff h with a g_eff below that, fitted to measured pairs of height and speed. */
+
+enum { SF_CFH_MAX_PAIRS = 64 };
+
+typedef struct sf_cfh_rig {
+    int pairs;                            /* 0: free fall */
+    double gravity;                       /* m s-2, g_eff, or g */
+    double standard_error;                /* m s-2 */
+    double margin;                        /* -, half-width of the 95 % interval of ln(g_eff) */
+    char understood[SF_TABLE_UNDERSTOOD]; /* how its file was read; empty: there is none */
+} sf_cfh_rig;
+
+/* Free fall. */
+sf_cfh_rig sf_cfh_free_fall(void);
+
+/* Least squares of speed^2 over 2 height through the origin. heights m, speeds m s-1. SF_ERR_INPUT: fewer
+ * than two pairs, a number that is not positive, a speed above that of free fall (by more than 3 %). `name`
+ * is where they come from, for the sentence. */
+sf_status sf_cfh_rig_fit(const char *name, int pairs, const double *height, const double *speed,
+                         sf_cfh_rig *rig, sf_error *err);
+
+/* The same from a CSV file (io/table_csv.h) with a column height_m, h_m or h_m_m ("h_m" in m) and a column
+ * speed_m_s or v_test_m_s, or a height and a speed with units. */
+sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err);
+
+double sf_cfh_speed(double free_fall_height);
+double sf_cfh_free_fall_height(double speed);
+
+/* Where a quantity that grows with the drop height reaches its limit: a quadratic of ln(value) in ln(height)
+ * through the simulated points near the limit, its crossing, and the crossing's confidence interval. */
+
+enum { SF_CFH_MIN_POINTS = 4 }; /* of a fit: a quadratic and one degree of freedom */
+
+/* ln(value) = c[0] + c[1] d + c[2] d^2, d = ln(height) - centre. */
+typedef struct sf_cfh_fit {
+    int count; /* points in the fit, 0: no fit */
+    int first; /* index of the lowest of them */
+    double centre;
+    double c[3];
+    double covariance[3][3];
+    double rms; /* -, of the residuals of ln(value) */
+} sf_cfh_fit;
+
+typedef enum sf_cfh_side {
+    SF_CFH_CROSSED,     /* the limit lies between two points */
+    SF_CFH_NOT_REACHED, /* every point is below the limit */
+    SF_CFH_EXCEEDED,    /* every point is at or above it */
+} sf_cfh_side;
+
+typedef struct sf_cfh_crossing {
+    sf_cfh_side side;
+    double height;    /* m, NaN unless crossed */
+    double margin;    /* -, half-width of the 95 % interval of ln(height) */
+    double low, high; /* m, that interval */
+    sf_cfh_fit fit;   /* without a crossing: of the points nearest the limit, if they are enough */
+} sf_cfh_crossing;
+
+/* height: [count] m, ascending; value: [count] positive. `name` is the quantity, for sentences. The fit takes
+ * the points within a factor of 1.6 of the crossing, and at least the nearest four. The interval is that of
+ * the fit (Student's t, first order): it measures how well a quadratic fits the points, not the error of the
+ * model. Errors: SF_ERR_INPUT for points that are not as described, or fewer than four with a crossing among
+ * them; SF_ERR_NUMERIC for values that fall by more than 2 % from one height to a greater one, or a fit that
+ * does not rise through the limit. */
+sf_status sf_cfh_cross(const char *name, int count, const double *height, const double *value, double limit,
+                       sf_cfh_crossing *crossing, sf_error *err);
+
+/* Value of the fit at a height (m). */
+double sf_cfh_fit_at(const sf_cfh_fit *fit, double height);
+
 /* The simulated drops of a critical fall height, in ascending height, and the results read from them. Heights
  * are those of free fall unless a name says "rig". */
-#ifndef SF_CFH_POINTS_H
-#define SF_CFH_POINTS_H
-
-#include "study/cfh/crossing.h"
-#include "study/cfh/rig.h"
-#include "post/figures/verdict.h"
-#include <stdbool.h>
 
 typedef enum sf_cfh_criterion { SF_CFH_A_MAX, SF_CFH_HIC, SF_CFH_CRITERIA } sf_cfh_criterion;
 
@@ -65,5 +136,4 @@ const char *sf_cfh_unit(sf_cfh_criterion criterion);
  * that of the height is `margin`. */
 double sf_cfh_rig_height(const sf_cfh_rig *rig, double height);
 double sf_cfh_rig_margin(const sf_cfh_rig *rig, double margin);
-
 #endif

@@ -4,7 +4,7 @@
 #ifndef SF_CFH_POSTERIOR_H
 #define SF_CFH_POSTERIOR_H
 
-#include "model/drop_kinds.h"
+#include "model/good_run.h"
 #include "material/laws.h"
 
 enum { SF_CFH_LEAST_DRAWS = 100, SF_CFH_MOST_DRAWS = 2000 };

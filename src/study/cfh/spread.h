@@ -6,9 +6,9 @@
  *     ln y_draw(h) = ln columns_draw(h) + [ln y_simulated(h) - ln columns_case(h)],
  *
  * the bracket linear in ln h between the simulated heights and constant beyond them. Each draw is repeated
- * with random errors of the responses (study/fit/drop/inference.h), of the mesh, of the points about their fit, of
- * the corrected columns and of the rig.
- * Heights are those of free fall (m) unless a name says "rig". The same bits for any number of threads. */
+ * with random errors of the responses (study/fit/drop/inference.h), of the mesh, of the points about their
+ * fit, of the corrected columns and of the rig. Heights are those of free fall (m) unless a name says "rig".
+ * The same bits for any number of threads. */
 #ifndef SF_CFH_SPREAD_H
 #define SF_CFH_SPREAD_H
 

@@ -4,8 +4,7 @@
 #define SF_SWEEP_ANALYSIS_H
 
 #include "study/sweep/effects.h"
-#include "study/sweep/indices.h"
-#include "study/sweep/probability.h"
+#include "study/sweep/sample.h"
 #include "study/sweep/quadratic.h"
 
 enum { SF_SURFACE_ROWS = 20000, SF_OFFSET_LEVELS = 12 };

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SF_STUDY_SWEEP_EFFECTS_H
+#define SF_STUDY_SWEEP_EFFECTS_H
+#include "study/sweep/quadratic.h"
+#include "study/sweep/runs.h"
+
 /* Main effects: how far the mean of a figure moves between the values of one factor, all else equal. Runs
  * that do not count (failed, not to be used) are mostly the hardest drops of some values: so the means are
  * over those combinations of the other blocks of which all runs count. A plan of one block has no
  * combinations: its means are over all runs that count. Numbers that a sample mixes with other factors never
  * stand beside each other all else equal: their effect is that of the response surface, if that is good. */
-#ifndef SF_SWEEP_EFFECTS_H
-#define SF_SWEEP_EFFECTS_H
-
-#include "study/sweep/quadratic.h"
-#include "study/sweep/runs.h"
 
 enum { SF_EFFECT_LEVELS = 12, SF_EFFECT_BINS = 5, SF_EFFECT_RUNS = 50 /* in a mean, fewer are scatter */ };
 #define SF_EFFECT_Q2 0.8 /* of a surface, at least */
@@ -46,4 +46,34 @@ sf_status sf_effect_measure(const sf_runs *runs, int factor, size_t figure, sf_e
  * has a problem or a Q2 below SF_EFFECT_Q2. */
 void sf_effect_of_surface(const sf_quadratic *surface, int i, int64_t n, double *x, sf_effect *effect);
 
+/* The probability that a figure stays below its limit, over what is uncertain in the plan, for each
+ * combination of what is chosen. */
+
+enum { SF_PROBABILITY_CELLS = 4096 };
+
+/* Of one combination and one figure. A run that ended because the missile reached the anvil is above every
+ * limit. Runs that failed otherwise or are not to be used are unknown: mostly the hardest drops, so that a
+ * share of the others alone would be too kind. The share and the low end of the interval count them as above,
+ * its high end as below. */
+typedef struct sf_probability {
+    int64_t below, above, unknown;
+    double share;     /* `below` of all three; NaN: no run */
+    double low, high; /* the 95 % interval of Clopper and Pearson */
+} sf_probability;
+
+typedef struct sf_probabilities {
+    int64_t cells;        /* 0: nothing is uncertain, or there are too many combinations */
+    int64_t open;         /* runs that are not done yet: not counted */
+    sf_probability *cell; /* [figures of the plan][cells]; owned */
+    int64_t *row;         /* [cells] a row of that combination; owned */
+} sf_probabilities;
+
+/* Is every factor of the block a choice, not an unknown? */
+bool sf_block_is_chosen(const sf_plan *plan, int block);
+
+sf_status sf_probabilities_count(const sf_runs *runs, sf_probabilities *p, sf_error *err);
+void sf_probabilities_free(sf_probabilities *p);
+/* Share and interval from the counts, of which `independent` are independent of each other: the interval is
+ * that of so many runs of the same shares. */
+void sf_probability_judge(sf_probability *p, double independent);
 #endif

@@ -2,7 +2,7 @@
 #include "study/sweep/factor.h"
 
 #include "case/parts.h"
-#include "case/print.h"
+#include "case/values.h"
 #include "base/text.h"
 #include "io/plain_file.h"
 #include <gsl/gsl_cdf.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/inputs.h"
 
-#include "study/key.h"
+#include "study/run_folder.h"
 #include "base/hash.h"
 #include "pre/mesh/geo_parameters.h"
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 
 #include "base/hash.h"
 #include "post/figures/figures.h"
-#include "study/sweep/indices.h"
+#include "study/sweep/sample.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -8,7 +8,7 @@
 #include "study/fit/compression/compression_plot.h"
 #include "study/fit/compression/compression_report.h"
 #include "io/folder.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 #include <limits.h>
 #include <math.h>

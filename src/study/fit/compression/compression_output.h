@@ -4,7 +4,7 @@
 #ifndef SF_FIT_COMPRESSION_OUTPUT_H
 #define SF_FIT_COMPRESSION_OUTPUT_H
 
-#include "base/sink.h"
+#include "base/error.h"
 #include "study/fit/compression/cube.h"
 #include "study/fit/compression/table_fit.h"
 #include <stdbool.h>

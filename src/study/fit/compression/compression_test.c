@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/compression_test.h"
 
-#include "case/curve.h"
+#include "case/curves.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include "material/point.h"
 #include "io/replace.h"
 #include "post/results/results.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 #include <errno.h>
 #include <limits.h>

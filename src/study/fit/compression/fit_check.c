@@ -2,7 +2,7 @@
 #include "study/fit/compression/fit_check.h"
 
 #include "material/point.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -5,7 +5,7 @@
 #include "study/fit/compression/form_fit.h"
 #include "report/json.h"
 #include "io/staging.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef SF_FIT_COMPRESSION_FORM_COMMAND_H
 #define SF_FIT_COMPRESSION_FORM_COMMAND_H
 
-#include "base/sink.h"
+#include "base/error.h"
 #include "study/fit/compression/compression_config.h"
 #include <stdio.h>
 

@@ -4,7 +4,6 @@
 #define SF_FIT_COMPRESSION_HYPERFOAM_COMMAND_H
 
 #include "base/error.h"
-#include "base/sink.h"
 #include <stdbool.h>
 #include <stdio.h>
 

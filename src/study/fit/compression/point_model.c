@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/point_model.h"
 
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 
 #include <math.h>
 #include <stdlib.h>

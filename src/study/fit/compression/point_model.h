@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The foam law of material/foam.c at a material point in uniaxial compression at a constant nominal
- * rate (lateral stretches 1), as a function of the parameters that compression tests identify, with its
- * derivatives. The loading curve is a cubic spline whose coefficients ascend. What lies beyond it is the
+/* The foam law of material/low_density_foam.c at a material point in uniaxial compression at a constant
+ * nominal rate (lateral stretches 1), as a function of the parameters that compression tests identify, with
+ * its derivatives. The loading curve is a cubic spline whose coefficients ascend. What lies beyond it is the
  * law's own: the densification (material/curve.h), the factor of unloading and the Maxwell branch
- * (material/foam.h); only the derivatives by the parameters are added here. DAMP is left out: it is
- * negligible at the rates of these tests.
+ * (material/low_density_foam.h); only the derivatives by the parameters are added here. DAMP is left out: it
+ * is negligible at the rates of these tests.
  *
  * A parameter vector holds for every curve the logarithms of the coefficients' increments, then the other
  * parameters mapped from their bounds to the real line. */
@@ -12,7 +12,7 @@
 #define SF_FIT_COMPRESSION_MODEL_H
 
 #include "study/fit/compression/compression_data.h"
-#include "study/fit/spline.h"
+#include "study/fit/bspline.h"
 #include <gsl/gsl_matrix.h>
 
 typedef enum sf_rule { SF_H1_AUTO, SF_H1_FREE, SF_H2, SF_RULES } sf_rule; /* theory, "Densification" */

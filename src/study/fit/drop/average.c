@@ -2,8 +2,8 @@
 #include "study/fit/drop/average.h"
 
 #include "study/material_file.h"
-#include "study/fit/posterior/weights.h"
-#include "material/foam.h"
+#include "study/fit/posterior/leave_one_out.h"
+#include "material/low_density_foam.h"
 #include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>

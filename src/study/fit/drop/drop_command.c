@@ -265,7 +265,8 @@ static sf_status run(const options *o, models *all, sf_fit_memory *memory, sf_st
     sf_runner runner = {
         .folder = runs, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
     runner.engine.lock = &lock;
-    if (!sf_engine_is_local(&o->engine) && runner.engine.per_job == 0) /* the few drops of a step are side by side */
+    if (!sf_engine_is_local(&o->engine) &&
+        runner.engine.per_job == 0) /* the few drops of a step are side by side */
         runner.engine.per_job = 1;
     snprintf(columns, sizeof columns, "%s/columns.bin", runs);
     sf_fit_memory_open(columns, memory);

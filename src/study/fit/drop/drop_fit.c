@@ -5,8 +5,8 @@
 #include "base/hash.h"
 #include "io/process.h"
 #include "post/figures/compare.h"
-#include "material/foam.h"
-#include "material/foam_parameters.h"
+#include "material/low_density_foam.h"
+#include "material/foam_card.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>

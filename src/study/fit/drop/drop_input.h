@@ -1,11 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One entry of the lists `drops` and `predict`: a case, and what was measured. */
-#ifndef SF_FIT_DROP_DROP_INPUT_H
-#define SF_FIT_DROP_DROP_INPUT_H
-
+#ifndef SF_STUDY_FIT_DROP_DROP_INPUT_H
+#define SF_STUDY_FIT_DROP_DROP_INPUT_H
+#include "model/good_run.h"
+#include "post/figures/compare.h"
+#include "study/column.h"
 #include "study/config.h"
-#include "study/fit/drop/kinds.h"
-#include "post/figures/reference.h"
+
+/* The numbers of model/good_run.h as the columns give them: the same of the simulation and of the columns.
+ */
+
+/* Logarithms of the values in the units of the keys; NaN where a value is not defined. */
+void sf_drop_values_scale(const sf_columns_figures *values, double y[SF_FIT_SAMPLES]);
+
+/* One entry of the lists `drops` and `predict`: a case, and what was measured. */
 
 enum { SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
 
@@ -32,5 +39,4 @@ typedef struct sf_fit_drop {
 sf_status sf_drop_input_read(const sf_config *config, const config_setting_t *group, bool predicted,
                              int count, sf_fit_drop *drop, sf_error *err);
 void sf_drop_input_free(sf_fit_drop *drop);
-
 #endif

@@ -3,7 +3,7 @@
 
 #include "build_info.h"
 #include "study/fit/drop/inference_report.h"
-#include "study/fit/drop/report_parts.h"
+#include "study/fit/drop/drop_report_parts.h"
 #include "report/gnuplot.h"
 #include <stdlib.h>
 

@@ -1,7 +1,63 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/report_parts.h"
+#include "study/fit/drop/drop_report_parts.h"
 
+#include <gsl/gsl_cdf.h>
 #include <math.h>
+#include <stdlib.h>
+
+#include "build_info.h"
+#include "material/low_density_foam.h"
+#include "report/gnuplot.h"
+#include "study/fit/drop/inference_report.h"
+#include "study/material_file.h"
+
+void sf_report_curve_html(FILE *f, const sf_drop_fit *fit) {
+    double low, high, sum = 0;
+    sf_report_informed_strains(fit, &low, &high);
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        sum += fit->information[b];
+    sf_html_heading(f, "Which strains the drops see");
+    sf_html_note(
+        f,
+        "Nine tenths of the information lie between strains of %.2f and %.2f. Outside, its form and the priors "
+        "determine the curve.",
+        low, high);
+    sf_html_table table = sf_html_table_begin(
+        f, "dense", "strain|>part of the information|>standard deviation of the stress|>before the data");
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%.2f to %.2f", 0.05 * b, 0.05 * (b + 1));
+        sf_html_cell(&table, "%.1f %%", 100 * fit->information[b] / fmax(sum, 1e-300));
+        sf_html_cell(&table, "%.1f %%", 100 * expm1(fit->curve_sd[b]));
+        sf_html_cell(&table, "%.0f %%", 100 * expm1(fit->curve_prior_sd[b]));
+    }
+    sf_html_table_end(&table);
+}
+
+sf_status sf_report_curve_csv(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
+    sf_foam_card card;
+    double sum = 0;
+    FILE *f = sf_staging_open(output, "fit-curve.csv", err);
+    if (!f)
+        return err->status;
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        sum += fit->information[b];
+    if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
+        sf_curve curve;
+        fputs("strain,stress_kPa,low95_kPa,high95_kPa,information\n", f);
+        if (sf_curve_build(&card, 0, &curve, err) == SF_OK)
+            for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+                double strain = 0.05 * (b + 0.5), stress, slope, energy,
+                       band = exp(sf_report_half_width(fit) * fit->curve_sd[b]);
+                sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
+                fprintf(f, "%.3f,%.6g,%.6g,%.6g,%.6g\n", strain, 1e-3 * stress, 1e-3 * stress / band,
+                        1e-3 * stress * band, fit->information[b] / fmax(sum, 1e-300));
+            }
+        sf_curve_free(&curve);
+        sf_foam_card_free(&card);
+    }
+    return sf_staging_close(f, "fit-curve.csv", err);
+}
 
 static void put_response(sf_html_table *table, const sf_drop_fit *fit, int d, int kind) {
     const sf_fit_drop *drop = &fit->input->drop[d];
@@ -210,4 +266,384 @@ void sf_report_drops_print(FILE *f, const sf_drop_fit *fit) {
             fprintf(f, "  FAILED: %s", fit->simulated[d].failure);
         fputc('\n', f);
     }
+}
+
+/* Does the rate of the test say nothing of the rate factor? */
+static bool is_below_reference(const sf_drop_fit *fit, const sf_joint_test *test) {
+    const double *start = fit->input->start;
+    return start[SF_PARAMETER_RATE_FACTOR] > 0 && test->rate < start[SF_PARAMETER_RATE_REFERENCE];
+}
+
+/* Compression tests and cushion curves. */
+void sf_report_joint_html(FILE *f, const sf_drop_fit *fit) {
+    const sf_joint *joint = &fit->input->joint;
+    const double *y = fit->y;
+    if (joint->rows == 0)
+        return;
+    sf_html_heading(f, "Compression tests and cushion curves");
+    sf_html_note(
+        f,
+        "The law at a material point, and as one column of foam under a flat mass. Deviations of a "
+        "test are root mean squares over its largest stress. Below rate_reference the law has no effect of "
+        "the rate.");
+    sf_html_table table =
+        sf_html_table_begin(f, "dense", "test|>rate (1/s)|>± %|>loading|>unloading|>largest strain");
+    for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
+        const sf_joint_test *test = &joint->test[t];
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", test->name);
+        sf_html_cell(&table, "%.3g%s", test->rate,
+                     is_below_reference(fit, test) ? ", below rate_reference" : "");
+        sf_html_number(&table, 1, 100 * test->sd);
+        sf_html_cell(&table, "%.1f %%", 100 * sf_joint_rms(test, false, y));
+        sf_html_number(&table, 3, sf_joint_rms(test, true, y));
+        sf_html_number(&table, 3, test->turn);
+    }
+    sf_html_table_end(&table);
+    table = sf_html_table_begin(
+        f, "dense", "cushion|>static stress (kPa)|>peak measured (g)|>± %|>of the foam (g)|>difference");
+    for (int c = 0; c < joint->cushion_count; c++)
+        for (int k = 0; k < joint->cushion[c].count; k++, y++) {
+            const sf_joint_cushion *cushion = &joint->cushion[c];
+            sf_html_row(&table);
+            sf_html_cell(&table, "%s", cushion->name);
+            sf_html_cell(&table, "%.4g", 1e-3 * cushion->static_stress[k]);
+            sf_html_number(&table, 1, cushion->peak_g[k]);
+            sf_html_number(&table, 1, 100 * cushion->sd);
+            sf_html_number(&table, 1, exp(*y));
+            sf_report_put_difference(&table, *y, cushion->peak_g[k]);
+        }
+    sf_html_table_end(&table);
+}
+
+void sf_report_joint_json(sf_json *j, const sf_drop_fit *fit) {
+    const sf_joint *joint = &fit->input->joint;
+    const double *y = fit->y;
+    sf_json_open(j, "compressions", '[');
+    for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
+        const sf_joint_test *test = &joint->test[t];
+        sf_json_open(j, NULL, '{');
+        sf_json_text(j, "name", test->name);
+        sf_json_text(j, "understood", test->understood);
+        sf_json_number(j, "rate_1_s", test->rate);
+        sf_json_bool(j, "below_rate_reference", is_below_reference(fit, test));
+        sf_json_integer(j, "points", test->count);
+        sf_json_number(j, "loading_rms", sf_joint_rms(test, false, y));
+        sf_json_number(j, "unloading_rms", sf_joint_rms(test, true, y));
+        sf_json_close(j, '}');
+    }
+    sf_json_close(j, ']');
+    sf_json_open(j, "cushions", '[');
+    for (int c = 0; c < joint->cushion_count; c++)
+        for (int k = 0; k < joint->cushion[c].count; k++) {
+            sf_json_open(j, NULL, '{');
+            sf_json_text(j, "name", joint->cushion[c].name);
+            sf_json_number(j, "static_stress_Pa", joint->cushion[c].static_stress[k]);
+            sf_json_number(j, "peak_measured_g", joint->cushion[c].peak_g[k]);
+            sf_json_number(j, "peak_g", exp(*y++));
+            sf_json_close(j, '}');
+        }
+    sf_json_close(j, ']');
+}
+
+void sf_report_joint_print(FILE *f, const sf_drop_fit *fit) {
+    const sf_joint *joint = &fit->input->joint;
+    const double *y = fit->y;
+    for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
+        const sf_joint_test *test = &joint->test[t];
+        fprintf(f, "  %-20s  deviation %.1f %% of the largest stress in loading", test->name,
+                100 * sf_joint_rms(test, false, y));
+        if (test->count > test->loading)
+            fprintf(f, ", %.1f %% in unloading", 100 * sf_joint_rms(test, true, y));
+        if (is_below_reference(fit, test))
+            fputs(" (below rate_reference, where the law has no effect of the rate)", f);
+        fputc('\n', f);
+    }
+    for (int c = 0; c < joint->cushion_count; c++)
+        for (int k = 0; k < joint->cushion[c].count; k++)
+            fprintf(f, "  %-20s  %.4g kPa: peak %.1f g (measured %.4g)\n", joint->cushion[c].name,
+                    1e-3 * joint->cushion[c].static_stress[k], exp(*y++), joint->cushion[c].peak_g[k]);
+}
+
+/* " a_max 59.2 g measured, 58.9 simulated;" */
+static void put_comment(FILE *f, const sf_drop_fit *fit, int d, int kind) {
+    const sf_drop_kind_info *about = sf_drop_kind_get(kind);
+    fprintf(f, " %s %.4g%s%s measured, %.*f simulated;", about->name, fit->input->drop[d].value[kind],
+            *about->unit ? " " : "", about->unit, about->digits, sf_report_response(fit, d, kind));
+}
+
+sf_status sf_report_material(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
+                             const sf_staging *output, sf_error *err) {
+    char *provenance = NULL;
+    size_t size = 0;
+    sf_foam_card card;
+    FILE *f = open_memstream(&provenance, &size);
+    if (!f)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
+    fprintf(f, "Identified by softfall-fit drop %s from %s; everything else is that of its start material.\n",
+            SF_VERSION, input_path);
+    if (average)
+        sf_inference_comment(f, average);
+    for (int d = 0; d < fit->input->drop_count && !fit->input->drop[d].predicted; d++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
+        fprintf(f, "%s:", drop->name);
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            if (!isnan(drop->value[kind]))
+                put_comment(f, fit, d, kind);
+        if (drop->samples > 0)
+            fprintf(f, " measured curve, RMSE %.2f g;", sf_report_curve_rmse(fit, d));
+        fputc('\n', f);
+    }
+    for (int t = 0; t < fit->input->joint.test_count; t++)
+        fprintf(f, "Compression test %s, %.4g 1/s.\n", fit->input->joint.test[t].name,
+                fit->input->joint.test[t].rate);
+    for (int c = 0; c < fit->input->joint.cushion_count; c++)
+        fprintf(f, "Cushion curve %s, %d points.\n", fit->input->joint.cushion[c].name,
+                fit->input->joint.cushion[c].count);
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        sf_estimate_shown e = sf_report_estimate(fit, k);
+        double s = e.about->per_unit;
+        fprintf(f, "%s = %.4g%s%s (95 %%, linearised: %.4g to %.4g; %s)\n", e.about->name, e.value / s,
+                *e.about->unit ? " " : "", e.about->unit, e.low / s, e.high / s, e.about->description);
+    }
+    double low, high;
+    sf_report_informed_strains(fit, &low, &high);
+    fprintf(f,
+            "The drops inform the curve between strains of %.2f and %.2f; beyond, its form "
+            "determines it.\n",
+            low, high);
+    fprintf(f, "Curve: %s.\n", fit->input->form.curve->formula);
+    if (fclose(f) != 0)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
+    const sf_material_text text = {.title = fit->input->title, .provenance = provenance};
+    if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
+        card.informed_strain = high;
+        const sf_material material = sf_foam_material(&card);
+        sf_material_write_checked(output->aside, fit->input->material_name, &material, &text, err);
+        sf_foam_card_free(&card);
+    }
+    free(provenance);
+    return err->status;
+}
+
+double sf_report_half_width(const sf_drop_fit *fit) {
+    return fit->result.scale > 1 ? gsl_cdf_tdist_Pinv(0.975, fit->result.freedom)
+                                 : gsl_cdf_ugaussian_Pinv(0.975);
+}
+
+sf_estimate_shown sf_report_estimate(const sf_drop_fit *fit, int k) {
+    const sf_mapping_result *r = &fit->result;
+    double sd = sqrt(r->covariance[k][k]);
+    return (sf_estimate_shown){.about = sf_parameter_get(fit->input->unknown[k]),
+                               .value = exp(r->u[k]),
+                               .low = exp(r->u[k] - sf_report_half_width(fit) * sd),
+                               .high = exp(r->u[k] + sf_report_half_width(fit) * sd),
+                               .prior = fit->input->prior[k],
+                               .shrinkage = sd / fit->input->prior_sd[k]};
+}
+
+double sf_report_response(const sf_drop_fit *fit, int d, int which) {
+    return exp(fit->y[fit->row[d] + which]);
+}
+
+double sf_report_response_sd(const sf_drop_fit *fit, int d, int which) {
+    return fit->response_sd[fit->row[d] + which];
+}
+
+bool sf_report_shows(const sf_drop_fit *fit, int d, int kind) {
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    return sf_drop_kind_get(kind)->always || !isnan(drop->value[kind]);
+}
+
+const char *sf_report_heading(int kind, char *text, size_t size) {
+    const sf_drop_kind_info *about = sf_drop_kind_get(kind);
+    snprintf(text, size, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
+    return text;
+}
+
+double sf_report_curve_rmse(const sf_drop_fit *fit, int d) {
+    const sf_fit_drop *drop = &fit->input->drop[d];
+    double sum = 0;
+    for (int k = 0; k < drop->samples; k++) {
+        int row = fit->row[d] + SF_FIT_SAMPLES + k;
+        sum += pow(drop->sample_scale * (fit->y[row] - fit->measured[row]), 2);
+    }
+    return drop->samples > 0 ? sqrt(sum / drop->samples) : NAN;
+}
+
+void sf_report_informed_strains(const sf_drop_fit *fit, double *low, double *high) {
+    double sum = 0, part = 0;
+    *low = *high = 0;
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        sum += fit->information[b];
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+        double before = part;
+        part += fit->information[b];
+        if (before < 0.05 * sum && part >= 0.05 * sum)
+            *low = 0.05 * b;
+        if (before < 0.95 * sum && part >= 0.95 * sum)
+            *high = 0.05 * (b + 1);
+    }
+}
+
+void sf_report_put_difference(sf_html_table *table, double scaled, double measured) {
+    if (isnan(measured) || isnan(scaled))
+        sf_html_cell(table, "–");
+    else
+        sf_html_cell(table, "%+.1f %%", 100 * (exp(scaled) / measured - 1));
+}
+
+/* A heading for each unknown parameter after the first one, all of numbers. */
+static sf_html_table begin_matrix(FILE *f, const sf_fit_input *in, const char *first) {
+    char columns[1024];
+    size_t used = (size_t)snprintf(columns, sizeof columns, "%s", first);
+    for (int k = 0; k < in->unknown_count && used < sizeof columns; k++)
+        used += (size_t)snprintf(columns + used, sizeof columns - used, "|>%s",
+                                 sf_parameter_get(in->unknown[k])->name);
+    return sf_html_table_begin(f, "dense", columns);
+}
+
+static void put_correlations(FILE *f, const sf_drop_fit *fit) {
+    sf_html_paragraph(f, "Correlation of their logarithms:");
+    sf_html_table table = begin_matrix(f, fit->input, "");
+    for (int j = 0; j < fit->input->unknown_count; j++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", sf_parameter_get(fit->input->unknown[j])->name);
+        for (int k = 0; k < fit->input->unknown_count; k++)
+            sf_html_cell(&table, "%+.2f",
+                         fit->result.covariance[j][k] /
+                             sqrt(fit->result.covariance[j][j] * fit->result.covariance[k][k]));
+    }
+    sf_html_table_end(&table);
+}
+
+void sf_report_parameters_html(FILE *f, const sf_drop_fit *fit) {
+    sf_html_heading(f, "Parameters");
+    sf_html_note(
+        f,
+        "95 %% intervals (of the logarithm, linearised). A parameter that keeps 90 %% or more of its prior's "
+        "width was hardly seen by the drops.");
+    sf_html_table table = sf_html_table_begin(
+        f, "dense", "parameter|>value|>95 %|>prior|>prior factor (1 sd)|>width left of the prior|meaning");
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        sf_estimate_shown e = sf_report_estimate(fit, k);
+        double s = e.about->per_unit;
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s%s%s", e.about->name, *e.about->unit ? ", " : "", e.about->unit);
+        sf_html_cell(&table, "%.4g", e.value / s);
+        sf_html_cell(&table, "%.4g to %.4g", e.low / s, e.high / s);
+        sf_html_cell(&table, "%.4g", e.prior / s);
+        sf_html_cell(&table, "%.2f", exp(fit->input->prior_sd[k]));
+        sf_html_cell(&table, "%.0f %%", 100 * e.shrinkage);
+        sf_html_cell(&table, "%s", e.about->description);
+    }
+    sf_html_table_end(&table);
+    put_correlations(f, fit);
+}
+
+void sf_report_sensitivities_html(FILE *f, const sf_drop_fit *fit) {
+    const sf_fit_input *in = fit->input;
+    sf_html_heading(f, "Sensitivity");
+    sf_html_note(f, "Change of the response in %% for 1 %% more of the parameter.");
+    sf_html_table table = begin_matrix(f, in, "response");
+    for (int d = 0; d < in->drop_count; d++)
+        for (int which = 0; which < SF_FIT_SAMPLES; which++) {
+            if (!sf_report_shows(fit, d, which))
+                continue;
+            sf_html_row(&table);
+            sf_html_cell(&table, "%s, %s", in->drop[d].name, sf_drop_kind_get(which)->name);
+            for (int k = 0; k < in->unknown_count; k++)
+                sf_html_cell(&table, "%+.3f", fit->gradient[(fit->row[d] + which) * fit->parameters + k]);
+        }
+    sf_html_table_end(&table);
+}
+
+static void json_parameter(sf_json *j, const sf_drop_fit *fit, int k) {
+    sf_estimate_shown e = sf_report_estimate(fit, k);
+    sf_json_open(j, NULL, '{');
+    sf_json_text(j, "name", e.about->name);
+    sf_json_number(j, "value_SI", e.value);
+    sf_json_number(j, "low95_SI", e.low);
+    sf_json_number(j, "high95_SI", e.high);
+    sf_json_number(j, "prior_SI", e.prior);
+    sf_json_number(j, "prior_sd_of_logarithm", fit->input->prior_sd[k]);
+    sf_json_number(j, "sd_of_logarithm", sqrt(fit->result.covariance[k][k]));
+    sf_json_close(j, '}');
+}
+
+void sf_report_parameters_json(sf_json *j, const sf_drop_fit *fit) {
+    sf_json_open(j, "parameters", '[');
+    for (int k = 0; k < fit->input->unknown_count; k++)
+        json_parameter(j, fit, k);
+    sf_json_close(j, ']');
+    sf_json_open(j, "covariance_of_logarithms", '[');
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        sf_json_open(j, NULL, '[');
+        for (int i = 0; i < fit->input->unknown_count; i++)
+            sf_json_number(j, NULL, fit->result.covariance[k][i]);
+        sf_json_close(j, ']');
+    }
+    sf_json_close(j, ']');
+}
+
+void sf_report_parameters_print(FILE *f, const sf_drop_fit *fit) {
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        sf_estimate_shown e = sf_report_estimate(fit, k);
+        double s = e.about->per_unit;
+        fprintf(f, "  %-8s %10.4g %-5s 95 %% linearised: %.4g to %.4g  (%.0f %% of the prior's width)\n",
+                e.about->name, e.value / s, e.about->unit, e.low / s, e.high / s, 100 * e.shrinkage);
+    }
+}
+
+static double peak_time_ms(const sf_series *curve) {
+    int64_t at = 0;
+    for (int64_t k = 1; k < curve->count; k++)
+        if (curve->value[k] > curve->value[at])
+            at = k;
+    return 1e3 * curve->time[at];
+}
+
+static void put_strain_panels(FILE *f) {
+    fputs(
+        "set size 0.5,0.5\nset origin 0,0.46\nset xtics 0.2\n"
+        "set key left top Left reverse samplen 2\nset xlabel 'engineering strain'\nset xrange [0:0.95]\n"
+        "set ylabel 'nominal stress (kPa)'\nset logscale y\n"
+        "plot 'fit-curve.csv' skip 1 u 1:3:4 w filledcurves fc rgb '#c6dbef' t '95 %', '' skip 1 u 1:2 w l "
+        "lw 3 lc rgb '#08519c' t 'loading curve'\n"
+        "unset logscale y\nset origin 0.5,0.46\nunset key\nset ylabel 'information of the drops (share)'\nset yrange [0:*]\n"
+        "set boxwidth 0.045\nset style fill solid 0.6\n"
+        "plot 'fit-curve.csv' skip 1 u 1:5 w boxes lc rgb '#fd8d3c' t 'information by strain'\n",
+        f);
+}
+
+/* Simulated curves; a circle at each measured peak. */
+static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
+    fputs(
+        "set size 1,0.46\nset origin 0,0\nset autoscale\nset xtics auto\nset xrange [0:*]\nset yrange [0:*]\nset xlabel 'time after contact (ms)'\n"
+        "set ylabel 'acceleration (g)'\nset key on\n",
+        f);
+    sf_gnuplot_key(f, fit->input->drop_count + 1, 3);
+    for (int d = 0; d < fit->measured_drops; d++)
+        if (!isnan(fit->input->drop[d].value[SF_FIT_A_MAX]))
+            fprintf(f, "set label '' at %.6g,%.6g point pt 6 ps 2*dot lw 2 lc %d\n",
+                    peak_time_ms(&fit->simulated[d].curve), fit->input->drop[d].value[SF_FIT_A_MAX], d + 1);
+    fputs("plot ", f);
+    for (int d = 0; d < fit->input->drop_count; d++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
+        fprintf(f, "'fit-drops.csv' index %d u 1:2 w l lw 3 dt %d lc %d t '%s%s', ", d,
+                drop->predicted ? 2 : 1, d + 1, drop->name, drop->predicted ? " (predicted)" : "");
+    }
+    fputs("NaN w p pt 6 ps 2*dot lw 2 lc rgb '#404040' t 'measured peak'\n", f);
+}
+
+sf_status sf_report_picture(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
+    FILE *f = sf_gnuplot_begin(output, "fit", 1700, 1350, err);
+    if (!f)
+        return err->status;
+    fprintf(f, "set multiplot title 'Identification from drops: %s'\n", fit->input->material_name);
+    put_strain_panels(f);
+    if (fit->input->drop_count > 0)
+        put_drop_panel(f, fit);
+    fputs("unset multiplot\n", f);
+    return sf_staging_close(f, "fit.gp", err);
 }

@@ -5,7 +5,7 @@
 #include "study/config.h"
 #include "io/plain_file.h"
 #include "case/case.h"
-#include "material/foam.h"
+#include "material/low_density_foam.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

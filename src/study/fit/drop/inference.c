@@ -3,7 +3,7 @@
 
 #include "study/run_folder.h"
 #include "io/process.h"
-#include "material/foam_parameters.h"
+#include "material/foam_card.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>

@@ -1,10 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/form/form.h"
 
-#include "material/curve.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "material/curve.h"
+
+static const sf_parameter_info info[SF_PARAMETER_COUNT] = {
+#define SF_FIT_PARAMETER_ROW(id, name, quantity, unit, per_unit, low, high, prior_sd, description)           \
+    [SF_PARAMETER_##id] = {name, quantity, unit, per_unit, low, high, prior_sd, description},
+    SF_FIT_PARAMETERS(SF_FIT_PARAMETER_ROW, SF_QUANTITY_COUNT)};
+
+const sf_parameter_info *sf_parameter_get(sf_foam_parameter parameter) {
+    return &info[parameter];
+}
+
+sf_foam_parameter sf_parameter_find(const char *name) {
+    int k = 0;
+    while (k < SF_PARAMETER_COUNT && strcmp(info[k].name, name) != 0)
+        k++;
+    return (sf_foam_parameter)k;
+}
 
 static const sf_curve_form *const forms[SF_CURVE_FORMS] = {
 #define SF_CURVE_FORM(form) &sf_form_##form,
@@ -143,3 +160,20 @@ sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value,
     replace_curves(card, strain, stress, rate, ptr);
     return SF_OK;
 }
+
+/* The form `table`: the start material's curve, scaled; its densification law stays. */
+
+static const sf_form_entry entries[] = {{SF_PARAMETER_STRESS_SCALE, 0.3, true},
+                                        {SF_PARAMETER_EXPONENT, 0.3, false}};
+
+static void start(double *value) {
+    value[SF_PARAMETER_STRESS_SCALE] = 1;
+}
+
+const sf_curve_form sf_form_table = {
+    .name = "table",
+    .formula = "the start material's curve times stress_scale",
+    .entry = entries,
+    .entry_count = sizeof entries / sizeof *entries,
+    .start = start,
+};

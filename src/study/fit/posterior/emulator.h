@@ -4,7 +4,7 @@
 #ifndef SF_FIT_POSTERIOR_EMULATOR_H
 #define SF_FIT_POSTERIOR_EMULATOR_H
 
-#include "study/fit/posterior/target.h"
+#include "study/fit/posterior/mixture.h"
 
 enum { SF_EMULATOR_MOST_TERMS = 600 };
 

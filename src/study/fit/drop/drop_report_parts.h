@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of the output of `softfall-fit drop`, one file for what is reported: each writes its share of
- * report.html, fit.json, the text for the terminal and the data of the picture. */
-#ifndef SF_FIT_DROP_REPORT_PARTS_H
-#define SF_FIT_DROP_REPORT_PARTS_H
-
-#include "study/fit/drop/average.h"
-#include "study/fit/drop/drop_fit.h"
+#ifndef SF_STUDY_FIT_DROP_DROP_REPORT_PARTS_H
+#define SF_STUDY_FIT_DROP_DROP_REPORT_PARTS_H
+#include "io/staging.h"
 #include "report/html.h"
 #include "report/json.h"
-#include "io/staging.h"
+#include "study/fit/drop/average.h"
+#include "study/fit/drop/drop_fit.h"
+
+/* The parts of the output of `softfall-fit drop`, one file for what is reported: each writes its share of
+ * report.html, fit.json, the text for the terminal and the data of the picture. */
 
 /* ---- numbers that every form shows: report_numbers.c ---- */
 
@@ -74,5 +74,4 @@ sf_status sf_report_material(const sf_drop_fit *fit, const sf_drop_average *aver
                              const sf_staging *output, sf_error *err);
 /* fit.gp, the script of the picture. */
 sf_status sf_report_picture(const sf_drop_fit *fit, const sf_staging *output, sf_error *err);
-
 #endif

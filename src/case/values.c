@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/print.h"
+#include "case/values.h"
 
-#include "case/keys.h"
-#include "base/unit_text.h"
-#include "material/laws.h"
 #include <stdbool.h>
 #include <string.h>
+
+#include "base/units.h"
+#include "case/keys.h"
+#include "material/laws.h"
 
 static void print_text(FILE *file, const char *text) {
     fputc('"', file);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "material/foam_parameters.h"
+#include "material/foam_card.h"
 
 #include "material/unloading.h"
 

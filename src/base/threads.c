@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/openmp_environment.h"
+#include "base/threads.h"
 
 #include <stdbool.h>
 #include <stddef.h>
