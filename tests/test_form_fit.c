@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit compression with a form of the loading curve: a foam of known parameters, tested by the
- * solver's law at two rates, is found; the main facts of docs/identification.md about foams of public
+ * solver's law at two rates, is found; the main facts of docs/foams.md about foams of public
  * sources; refusals and files. */
 #include "study/fit/compression/form_fit.h"
 #include "study/fit/form/gas.h"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Fits every form of the loading curve to every foam of examples/data that was pressed, into out/foams, and prints the
-# tables of docs/identification.md: measured curves against each other, loading, loops, rates.
+# tables of docs/foams.md: measured curves against each other, loading, loops, rates.
 #
 #     tools/foams_table.sh             40 s of processor time
-#     tools/foams_table.sh --docs      the same, and writes the tables into docs/identification.md
+#     tools/foams_table.sh --docs      the same, and writes the tables into docs/foams.md
 #
 # The programs are those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
@@ -25,7 +25,7 @@ import sys
 from results_table import replace_table
 
 PROGRAM, OUT, DATA = sys.argv[1], "out/foams", os.path.abspath("examples/data")
-DOCUMENT = "docs/identification.md"
+DOCUMENT = "docs/foams.md"
 
 # name in the tables: files with their rates (1/s); density (kg/m3), which no figure here depends on but where solid_density is given
 FOAMS = {
