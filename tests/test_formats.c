@@ -54,18 +54,17 @@ static void put_figures(FILE *f) {
     const sf_figure *figure = sf_figure_list(&count);
     fputs("| key | meaning |\n|---|---|\n", f);
     for (size_t k = 0; k < count; k++) {
-        fprintf(f, "| `%s` | ", figure[k].key);
-        put_meaning(f, figure[k].meaning, "");
+        fprintf(f, "| `%s` | ", figure[k].row.key);
+        put_meaning(f, figure[k].row.meaning, "");
     }
 }
 
 static void put_layer_figures(FILE *f) {
-    size_t count;
-    const sf_layer_figure *figure = sf_layer_figure_list(&count);
+    sf_rows rows = sf_layer_figure_rows();
     fputs("| key | meaning |\n|---|---|\n", f);
-    for (size_t k = 0; k < count; k++) {
-        fprintf(f, "| `%s` | ", figure[k].key);
-        put_meaning(f, figure[k].meaning, "");
+    for (size_t k = 0; k < rows.count; k++) {
+        fprintf(f, "| `%s` | ", rows.row[k].key);
+        put_meaning(f, rows.row[k].meaning, "");
     }
 }
 

@@ -21,24 +21,9 @@ static sf_status check_filter(double filter, sf_error *err) {
                    filter);
 }
 
-/* Does sf_figures hold it as a number? */
+/* True if the library offers the figure: a number of sf_figures. */
 static bool is_offered(const sf_figure *figure) {
-    return !figure->fact && figure->type != SF_FIGURE_TEXT;
-}
-
-static double value_of(const sf_figure *figure, const sf_figures *f) {
-    const char *place = (const char *)f + figure->offset;
-    switch (figure->type) {
-    case SF_FIGURE_DOUBLE:
-        return *(const double *)place * figure->factor;
-    case SF_FIGURE_INTEGER:
-        return (double)*(const int64_t *)place;
-    case SF_FIGURE_BOOL:
-        return *(const bool *)place;
-    case SF_FIGURE_TEXT:
-        break;
-    }
-    return NAN;
+    return !figure->fact && figure->row.type != SF_ROW_TEXT;
 }
 
 static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
@@ -50,8 +35,8 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
     softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
     for (size_t k = 0; made && k < count; k++)
         if (is_offered(&list[k])) {
-            made->figure[made->count] = (softfall_quantity){list[k].key, "", list[k].meaning, 1};
-            made->value[made->count++] = value_of(&list[k], &f);
+            made->figure[made->count] = (softfall_quantity){list[k].row.key, "", list[k].row.meaning, 1};
+            made->value[made->count++] = sf_row_number(&list[k].row, &f);
         }
     sf_figures_free(&f);
     return err->status;

@@ -30,8 +30,8 @@ static void put_figures(FILE *out, const sf_results *r, const sf_figures *f) {
     size_t count;
     const sf_figure *list = sf_figure_list(&count);
     for (size_t k = 0; k < count; k++)
-        if (list[k].type != SF_FIGURE_TEXT)
-            fprintf(out, "%s %a\n", list[k].key, sf_figure_number(&list[k], r, f));
+        if (list[k].row.type != SF_ROW_TEXT)
+            fprintf(out, "%s %a\n", list[k].row.key, sf_figure_number(&list[k], r, f));
 }
 
 /* Not synchronised with the disk: the end says whether it is whole. */
@@ -98,8 +98,8 @@ static bool take_figures(char **rest, sf_run_record *out) {
     out->figure = sf_alloc(&none, count, sizeof *out->figure, "figures");
     for (size_t k = 0; out->figure && k < count; k++) {
         char *end = NULL;
-        const char *value = list[k].type == SF_FIGURE_TEXT ? NULL : take_line(rest, list[k].key);
-        if (list[k].type != SF_FIGURE_TEXT && !value)
+        const char *value = list[k].row.type == SF_ROW_TEXT ? NULL : take_line(rest, list[k].row.key);
+        if (list[k].row.type != SF_ROW_TEXT && !value)
             return false;
         out->figure[k] = value ? strtod(value, &end) : NAN;
         if (value && (end == value || *end))

@@ -339,15 +339,46 @@ static sf_status fit_all(const sf_compare_options *options, const sf_series *mod
         return err->status;
     for (int64_t k = -1; k < options->region_count; k++) {
         sf_region region = k < 0 ? window : options->regions[k];
-        for (int j = 0; j < 2; j++)
+        for (int j = 0; j < 2; j++) {
+            sf_fit *fit = &c->fits[c->fit_count++];
             if (sf_compare_fit(&c->measured, model, options->left, options->flight, c->shift, region,
-                               intervals[j], &c->fits[c->fit_count++], err))
+                               intervals[j], fit, err) != SF_OK)
                 return err->status;
+            fit->is_window = k < 0;
+            snprintf(fit->span, sizeof fit->span, "%.3f to %.3f%s", region.begin * 1e3, region.end * 1e3,
+                     k < 0 ? " window" : "");
+        }
     }
     return SF_OK;
 }
 
-/* The measured curve, as it is compared. */
+static sf_value kind_of_region(const void *record) {
+    return sf_value_text(((const sf_fit *)record)->is_window ? "window" : "region");
+}
+
+sf_rows sf_fit_rows(void) {
+    static const sf_row rows[] = {
+        {.name = "measured time", .unit = "ms", SF_ROW_OF(TEXT, sf_fit, span)},
+        {.key = "region", .type = SF_ROW_STRING, .value = kind_of_region},
+        {.key = "t1_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_fit, region.begin)},
+        {.key = "t2_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_fit, region.end)},
+        {.key = "first_sample_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_fit, first)},
+        {.key = "last_sample_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_fit, last)},
+        {.key = "interval_ms",
+         .factor = 1e3,
+         .name = "interval",
+         .unit = "ms",
+         .format = "%.2f",
+         SF_ROW_OF(NUMBER, sf_fit, interval)},
+        {.key = "samples", .name = "samples", SF_ROW_OF(COUNT, sf_fit, count)},
+        {.key = "samples_in_free_flight", .name = "in free flight", SF_ROW_OF(COUNT, sf_fit, flight)},
+        {.key = "r2", .name = "R²", .format = "%.4f", SF_ROW_OF(NUMBER, sf_fit, r2)},
+        {.key = "rmse_g", .name = "RMSE", .unit = "g", .format = "%.3f", SF_ROW_OF(NUMBER, sf_fit, rmse_g)},
+    };
+    return SF_ROWS(rows);
+}
+
+/* Reads the measured curve as it is compared. */
 static sf_status read_measured(const sf_compare_options *options, sf_comparison *c, sf_error *err) {
     sf_reference reference;
     if (sf_reference_read(&options->reference, &reference, err) != SF_OK)

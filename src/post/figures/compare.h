@@ -5,6 +5,7 @@
 
 #include "post/figures/injury.h"
 #include "post/figures/signal.h"
+#include "report/row.h"
 
 /* A measured acceleration from a CSV file (io/table_csv.h): a time and an acceleration, positive while the
  * missile is slowed down, in any unit that the heading names. It is treated like the model's curve: sampled
@@ -55,6 +56,8 @@ typedef struct sf_region {
 
 typedef struct sf_fit {
     sf_region region; /* as asked for */
+    bool is_window;   /* the region is the window of the options */
+    char span[48];    /* the region in ms, for tables */
     double first;     /* s, first sample */
     double last;      /* s */
     double interval;  /* s */
@@ -97,6 +100,9 @@ sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count
  * % and 10 % of its peak, before the peak, extrapolated to zero. SF_ERR_INPUT naming `name` if the curve has
  * no such rise. */
 sf_status sf_contact_instant(const sf_series *curve, const char *name, double *instant, sf_error *err);
+
+/* The rows of an sf_fit; static storage. */
+sf_rows sf_fit_rows(void);
 
 /* One region at one sampling interval (s). `left`: the missile is off the pad at the model's end, and stays
  * in free flight; `flight` (g): the model there, and before its curve. SF_ERR_INPUT if the region is not

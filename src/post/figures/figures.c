@@ -11,45 +11,35 @@
 static const double FREE_FLIGHT = 5e-3; /* s, at least, before the first contact */
 
 const sf_figure *sf_figure_list(size_t *count) {
-#define IN_FIGURES(member) false, offsetof(sf_figures, member)
-#define IN_RESULTS(member) true, offsetof(sf_results, member)
-#define PLACE_NUMBER(member) SF_FIGURE_DOUBLE, IN_FIGURES(member)
-#define PLACE_INNER(member) SF_FIGURE_DOUBLE, IN_FIGURES(member)
-#define PLACE_COUNT(member) SF_FIGURE_INTEGER, IN_FIGURES(member)
-#define PLACE_FLAG(member) SF_FIGURE_BOOL, IN_FIGURES(member)
-#define PLACE_FACT(member) SF_FIGURE_DOUBLE, IN_RESULTS(member)
-#define PLACE_FACT_COUNT(member) SF_FIGURE_INTEGER, IN_RESULTS(member)
-#define PLACE_FACT_TEXT(member) SF_FIGURE_TEXT, IN_RESULTS(member)
-#define FIGURE(kind, member, key, factor, meaning) {key, PLACE_##kind(member), factor, meaning},
+#define PLACE_NUMBER(member) false, SF_ROW_OF(NUMBER, sf_figures, member)
+#define PLACE_INNER(member) false, SF_ROW_OF(NUMBER, sf_figures, member)
+#define PLACE_COUNT(member) false, SF_ROW_OF(COUNT, sf_figures, member)
+#define PLACE_FLAG(member) false, SF_ROW_OF(FLAG, sf_figures, member)
+#define PLACE_FACT(member) true, SF_ROW_OF(NUMBER, sf_results, member)
+#define PLACE_FACT_COUNT(member) true, SF_ROW_OF(COUNT, sf_results, member)
+#define PLACE_FACT_TEXT(member) true, SF_ROW_OF(TEXT, sf_results, member)
+#define ROW(is_fact, place_type, place_offset, row_key, row_factor, ...)                                     \
+    {{.key = row_key, place_type, place_offset, .factor = row_factor, .meaning = __VA_ARGS__}, is_fact},
+#define EXPAND(...) ROW(__VA_ARGS__)
+#define FIGURE(kind, member, key, factor, ...) EXPAND(PLACE_##kind(member), key, factor, __VA_ARGS__)
     static const sf_figure list[] = {SF_FIGURES(FIGURE)};
     *count = sizeof list / sizeof list[0];
     return list;
 }
 
-const void *sf_figure_place(const sf_figure *figure, const sf_results *results, const sf_figures *figures) {
-    return (figure->fact ? (const char *)results : (const char *)figures) + figure->offset;
+const void *sf_figure_record(const sf_figure *figure, const sf_results *results, const sf_figures *figures) {
+    return figure->fact ? (const void *)results : (const void *)figures;
 }
 
 double sf_figure_number(const sf_figure *figure, const sf_results *results, const sf_figures *figures) {
-    const void *place = sf_figure_place(figure, results, figures);
-    switch (figure->type) {
-    case SF_FIGURE_DOUBLE:
-        return isfinite(*(const double *)place) ? *(const double *)place * figure->factor : NAN;
-    case SF_FIGURE_INTEGER:
-        return *(const int64_t *)place < 0 ? NAN : (double)*(const int64_t *)place;
-    case SF_FIGURE_BOOL:
-        return *(const bool *)place;
-    case SF_FIGURE_TEXT:
-        break;
-    }
-    return NAN;
+    return sf_row_number(&figure->row, sf_figure_record(figure, results, figures));
 }
 
 const sf_figure *sf_figure_find(const char *key) {
     size_t count;
     const sf_figure *figure = sf_figure_list(&count);
     for (size_t k = 0; k < count; k++)
-        if (strcmp(figure[k].key, key) == 0)
+        if (strcmp(figure[k].row.key, key) == 0)
             return &figure[k];
     return NULL;
 }
@@ -322,8 +312,8 @@ static void set_undefined(sf_figures *f) {
     size_t count;
     const sf_figure *figure = sf_figure_list(&count);
     for (size_t k = 0; k < count; k++)
-        if (!figure[k].fact && figure[k].type == SF_FIGURE_DOUBLE)
-            *(double *)((char *)f + figure[k].offset) = NAN;
+        if (!figure[k].fact && figure[k].row.type == SF_ROW_NUMBER)
+            *(double *)((char *)f + figure[k].row.offset) = NAN;
 }
 
 /* Figures of every run, free or driven. */

@@ -10,6 +10,7 @@
 #include "post/figures/injury.h"
 #include "post/figures/layer_figures.h"
 #include "post/results/results.h"
+#include "report/row.h"
 #include <stddef.h>
 
 /* X(kind, member, key in summary.json, factor from SI to the unit in the key, meaning), in the order of
@@ -18,83 +19,104 @@
  * FACT, FACT_COUNT and FACT_TEXT are members of sf_results (double, int64_t, text). */
 /* clang-format off */
 #define SF_FIGURES(X)                                                                                                  \
-    X(INNER, injury.a_max_g, "a_max_g", 1, "largest deceleration, filtered like the next ones")                        \
-    X(INNER, injury.a_max_time, "a_max_time_ms", 1e3, "its time")                                                      \
-    X(INNER, injury.hic.value, "hic", 1, "head injury criterion, no limit of the window")                              \
-    X(INNER, injury.hic.t1, "hic_t1_ms", 1e3, "begin of its window")                                                   \
-    X(INNER, injury.hic.t2, "hic_t2_ms", 1e3, "end of its window")                                                     \
-    X(INNER, injury.hic15.value, "hic15", 1, "head injury criterion, window of 15 ms at most")                         \
-    X(INNER, injury.hic15.t1, "hic15_t1_ms", 1e3, "begin of its window")                                               \
-    X(INNER, injury.hic15.t2, "hic15_t2_ms", 1e3, "end of its window")                                                 \
-    X(INNER, injury.hic36.value, "hic36", 1, "head injury criterion, window of 36 ms at most")                         \
-    X(INNER, injury.hic36.t1, "hic36_t1_ms", 1e3, "begin of its window")                                               \
-    X(INNER, injury.hic36.t2, "hic36_t2_ms", 1e3, "end of its window")                                                 \
-    X(INNER, injury.gadd, "gadd", 1, "Gadd severity index")                                                            \
-    X(INNER, injury.clip_contiguous_g, "clip_3ms_g", 1, "exceeded for 3 ms without a break")                           \
-    X(INNER, injury.clip_cumulative_g, "clip_3ms_cumulative_g", 1, "exceeded for 3 ms in all")                         \
-    X(INNER, injury_raw.a_max_g, "a_max_raw_g", 1, "largest deceleration of the raw curve")                            \
-    X(INNER, injury_raw.hic.value, "hic_raw", 1, "head injury criterion of the raw curve, no limit of the window")     \
+    X(INNER, injury.a_max_g, "a_max_g", 1, "largest deceleration, filtered like the next ones", \
+      .name = "a_max", .unit = "g", .format = "%.2f") \
+    X(INNER, injury.a_max_time, "a_max_time_ms", 1e3, "its time") \
+    X(INNER, injury.hic.value, "hic", 1, "head injury criterion, no limit of the window", \
+      .name = "HIC", .format = "%.1f") \
+    X(INNER, injury.hic.t1, "hic_t1_ms", 1e3, "begin of its window") \
+    X(INNER, injury.hic.t2, "hic_t2_ms", 1e3, "end of its window") \
+    X(INNER, injury.hic15.value, "hic15", 1, "head injury criterion, window of 15 ms at most", \
+      .name = "HIC15", .format = "%.1f") \
+    X(INNER, injury.hic15.t1, "hic15_t1_ms", 1e3, "begin of its window") \
+    X(INNER, injury.hic15.t2, "hic15_t2_ms", 1e3, "end of its window") \
+    X(INNER, injury.hic36.value, "hic36", 1, "head injury criterion, window of 36 ms at most", \
+      .name = "HIC36", .format = "%.1f") \
+    X(INNER, injury.hic36.t1, "hic36_t1_ms", 1e3, "begin of its window") \
+    X(INNER, injury.hic36.t2, "hic36_t2_ms", 1e3, "end of its window") \
+    X(INNER, injury.gadd, "gadd", 1, "Gadd severity index", \
+      .name = "Gadd index", .format = "%.1f") \
+    X(INNER, injury.clip_contiguous_g, "clip_3ms_g", 1, "exceeded for 3 ms without a break", \
+      .name = "3 ms clip", .unit = "g", .format = "%.2f") \
+    X(INNER, injury.clip_cumulative_g, "clip_3ms_cumulative_g", 1, "exceeded for 3 ms in all") \
+    X(INNER, injury_raw.a_max_g, "a_max_raw_g", 1, "largest deceleration of the raw curve", \
+      .name = "a_max, raw", .unit = "g", .format = "%.2f") \
+    X(INNER, injury_raw.hic.value, "hic_raw", 1, "head injury criterion of the raw curve, no limit of the window") \
     X(COUNT, raw_peak_rows, "a_max_raw_rows", 1, "rows around that peak above half of it: 1 or 2 are an artefact of the time step") \
     X(NUMBER, peak_resultant, "peak_resultant_g", 1, "largest resultant acceleration of the centre of mass of a free missile, its axes filtered: a_max_g of it; like the next ones undefined of a guided one") \
-    X(NUMBER, peak_angular_acceleration, "peak_angular_acceleration_rad_s2", 1, "largest resultant angular acceleration, its axes filtered") \
+    X(NUMBER, peak_angular_acceleration, "peak_angular_acceleration_rad_s2", 1, "largest resultant angular acceleration, its axes filtered", \
+      .name = "angular acceleration", .unit = "rad/s2", .format = "%.1f") \
     X(NUMBER, peak_angular_acceleration_time, "peak_angular_acceleration_time_ms", 1e3, "its time") \
-    X(NUMBER, peak_angular_velocity, "peak_angular_velocity_rad_s", 1, "largest resultant angular velocity, its axes filtered") \
+    X(NUMBER, peak_angular_velocity, "peak_angular_velocity_rad_s", 1, "largest resultant angular velocity, its axes filtered", \
+      .name = "angular velocity", .unit = "rad/s", .format = "%.2f") \
     X(NUMBER, peak_angular_velocity_time, "peak_angular_velocity_time_ms", 1e3, "its time") \
-    X(NUMBER, cfc, "cfc", 1, "channel frequency class of the filter")                                                  \
-    X(NUMBER, rate, "sampling_rate_Hz", 1, "sampling of the filtered curve")                                           \
-    X(NUMBER, v0, "v0_m_s", 1, "speed at contact")                                                                     \
-    X(NUMBER, v_rebound, "v_rebound_m_s", 1, "speed upwards in the first row after contact; of a free missile that of its centre, along z")                           \
-    X(NUMBER, rebound_time, "rebound_time_ms", 1e3, "time of that row")                                                \
-    X(NUMBER, absorbed_energy, "absorbed_energy_J", 1, "m (v0^2 - v_rebound^2) / 2; of a free missile the loss of its kinetic energy")                                   \
-    X(NUMBER, absorbed_energy_fraction, "absorbed_energy_fraction", 1, "that of m v0^2 / 2; of a free missile of its first kinetic energy")                           \
+    X(NUMBER, cfc, "cfc", 1, "channel frequency class of the filter") \
+    X(NUMBER, rate, "sampling_rate_Hz", 1, "sampling of the filtered curve") \
+    X(NUMBER, v0, "v0_m_s", 1, "speed at contact") \
+    X(NUMBER, v_rebound, "v_rebound_m_s", 1, "speed upwards in the first row after contact; of a free missile that of its centre, along z", \
+      .name = "rebound speed", .unit = "m/s", .format = "%.3f") \
+    X(NUMBER, rebound_time, "rebound_time_ms", 1e3, "time of that row") \
+    X(NUMBER, absorbed_energy, "absorbed_energy_J", 1, "m (v0^2 - v_rebound^2) / 2; of a free missile the loss of its kinetic energy") \
+    X(NUMBER, absorbed_energy_fraction, "absorbed_energy_fraction", 1, "that of m v0^2 / 2; of a free missile of its first kinetic energy", \
+      .name = "absorbed energy", .unit = "%", .format = "%.1f", .shown = 100) \
     X(NUMBER, absorbed_density, "absorbed_energy_per_volume_kJ_m3", 1e-3, "that energy / (largest contact_area x thickness): per unit of pad volume under the missile") \
-    X(NUMBER, max_indentation, "max_indentation_mm", 1e3, "largest indentation")                                       \
-    X(NUMBER, max_indentation_time, "max_indentation_time_ms", 1e3, "its time")                                        \
-    X(NUMBER, max_mean_strain, "max_mean_strain", 1, "largest indentation / thickness")                                \
-    X(NUMBER, max_local_strain, "max_local_strain", 1, "largest of largest_compression in the history")                \
-    X(NUMBER, max_local_strain_time, "max_local_strain_time_ms", 1e3, "its time")                                      \
-    X(NUMBER, local_strain_excess, "local_strain_excess", 1, "max_local_strain - max_mean_strain")                     \
+    X(NUMBER, max_indentation, "max_indentation_mm", 1e3, "largest indentation", \
+      .name = "largest indentation", .unit = "mm", .format = "%.2f") \
+    X(NUMBER, max_indentation_time, "max_indentation_time_ms", 1e3, "its time") \
+    X(NUMBER, max_mean_strain, "max_mean_strain", 1, "largest indentation / thickness", \
+      .name = "  over thickness", .format = "%.3f") \
+    X(NUMBER, max_local_strain, "max_local_strain", 1, "largest of largest_compression in the history", \
+      .name = "largest local strain", .format = "%.3f") \
+    X(NUMBER, max_local_strain_time, "max_local_strain_time_ms", 1e3, "its time") \
+    X(NUMBER, local_strain_excess, "local_strain_excess", 1, "max_local_strain - max_mean_strain") \
     X(NUMBER, local_collapse, "local_collapse", 1, "largest excess of a node's compression over the median of its neighbours (nodes of a common cell), at /peak") \
     X(NUMBER, energy_beyond_data, "energy_beyond_data", 1, "share of the foam's energy, at /peak, in nodes compressed beyond `informed_strain`, each by that of its layer") \
-    X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F")                                             \
-    X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point")                    \
+    X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F") \
+    X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point") \
     X(NUMBER, below_anvil, "below_anvil_mm", 1e3, "largest depth of a node below the anvil's plane, in the frames and at /peak; undefined without an anvil") \
-    X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next four")                    \
-    X(NUMBER, momentum_error, "momentum_error", 1, "of the momentum balance")                                          \
-    X(NUMBER, momentum_error_space, "momentum_error_space", 1, "of the momentum in space")                             \
-    X(NUMBER, angular_momentum_error, "angular_momentum_error", 1, "of the angular momentum")                          \
-    X(NUMBER, constraint_residual, "constraint_residual_m_s", 1, "|G v|")                                              \
+    X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next four", \
+      .name = "energy error", .unit = "%", .format = "%.4f", .shown = 100) \
+    X(NUMBER, momentum_error, "momentum_error", 1, "of the momentum balance") \
+    X(NUMBER, momentum_error_space, "momentum_error_space", 1, "of the momentum in space") \
+    X(NUMBER, angular_momentum_error, "angular_momentum_error", 1, "of the angular momentum") \
+    X(NUMBER, constraint_residual, "constraint_residual_m_s", 1, "|G v|") \
     X(NUMBER, internal_energy_peak, "internal_energy_peak_J", 1, "largest stored + hysteresis + viscous + stabilisation") \
-    X(NUMBER, internal_energy_peak_time, "internal_energy_peak_time_ms", 1e3, "its time")                              \
-    X(NUMBER, stabilisation_energy_fraction, "stabilisation_energy_fraction", 1, "work of the stabilisation at that time, of that energy") \
-    X(NUMBER, contact_energy_fraction, "contact_energy_fraction", 1, "energy lost in contact at that time, of that energy") \
-    X(NUMBER, area, "section_mm2", 1e6, "mean cross-section: volume of the whole pad at rest / thickness")             \
-    X(NUMBER, peak_force, "peak_force_N", 1, "largest contact force (prescribed motion, like the next four)")          \
-    X(NUMBER, peak_force_time, "peak_force_time_ms", 1e3, "its time")                                                  \
-    X(NUMBER, peak_stress, "peak_stress_kPa", 1e-3, "that force / mean cross-section")                                 \
-    X(NUMBER, work, "work_J", 1, "largest work of the motion on the pad so far")                                       \
-    X(NUMBER, returned_energy_fraction, "returned_energy_fraction", 1, "of it, given back by the end; undefined if the run ended in contact") \
-    X(FACT_TEXT, status, "status", 1, "how the run ended: as /summary/status in results.h5")                           \
-    X(FLAG, touched, "touched", 1, "the missile touched the pad")                                                      \
-    X(FLAG, driven, "prescribed_motion", 1, "the missile's motion was prescribed")                                     \
+    X(NUMBER, internal_energy_peak_time, "internal_energy_peak_time_ms", 1e3, "its time") \
+    X(NUMBER, stabilisation_energy_fraction, "stabilisation_energy_fraction", 1, "work of the stabilisation at that time, of that energy", \
+      .name = "stabilisation energy", .unit = "% of the internal energy", .format = "%.3f", .shown = 100) \
+    X(NUMBER, contact_energy_fraction, "contact_energy_fraction", 1, "energy lost in contact at that time, of that energy", \
+      .name = "contact energy", .unit = "% of the internal energy", .format = "%.3f", .shown = 100) \
+    X(NUMBER, area, "section_mm2", 1e6, "mean cross-section: volume of the whole pad at rest / thickness") \
+    X(NUMBER, peak_force, "peak_force_N", 1, "largest contact force (prescribed motion, like the next four)", \
+      .name = "largest force", .unit = "N", .format = "%.2f") \
+    X(NUMBER, peak_force_time, "peak_force_time_ms", 1e3, "its time") \
+    X(NUMBER, peak_stress, "peak_stress_kPa", 1e-3, "that force / mean cross-section", \
+      .name = "  over mean section", .unit = "kPa", .format = "%.2f") \
+    X(NUMBER, work, "work_J", 1, "largest work of the motion on the pad so far", \
+      .name = "work", .unit = "J", .format = "%.4f") \
+    X(NUMBER, returned_energy_fraction, "returned_energy_fraction", 1, "of it, given back by the end; undefined if the run ended in contact", \
+      .name = "  given back", .unit = "%", .format = "%.1f", .shown = 100) \
+    X(FACT_TEXT, status, "status", 1, "how the run ended: as /summary/status in results.h5") \
+    X(FLAG, touched, "touched", 1, "the missile touched the pad") \
+    X(FLAG, driven, "prescribed_motion", 1, "the missile's motion was prescribed") \
     X(FLAG, turns, "free_missile", 1, "the missile had six degrees of freedom: all acceleration figures, HIC too, are of the resultant") \
     X(FLAG, kinematic, "kinematic_acceleration", 1, "the figures are of the kinematic acceleration, not of the reading of an accelerometer") \
-    X(FLAG, rebounded, "rebounded", 1, "contact had ended before the last row, upwards")                               \
-    X(FACT, contact_time, "contact_time_ms", 1e3, "first contact")                                                     \
-    X(NUMBER, end_time, "end_time_ms", 1e3, "time of the last row of the history")                                     \
-    X(FACT, thickness, "thickness_mm", 1e3, "of the pad")                                                              \
+    X(FLAG, rebounded, "rebounded", 1, "contact had ended before the last row, upwards") \
+    X(FACT, contact_time, "contact_time_ms", 1e3, "first contact") \
+    X(NUMBER, end_time, "end_time_ms", 1e3, "time of the last row of the history") \
+    X(FACT, thickness, "thickness_mm", 1e3, "of the pad") \
     X(FACT, impact_x, "impact_x_mm", 1e3, "x of the impact point: where the missile's lowest point arrives at the pad's top") \
-    X(FACT, impact_y, "impact_y_mm", 1e3, "its y")                                                                     \
-    X(NUMBER, missile_mass, "missile_mass_kg", 1, "of the whole missile")                                              \
-    X(FACT, density, "density_kg_m3", 1, "of the undeformed foam, the mean of layers")                                                     \
+    X(FACT, impact_y, "impact_y_mm", 1e3, "its y") \
+    X(NUMBER, missile_mass, "missile_mass_kg", 1, "of the whole missile") \
+    X(FACT, density, "density_kg_m3", 1, "of the undeformed foam, the mean of layers") \
     X(FACT, informed_strain, "informed_strain", 1, "strain up to which the material's data inform its curve: `material.informed_strain`, or the end of the table; of layers the least") \
-    X(FACT_COUNT, symmetry_factor, "symmetry_factor", 1, "modelled parts that make the whole")                         \
-    X(FACT_COUNT, node_count, "nodes", 1, "of the modelled part, like the next two")                                   \
-    X(FACT_COUNT, cell_count, "cells", 1, "of the background mesh")                                                    \
-    X(FACT_COUNT, interactions, "interactions", 1, "(domain, node) pairs")                                             \
-    X(FACT_COUNT, frame_count, "frames", 1, "frames in results.h5 that can be used")                                   \
-    X(COUNT, steps, "steps", 1, "time steps")                                                                          \
-    X(FACT, wall_time, "wall_s", 1, "time of the run")                                                                 \
+    X(FACT_COUNT, symmetry_factor, "symmetry_factor", 1, "modelled parts that make the whole") \
+    X(FACT_COUNT, node_count, "nodes", 1, "of the modelled part, like the next two") \
+    X(FACT_COUNT, cell_count, "cells", 1, "of the background mesh") \
+    X(FACT_COUNT, interactions, "interactions", 1, "(domain, node) pairs") \
+    X(FACT_COUNT, frame_count, "frames", 1, "frames in results.h5 that can be used") \
+    X(COUNT, steps, "steps", 1, "time steps") \
+    X(FACT, wall_time, "wall_s", 1, "time of the run") \
     X(FACT_COUNT, threads, "threads", 1, "OpenMP threads")
 /* clang-format on */
 
@@ -118,12 +140,8 @@ typedef struct sf_figures {
 
 /* A line of the list. */
 typedef struct sf_figure {
-    const char *key;
-    enum { SF_FIGURE_DOUBLE, SF_FIGURE_INTEGER, SF_FIGURE_BOOL, SF_FIGURE_TEXT } type;
-    bool fact;     /* in sf_results instead of sf_figures */
-    size_t offset; /* there */
-    double factor;
-    const char *meaning;
+    sf_row row;
+    bool fact; /* in sf_results instead of sf_figures */
 } sf_figure;
 
 /* g: the acceleration that a_max and HIC are of, not filtered, in a row of the history. */
@@ -134,8 +152,8 @@ const sf_figure *sf_figure_list(size_t *count);
 /* The line of that key; NULL if there is none. */
 const sf_figure *sf_figure_find(const char *key);
 
-/* Where the value of a line is. */
-const void *sf_figure_place(const sf_figure *figure, const sf_results *results, const sf_figures *figures);
+/* Returns the record of the row: `results` or `figures`. */
+const void *sf_figure_record(const sf_figure *figure, const sf_results *results, const sf_figures *figures);
 
 /* The number that summary.json shows, true as 1; NaN: not defined, or a text. */
 double sf_figure_number(const sf_figure *figure, const sf_results *results, const sf_figures *figures);

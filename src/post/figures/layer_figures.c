@@ -9,18 +9,24 @@
 
 static const double LARGE_SLIP = 0.02; /* of the thickness */
 
-static const sf_layer_figure list[] = {
-#define ENTRY(member, key, factor, meaning) {key, factor, offsetof(sf_layer_figures, member), meaning},
-    SF_LAYER_FIGURES(ENTRY)
+static const sf_row list[] = {{.key = "name",
+                               .name = "layer",
+                               SF_ROW_OF(STRING, sf_layer_figures, name),
+                               .meaning = "of the layer in the case"},
+#define ENTRY(member, row_key, row_factor, ...)                                                              \
+    {.key = row_key,                                                                                         \
+     .factor = row_factor,                                                                                   \
+     SF_ROW_OF(NUMBER, sf_layer_figures, member),                                                            \
+     .meaning = __VA_ARGS__},
+                              SF_LAYER_FIGURES(ENTRY)
 #undef ENTRY
 };
 
-const sf_layer_figure *sf_layer_figure_list(size_t *count) {
-    *count = sizeof list / sizeof list[0];
-    return list;
+sf_rows sf_layer_figure_rows(void) {
+    return SF_ROWS(list);
 }
 
-/* What the solver has summed up by layer until the last frame. */
+/* Takes the sums of the solver by layer until the last frame. */
 static void take_sums(const sf_results *r, sf_layer_figures *f) {
     for (int k = 0; k < r->layer_count; k++) {
         const sf_layer_sums *sums = &r->layer_sums[k];
@@ -32,7 +38,7 @@ static void take_sums(const sf_results *r, sf_layer_figures *f) {
     }
 }
 
-/* Energies of the curves at the peak. */
+/* Adds the energies of the curves at the peak. */
 static void add_peak(const sf_results *r, const double *compression, const double *energy_density,
                      sf_layer_figures *f) {
     double all = 0;
@@ -60,7 +66,8 @@ sf_layer_figures *sf_layer_figures_compute(const sf_results *r, const double *co
         return NULL;
     for (int k = 0; k < r->layer_count; k++) {
         for (size_t q = 0; q < sizeof list / sizeof list[0]; q++)
-            *(double *)((char *)&f[k] + list[q].offset) = NAN;
+            if (list[q].type == SF_ROW_NUMBER)
+                *(double *)((char *)&f[k] + list[q].offset) = NAN;
         f[k].name = r->layer_name[k];
         f[k].density = r->layer_density[k];
         f[k].informed_strain = r->layer_informed[k];
@@ -88,7 +95,7 @@ static int by_place(const void *a, const void *b) {
     return (p->node > q->node) - (p->node < q->node);
 }
 
-/* Largest distance (m) between nodes that were at one place; `at`: which. */
+/* Returns the largest distance (m) between nodes that were at one place, and one of them in `at`. */
 static double largest_slip(const sf_results *r, const double *displacement, placed_node *places,
                            int64_t *at) {
     double most = 0;

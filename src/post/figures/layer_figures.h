@@ -4,19 +4,25 @@
 #define SF_POST_LAYERS_H
 
 #include "post/results/results.h"
+#include "report/row.h"
 
-/* X(member, key in summary.json, factor from SI to the unit in the key, meaning). */
+/* X(member, key in summary.json, factor from SI to the unit in the key, meaning and, of a row that is
+ * printed, its name, unit and format). */
 /* clang-format off */
 #define SF_LAYER_FIGURES(X)                                                                                            \
-    X(volume, "volume_cm3", 1e6, "of the undeformed layer, whole pad")                                                 \
-    X(density, "density_kg_m3", 1, "of the undeformed material")                                                       \
-    X(max_local_strain, "max_local_strain", 1, "largest compression (1 - smallest principal stretch) of the run")      \
-    X(absorbed_energy, "absorbed_energy_J", 1, "stored, lost and viscous energy in the last frame, whole pad")         \
+    X(volume, "volume_cm3", 1e6, "of the undeformed layer, whole pad", .name = "volume", .unit = "cm³", .format = "%.1f") \
+    X(density, "density_kg_m3", 1, "of the undeformed material", .name = "density", .unit = "kg/m³", .format = "%.1f") \
+    X(max_local_strain, "max_local_strain", 1, "largest compression (1 - smallest principal stretch) of the run",      \
+      .name = "largest strain", .format = "%.3f")                                                                      \
+    X(absorbed_energy, "absorbed_energy_J", 1, "stored, lost and viscous energy in the last frame, whole pad",         \
+      .name = "absorbed", .unit = "J", .format = "%.3f")                                                               \
     X(stored_energy, "stored_energy_J", 1, "of it, recoverable")                                                       \
     X(hysteresis_energy, "hysteresis_energy_J", 1, "of it, lost by the unloading rule")                                \
-    X(viscous_energy, "viscous_energy_J", 1, "of it, viscous work")                                                    \
-    X(energy_share, "energy_share", 1, "of the energy of the foams' curves at /peak")                                  \
-    X(energy_beyond_data, "energy_beyond_data", 1, "share of the layer's own such energy in nodes compressed beyond its `informed_strain`") \
+    X(viscous_energy, "viscous_energy_J", 1, "of it, viscous work", .name = "of it viscous", .unit = "J", .format = "%.3f") \
+    X(energy_share, "energy_share", 1, "of the energy of the foams' curves at /peak",                                  \
+      .name = "share at the peak", .unit = "%", .format = "%.1f", .shown = 100)                                        \
+    X(energy_beyond_data, "energy_beyond_data", 1, "share of the layer's own such energy in nodes compressed beyond its `informed_strain`", \
+      .name = "beyond its data", .unit = "%", .format = "%.1f", .shown = 100)                                          \
     X(informed_strain, "informed_strain", 1, "strain up to which the data of its material inform its curve")
 /* clang-format on */
 
@@ -27,15 +33,8 @@ typedef struct sf_layer_figures {
 } sf_layer_figures;
 #undef SF_LAYER_MEMBER
 
-typedef struct sf_layer_figure {
-    const char *key;
-    double factor;
-    size_t offset; /* of the double in sf_layer_figures */
-    const char *meaning;
-} sf_layer_figure;
-
-/* The list; static storage. */
-const sf_layer_figure *sf_layer_figure_list(size_t *count);
+/* The rows of an sf_layer_figures, its name first; static storage. */
+sf_rows sf_layer_figure_rows(void);
 
 /* [results->layer_count] owned by the caller (free); NULL without layers or on failure. compression and
  * energy_density: [node_count] of /peak, or NULL. */

@@ -116,13 +116,15 @@ static void put_quoted(FILE *out, const char *text, char quote) {
 }
 
 static void put_csv_row(FILE *csv, const overlay *o, const sf_figure *figure) {
-    fprintf(csv, "%s", figure->key);
+    fprintf(csv, "%s", figure->row.key);
     for (int k = 0; k < o->count; k++) {
         const overlay_run *r = &o->run[k];
         double value = sf_figure_number(figure, &r->results, &r->figures);
         fputc(',', csv);
-        if (figure->type == SF_FIGURE_TEXT)
-            put_quoted(csv, sf_figure_place(figure, &r->results, &r->figures), '"');
+        if (figure->row.type == SF_ROW_TEXT)
+            put_quoted(csv,
+                       sf_row_value(&figure->row, sf_figure_record(figure, &r->results, &r->figures)).text,
+                       '"');
         else if (!isnan(value))
             fprintf(csv, "%.9g", value);
     }

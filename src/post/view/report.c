@@ -325,43 +325,37 @@ static void put_verdict(const page *p) {
     sf_html_columns_end(p->file);
 }
 
-/* NaN if the run does not define it; 0 of a text or a flag. */
-static double number_of(const sf_figure *figure, const void *place) {
-    return figure->type == SF_FIGURE_DOUBLE    ? *(const double *)place * figure->factor
-           : figure->type == SF_FIGURE_INTEGER ? (double)*(const int64_t *)place
-                                               : 0;
+static bool is_defined(const page *p, const sf_figure *figure) {
+    return figure->row.type == SF_ROW_TEXT ||
+           sf_row_is_defined(&figure->row, sf_figure_record(figure, p->results, p->figures));
 }
 
 static void put_figure(const page *p, sf_html_table *table, const sf_figure *figure) {
-    const void *place = sf_figure_place(figure, p->results, p->figures);
+    const void *record = sf_figure_record(figure, p->results, p->figures);
+    char text[64];
     sf_html_row(table);
-    sf_html_hint(table, figure->meaning);
-    sf_html_cell(table, "%s", figure->key);
-    if (figure->type == SF_FIGURE_TEXT)
-        sf_html_cell(table, "%.32s", *(const char *)place ? (const char *)place : "–");
-    else if (figure->type == SF_FIGURE_BOOL)
-        sf_html_cell(table, "%s", *(const bool *)place ? "yes" : "no");
-    else if (figure->type == SF_FIGURE_INTEGER)
-        sf_html_cell(table, "%.0f", number_of(figure, place));
+    sf_html_hint(table, figure->row.meaning);
+    sf_html_cell(table, "%s", figure->row.key);
+    if (figure->row.type == SF_ROW_NUMBER)
+        put_number(table, sf_row_number(&figure->row, record));
     else
-        put_number(table, number_of(figure, place));
+        sf_html_cell(table, "%.32s", sf_row_shown(&figure->row, record, "–", text, sizeof text));
 }
 
-/* Those that the run defines, down each of three columns. */
+/* Puts the figures that the run defines, down each of three columns. */
 static void put_figures(const page *p) {
     enum { COLUMNS = 3 };
     size_t count, defined = 0, next = 0;
     const sf_figure *figure = sf_figure_list(&count);
     for (size_t k = 0; k < count; k++)
-        defined +=
-            isfinite(number_of(&figure[k], sf_figure_place(&figure[k], p->results, p->figures))) ? 1 : 0;
+        defined += is_defined(p, &figure[k]) ? 1 : 0;
     sf_html_block_begin(p->file);
     sf_html_heading(p->file, "Figures");
     sf_html_columns_begin(p->file, "");
     for (size_t c = 0; c < COLUMNS; c++) {
         sf_html_table table = sf_html_table_begin(p->file, "dense", "figure|>value");
         for (size_t put = 0; next < count && put < (defined + COLUMNS - 1) / COLUMNS; next++)
-            if (isfinite(number_of(&figure[next], sf_figure_place(&figure[next], p->results, p->figures)))) {
+            if (is_defined(p, &figure[next])) {
                 put_figure(p, &table, &figure[next]);
                 put++;
             }
@@ -385,19 +379,7 @@ static void put_comparison(const page *p) {
         p->file, "%s: a_max %.1f g (model %+.1f %%), HIC %.1f. Model time = measured time %+.3f ms (%s).",
         p->report->summary->reference_path, c->injury.a_max_g, 100 * c->peak_error, c->injury.hic.value,
         c->shift * 1e3, c->shift_given ? "as given" : "contact of both curves");
-    sf_html_table table = sf_html_table_begin(
-        p->file, "dense", "region, measured time (ms)|>interval (ms)|>samples|>R²|>RMSE (g)");
-    for (int64_t k = 0; k < c->fit_count; k++) {
-        const sf_fit *fit = &c->fits[k];
-        sf_html_row(&table);
-        sf_html_cell(&table, "%.3f to %.3f%s", fit->region.begin * 1e3, fit->region.end * 1e3,
-                     k < 2 ? " (window)" : "");
-        sf_html_number(&table, 2, fit->interval * 1e3);
-        sf_html_cell(&table, "%lld", (long long)fit->count);
-        sf_html_number(&table, 4, fit->r2);
-        sf_html_number(&table, 3, fit->rmse_g);
-    }
-    sf_html_table_end(&table);
+    sf_rows_html_table(p->file, "dense", sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
     sf_html_block_end(p->file);
 }
 
@@ -496,27 +478,13 @@ static void put_provenance(const page *p) {
 
 /* A pad of several materials, layer by layer. */
 static void put_layers(const page *p) {
-    const sf_layer_figures *layer = p->figures->layers;
-    if (!layer)
+    const sf_layer_figures *layers = p->figures->layers;
+    if (!layers)
         return;
     sf_html_block_begin(p->file);
     sf_html_heading(p->file, "Layers");
-    sf_html_table table = sf_html_table_begin(
-        p->file, "dense",
-        "layer|>density (kg/m³)|>volume (cm³)|>largest strain|>absorbed (J)|>of it viscous (J)|>share of the "
-        "energy at the peak (%)|>of it beyond its data (%)");
-    for (int k = 0; k < p->results->layer_count; k++, layer++) {
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s", layer->name);
-        sf_html_number(&table, 1, layer->density);
-        sf_html_number(&table, 1, layer->volume * 1e6);
-        sf_html_number(&table, 3, layer->max_local_strain);
-        sf_html_number(&table, 3, layer->absorbed_energy);
-        sf_html_number(&table, 3, layer->viscous_energy);
-        sf_html_number(&table, 1, 100 * layer->energy_share);
-        sf_html_number(&table, 1, 100 * layer->energy_beyond_data);
-    }
-    sf_html_table_end(&table);
+    sf_rows_html_table(p->file, "dense", sf_layer_figure_rows(),
+                       (sf_records){layers, sizeof *layers, p->results->layer_count});
     sf_html_note(p->file,
                  "Absorbed: stored, lost and viscous energy in the last frame. Beyond its data: in nodes "
                  "compressed beyond the strain up to which the data of the layer's material inform it.");

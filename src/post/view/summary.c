@@ -2,144 +2,102 @@
 #include "post/view/summary.h"
 
 #include "build_info.h"
-#include "report/json.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 static const char caution[] = "indicative, not a certification";
 
-static void put_hic(sf_json *json, const char *prefix, const sf_hic *hic) {
-    char key[32];
-    sf_json_number(json, prefix, hic->value);
-    snprintf(key, sizeof key, "%s_t1_ms", prefix);
-    sf_json_number(json, key, hic->t1 * 1e3);
-    snprintf(key, sizeof key, "%s_t2_ms", prefix);
-    sf_json_number(json, key, hic->t2 * 1e3);
+/* ---- declarations ---- */
+
+static sf_value grade_of_check(const void *record) {
+    const sf_check *c = record;
+    return sf_value_text(isnan(c->value) ? NULL : sf_verdict_phrase(c->grade));
 }
+
+/* An infinite bound, which means that there is none, becomes null. */
+static const sf_row check_rows[] = {
+    {.key = "key", SF_ROW_OF(STRING, sf_check, key)},
+    {.key = "title", SF_ROW_OF(STRING, sf_check, title)},
+    {.key = "value", SF_ROW_OF(NUMBER, sf_check, value)},
+    {.key = "bound", SF_ROW_OF(NUMBER, sf_check, bound)},
+    {.key = "use_bound", SF_ROW_OF(NUMBER, sf_check, use_bound)},
+    {.key = "unit", SF_ROW_OF(STRING, sf_check, unit)},
+    {.key = "grade", .type = SF_ROW_STRING, .value = grade_of_check},
+    {.key = "finding", SF_ROW_OF(TEXT, sf_check, text)},
+    {.key = "why", SF_ROW_OF(STRING, sf_check, why)},
+};
+
+static sf_value passed_limit(const void *record) {
+    const sf_limit *limit = record;
+    return limit->judged ? sf_value_flag(limit->passed) : sf_value_text(NULL);
+}
+
+static const sf_row limit_rows[] = {
+    {.key = "key", SF_ROW_OF(STRING, sf_limit, key)},
+    {.key = "value", SF_ROW_OF(NUMBER, sf_limit, value)},
+    {.key = "bound", SF_ROW_OF(NUMBER, sf_limit, bound)},
+    {.key = "unit", SF_ROW_OF(STRING, sf_limit, unit)},
+    {.key = "passed", .type = SF_ROW_FLAG, .value = passed_limit},
+};
+
+static sf_value class_of_measured(const void *record) {
+    double cfc = ((const sf_comparison *)record)->cfc;
+    return sf_value_real(cfc > 0 ? cfc : NAN);
+}
+
+static sf_value origin_of_shift(const void *record) {
+    return sf_value_text(((const sf_comparison *)record)->shift_given ? "command line"
+                                                                      : "contact of both curves");
+}
+
+static const sf_row comparison_rows[] = {
+    {.key = "understood", SF_ROW_OF(TEXT, sf_comparison, understood)},
+    {.key = "cfc", .value = class_of_measured},
+    {.key = "inverted", SF_ROW_OF(FLAG, sf_comparison, inverted)},
+    {.key = "shift_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_comparison, shift)},
+    {.key = "shift_from", .type = SF_ROW_STRING, .value = origin_of_shift},
+    {.key = "a_max_g", SF_ROW_OF(NUMBER, sf_comparison, injury.a_max_g)},
+    {.key = "hic", SF_ROW_OF(NUMBER, sf_comparison, injury.hic.value)},
+    {.key = "hic_t1_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_comparison, injury.hic.t1)},
+    {.key = "hic_t2_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_comparison, injury.hic.t2)},
+    {.key = "hic15", SF_ROW_OF(NUMBER, sf_comparison, injury.hic15.value)},
+    {.key = "hic36", SF_ROW_OF(NUMBER, sf_comparison, injury.hic36.value)},
+    {.key = "a_max_error", SF_ROW_OF(NUMBER, sf_comparison, peak_error)},
+};
+
+/* ---- summary.json ---- */
 
 static void put_figures(sf_json *json, const sf_summary *s) {
     size_t count;
     const sf_figure *figure = sf_figure_list(&count);
-    for (size_t k = 0; k < count; k++) {
-        const char *key = figure[k].key;
-        const void *place = sf_figure_place(&figure[k], s->results, s->figures);
-        switch (figure[k].type) {
-        case SF_FIGURE_DOUBLE:
-            sf_json_number(json, key, *(const double *)place * figure[k].factor);
-            break;
-        case SF_FIGURE_INTEGER:
-            sf_json_integer(json, key, *(const int64_t *)place);
-            break;
-        case SF_FIGURE_BOOL:
-            sf_json_bool(json, key, *(const bool *)place);
-            break;
-        case SF_FIGURE_TEXT: /* empty: unknown */
-            sf_json_text(json, key, *(const char *)place ? place : NULL);
-            break;
-        }
-    }
+    for (size_t k = 0; k < count; k++)
+        sf_row_json(json, &figure[k].row, sf_figure_record(&figure[k], s->results, s->figures));
     sf_json_open(json, "notes", '[');
     for (int k = 0; k < s->results->note_count; k++)
         sf_json_text(json, NULL, s->results->notes[k]);
     sf_json_close(json, ']');
 }
 
-/* A pad of several materials has a group for each. */
-static void put_layers(sf_json *json, const sf_summary *s) {
-    size_t count;
-    const sf_layer_figure *list = sf_layer_figure_list(&count);
-    if (!s->figures->layers)
-        return;
-    sf_json_open(json, "layers", '[');
-    for (int k = 0; k < s->results->layer_count; k++) {
-        const sf_layer_figures *layer = &s->figures->layers[k];
-        sf_json_open(json, NULL, '{');
-        sf_json_text(json, "name", layer->name);
-        for (size_t q = 0; q < count; q++)
-            sf_json_number(json, list[q].key,
-                           *(const double *)((const char *)layer + list[q].offset) * list[q].factor);
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
-}
-
-/* Infinity, a bound that there is not, becomes null. */
-static void put_checks(sf_json *json, const sf_verdict *v) {
-    sf_json_open(json, "checks", '[');
-    for (int k = 0; k < v->count; k++) {
-        const sf_check *c = &v->rows[k];
-        sf_json_open(json, NULL, '{');
-        sf_json_text(json, "key", c->key);
-        sf_json_text(json, "title", c->title);
-        sf_json_number(json, "value", c->value);
-        sf_json_number(json, "bound", c->bound);
-        sf_json_number(json, "use_bound", c->use_bound);
-        sf_json_text(json, "unit", c->unit);
-        sf_json_text(json, "grade", isnan(c->value) ? NULL : sf_verdict_phrase(c->grade));
-        sf_json_text(json, "finding", c->text);
-        sf_json_text(json, "why", c->why);
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
-}
-
-static void put_limits(sf_json *json, const sf_verdict *v) {
-    sf_json_open(json, "limits", '[');
-    for (int k = 0; k < v->limit_count; k++) {
-        const sf_limit *limit = &v->limits[k];
-        sf_json_open(json, NULL, '{');
-        sf_json_text(json, "key", limit->key);
-        sf_json_number(json, "value", limit->value);
-        sf_json_number(json, "bound", limit->bound);
-        sf_json_text(json, "unit", limit->unit);
-        if (limit->judged)
-            sf_json_bool(json, "passed", limit->passed);
-        else
-            sf_json_text(json, "passed", NULL);
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
+static sf_records layers_of(const sf_summary *s) {
+    return (sf_records){s->figures->layers, sizeof *s->figures->layers, s->results->layer_count};
 }
 
 static void put_verdict(sf_json *json, const sf_verdict *v) {
     sf_json_open(json, "verdict", '{');
     sf_json_text(json, "grade", sf_verdict_phrase(v->grade));
-    put_checks(json, v);
-    put_limits(json, v);
+    sf_rows_json_array(json, "checks", SF_ROWS(check_rows),
+                       (sf_records){v->rows, sizeof v->rows[0], v->count});
+    sf_rows_json_array(json, "limits", SF_ROWS(limit_rows),
+                       (sf_records){v->limits, sizeof v->limits[0], v->limit_count});
     sf_json_close(json, '}');
 }
 
 static void put_comparison(sf_json *json, const char *path, const sf_comparison *c) {
     sf_json_open(json, "reference", '{');
     sf_json_text(json, "file", path);
-    sf_json_text(json, "understood", c->understood);
-    sf_json_number(json, "cfc", c->cfc > 0 ? c->cfc : NAN);
-    sf_json_bool(json, "inverted", c->inverted);
-    sf_json_number(json, "shift_ms", c->shift * 1e3);
-    sf_json_text(json, "shift_from", c->shift_given ? "command line" : "contact of both curves");
-    sf_json_number(json, "a_max_g", c->injury.a_max_g);
-    put_hic(json, "hic", &c->injury.hic);
-    sf_json_number(json, "hic15", c->injury.hic15.value);
-    sf_json_number(json, "hic36", c->injury.hic36.value);
-    sf_json_number(json, "a_max_error", c->peak_error);
-    sf_json_open(json, "fits", '[');
-    for (int64_t k = 0; k < c->fit_count; k++) {
-        const sf_fit *fit = &c->fits[k];
-        sf_json_open(json, NULL, '{');
-        sf_json_text(json, "region", k < 2 ? "window" : "region");
-        sf_json_number(json, "t1_ms", fit->region.begin * 1e3);
-        sf_json_number(json, "t2_ms", fit->region.end * 1e3);
-        sf_json_number(json, "first_sample_ms", fit->first * 1e3);
-        sf_json_number(json, "last_sample_ms", fit->last * 1e3);
-        sf_json_number(json, "interval_ms", fit->interval * 1e3);
-        sf_json_integer(json, "samples", fit->count);
-        sf_json_integer(json, "samples_in_free_flight", fit->flight);
-        sf_json_number(json, "r2", fit->r2);
-        sf_json_number(json, "rmse_g", fit->rmse_g);
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
+    sf_rows_json(json, SF_ROWS(comparison_rows), c);
+    sf_rows_json_array(json, "fits", sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
     sf_json_close(json, '}');
 }
 
@@ -154,95 +112,53 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
     sf_json_text(&json, "caution", caution);
     put_verdict(&json, s->verdict);
     put_figures(&json, s);
-    put_layers(&json, s);
+    if (s->figures->layers)
+        sf_rows_json_array(&json, "layers", sf_layer_figure_rows(), layers_of(s));
     if (s->comparison)
         put_comparison(&json, s->reference_path, s->comparison);
     sf_json_close(&json, '}');
     return sf_staging_close(file, "summary.json", err);
 }
 
-/* A line of the printed table: the figure `key` times `factor`. */
-typedef struct report_line {
-    const char *key, *label;
-    double factor;
-    int digits;
-    const char *unit;
-    const char *begin, *end; /* keys of the window to be shown instead of a unit, or NULL */
-} report_line;
+/* ---- the printed table ---- */
 
-static const report_line drop_lines[] = {
-    {"a_max_g", "a_max", 1, 2, "g", NULL, NULL},
-    {"a_max_raw_g", "a_max, raw", 1, 2, "g", NULL, NULL},
-    {"hic", "HIC", 1, 1, "", "hic_t1_ms", "hic_t2_ms"},
-    {"hic15", "HIC15", 1, 1, "", "hic15_t1_ms", "hic15_t2_ms"},
-    {"hic36", "HIC36", 1, 1, "", "hic36_t1_ms", "hic36_t2_ms"},
-    {"gadd", "Gadd index", 1, 1, "", NULL, NULL},
-    {"clip_3ms_g", "3 ms clip", 1, 2, "g", NULL, NULL},
-    {"v_rebound_m_s", "rebound speed", 1, 3, "m/s", NULL, NULL},
-    {"absorbed_energy_fraction", "absorbed energy", 100, 1, "%", NULL, NULL},
-    {NULL, NULL, 0, 0, NULL, NULL, NULL},
-};
-static const report_line rotation_lines[] = {
-    {"peak_angular_acceleration_rad_s2", "angular acceleration", 1, 1, "rad/s2", NULL, NULL},
-    {"peak_angular_velocity_rad_s", "angular velocity", 1, 2, "rad/s", NULL, NULL},
-    {NULL, NULL, 0, 0, NULL, NULL, NULL},
-};
-static const report_line compression_lines[] = {
-    {"peak_force_N", "largest force", 1, 2, "N", NULL, NULL},
-    {"peak_stress_kPa", "  over mean section", 1, 2, "kPa", NULL, NULL},
-    {"work_J", "work", 1, 4, "J", NULL, NULL},
-    {"returned_energy_fraction", "  given back", 100, 1, "%", NULL, NULL},
-    {NULL, NULL, 0, 0, NULL, NULL, NULL},
-};
-static const report_line common_lines[] = {
-    {"max_indentation_mm", "largest indentation", 1, 2, "mm", NULL, NULL},
-    {"max_mean_strain", "  over thickness", 1, 3, "", NULL, NULL},
-    {"max_local_strain", "largest local strain", 1, 3, "", NULL, NULL},
-    {"energy_error", "energy error", 100, 4, "%", NULL, NULL},
-    {"stabilisation_energy_fraction", "stabilisation energy", 100, 3, "% of the internal energy", NULL, NULL},
-    {"contact_energy_fraction", "contact energy", 100, 3, "% of the internal energy", NULL, NULL},
-    {NULL, NULL, 0, 0, NULL, NULL, NULL},
-};
+/* Keys of the printed figures, in their order. */
+static const char *const drop_keys[] = {"a_max_g",    "a_max_raw_g",   "hic",
+                                        "hic15",      "hic36",         "gadd",
+                                        "clip_3ms_g", "v_rebound_m_s", "absorbed_energy_fraction",
+                                        NULL};
+static const char *const rotation_keys[] = {"peak_angular_acceleration_rad_s2", "peak_angular_velocity_rad_s",
+                                            NULL};
+static const char *const compression_keys[] = {"peak_force_N", "peak_stress_kPa", "work_J",
+                                               "returned_energy_fraction", NULL};
+static const char *const common_keys[] = {"max_indentation_mm",
+                                          "max_mean_strain",
+                                          "max_local_strain",
+                                          "energy_error",
+                                          "stabilisation_energy_fraction",
+                                          "contact_energy_fraction",
+                                          NULL};
 
-/* The figure of that key, in the unit of the key. */
-static double find_figure(const sf_summary *s, const char *key) {
-    const sf_figure *figure = sf_figure_find(key);
-    assert(figure && figure->type == SF_FIGURE_DOUBLE);
-    return *(const double *)sf_figure_place(figure, s->results, s->figures) * figure->factor;
+/* Returns the end of the window of a figure (ms), `which` "t1" or "t2"; NaN: the figure has no window. */
+static double window_end(const sf_summary *s, const char *key, const char *which) {
+    char name[64];
+    snprintf(name, sizeof name, "%s_%s_ms", key, which);
+    const sf_figure *figure = sf_figure_find(name);
+    return figure ? sf_figure_number(figure, s->results, s->figures) : NAN;
 }
 
-static void print_lines(FILE *out, const sf_summary *s, const report_line *line) {
-    for (; line->key; line++) {
-        double value = find_figure(s, line->key) * line->factor;
-        if (!isfinite(value))
-            fprintf(out, "  %-24s %12s\n", line->label, "-");
-        else if (line->begin && value > 0)
-            fprintf(out, "  %-24s %12.*f    %.3f to %.3f ms\n", line->label, line->digits, value,
-                    find_figure(s, line->begin), find_figure(s, line->end));
+static void print_figures(FILE *out, const sf_summary *s, const char *const *key) {
+    for (; *key; key++) {
+        const sf_figure *figure = sf_figure_find(*key);
+        assert(figure && figure->row.name);
+        const void *record = sf_figure_record(figure, s->results, s->figures);
+        double begin = window_end(s, *key, "t1"), end = window_end(s, *key, "t2");
+        char text[48];
+        if (isfinite(begin) && isfinite(end) && sf_row_number(&figure->row, record) > 0)
+            fprintf(out, "  %-24s %12s    %.3f to %.3f ms\n", figure->row.name,
+                    sf_row_shown(&figure->row, record, "-", text, sizeof text), begin, end);
         else
-            fprintf(out, "  %-24s %12.*f %s\n", line->label, line->digits, value, line->unit);
-    }
-}
-
-static void print_cell(FILE *out, double value, int width, int digits) {
-    if (isfinite(value))
-        fprintf(out, " %*.*f", width, digits, value);
-    else
-        fprintf(out, " %*s", width, "-");
-}
-
-static void print_layers(FILE *out, const sf_summary *s) {
-    if (!s->figures->layers)
-        return;
-    fprintf(out, "  %-24s %12s %14s %20s\n", "layer", "largest strain", "absorbed (J)",
-            "beyond its data (%)");
-    for (int k = 0; k < s->results->layer_count; k++) {
-        const sf_layer_figures *layer = &s->figures->layers[k];
-        fprintf(out, "  %-24s", layer->name);
-        print_cell(out, layer->max_local_strain, 14, 3);
-        print_cell(out, layer->absorbed_energy, 14, 2);
-        print_cell(out, 100 * layer->energy_beyond_data, 20, 1);
-        fputc('\n', out);
+            sf_row_text(out, &figure->row, record);
     }
 }
 
@@ -252,19 +168,7 @@ static void print_comparison(FILE *out, const char *path, const sf_comparison *c
             c->peak_error * 100, c->injury.hic.value);
     fprintf(out, "  model time = measured time %+.4f ms (%s)\n", c->shift * 1e3,
             c->shift_given ? "as given" : "contact of both curves");
-    fprintf(out, "  %-24s %8s %8s %8s %10s\n", "measured time (ms)", "dt (ms)", "samples", "R2", "RMSE (g)");
-    for (int64_t k = 0; k < c->fit_count; k++) {
-        const sf_fit *fit = &c->fits[k];
-        char span[48];
-        snprintf(span, sizeof span, "%.3f to %.3f%s", fit->region.begin * 1e3, fit->region.end * 1e3,
-                 k < 2 ? " window" : "");
-        fprintf(out, "  %-24s %8.2f %8lld", span, fit->interval * 1e3, (long long)fit->count);
-        print_cell(out, fit->r2, 8, 4);
-        print_cell(out, fit->rmse_g, 10, 3);
-        if (fit->flight > 0)
-            fprintf(out, "   %lld of them beyond the model's curve: free flight", (long long)fit->flight);
-        fputc('\n', out);
-    }
+    sf_rows_text_table(out, sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
 }
 
 static void print_drop(FILE *out, const sf_summary *s) {
@@ -272,15 +176,15 @@ static void print_drop(FILE *out, const sf_summary *s) {
     fprintf(out, "Drop of %.4g kg at %.4g m/s on %.4g mm (CFC %.0f%s%s)\n", s->results->missile_mass, f->v0,
             s->results->thickness * 1e3, f->cfc, f->kinematic ? ", kinematic acceleration" : "",
             f->turns ? ", free missile: a_max, HIC and all that follows of the resultant" : "");
-    print_lines(out, s, drop_lines);
+    print_figures(out, s, drop_keys);
     if (f->turns)
-        print_lines(out, s, rotation_lines);
+        print_figures(out, s, rotation_keys);
 }
 
 static void print_compression(FILE *out, const sf_summary *s) {
     fprintf(out, "Prescribed motion of the missile on %.4g mm: no drop, so no injury figures\n",
             s->results->thickness * 1e3);
-    print_lines(out, s, compression_lines);
+    print_figures(out, s, compression_keys);
 }
 
 static void print_verdict(FILE *out, const sf_verdict *v) {
@@ -305,8 +209,9 @@ void sf_summary_print(FILE *out, const sf_summary *s) {
         print_compression(out, s);
     else
         print_drop(out, s);
-    print_lines(out, s, common_lines);
-    print_layers(out, s);
+    print_figures(out, s, common_keys);
+    if (s->figures->layers)
+        sf_rows_text_table(out, sf_layer_figure_rows(), layers_of(s));
     if (s->comparison)
         print_comparison(out, s->reference_path, s->comparison);
     fprintf(out, "These figures are %s.\n", caution);

@@ -259,12 +259,12 @@ static sf_status read_set(const sf_config *config, sf_plan *p, sf_error *err) {
 static sf_status add_figure(const sf_config *config, const config_setting_t *s, const char *key, double limit,
                             sf_plan *p, sf_error *err) {
     const sf_figure *figure = sf_figure_find(key);
-    if (!figure || figure->type == SF_FIGURE_TEXT)
+    if (!figure || figure->row.type == SF_ROW_TEXT)
         return sf_config_refuse(config, s, err, "\"%.80s\" is no figure of summary.json (docs/formats.md)",
                                 key);
     if (p->figure_count == SF_SWEEP_FIGURES)
         return sf_config_refuse(config, s, err, "at most %d figures", SF_SWEEP_FIGURES);
-    p->figure[p->figure_count++] = (sf_sweep_limit){figure->key, limit};
+    p->figure[p->figure_count++] = (sf_sweep_limit){figure->row.key, limit};
     return SF_OK;
 }
 

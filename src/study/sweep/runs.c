@@ -67,7 +67,7 @@ void sf_runs_take(sf_runs *r, int64_t row, const double *figure, const char *sta
     const sf_figure *list = sf_figure_list(&count);
     double *place = sf_runs_place(r, row);
     for (size_t k = 0; k < count; k++)
-        place[k] = list[k].type != SF_FIGURE_TEXT ? figure[k] : *status ? text_number(r, status) : NAN;
+        place[k] = list[k].row.type != SF_ROW_TEXT ? figure[k] : *status ? text_number(r, status) : NAN;
 }
 
 static double to_nine_digits(double value) {
@@ -150,7 +150,7 @@ static void put_heading(FILE *out, const sf_runs *r) {
     }
     fputs(",run_status,grade,message,folder", out);
     for (size_t k = 0; k < count; k++)
-        fprintf(out, ",%s", list[k].key);
+        fprintf(out, ",%s", list[k].row.key);
     fputc('\n', out);
 }
 
@@ -158,7 +158,7 @@ static void put_figure(FILE *out, const sf_runs *r, const sf_figure *figure, dou
     fputc(',', out);
     if (isnan(value))
         return;
-    if (figure->type == SF_FIGURE_TEXT)
+    if (figure->row.type == SF_ROW_TEXT)
         put_cell(out, r->text[(int)value]);
     else
         fprintf(out, "%.9g", value);
@@ -238,7 +238,7 @@ static void take_figures(sf_runs *r, int64_t row, char *rest) {
         const char *cell = next_cell(&rest);
         if (!cell || !*cell)
             continue;
-        place[k] = list[k].type == SF_FIGURE_TEXT ? text_number(r, cell) : strtod(cell, NULL);
+        place[k] = list[k].row.type == SF_ROW_TEXT ? text_number(r, cell) : strtod(cell, NULL);
     }
 }
 

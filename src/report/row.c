@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/row.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+sf_value sf_value_real(double value) {
+    return (sf_value){.kind = SF_VALUE_REAL, .real = value};
+}
+
+sf_value sf_value_integer(int64_t value) {
+    return (sf_value){.kind = SF_VALUE_INTEGER, .integer = value};
+}
+
+sf_value sf_value_flag(bool value) {
+    return (sf_value){.kind = SF_VALUE_FLAG, .flag = value};
+}
+
+sf_value sf_value_text(const char *text) {
+    return (sf_value){.kind = SF_VALUE_TEXT, .text = text};
+}
+
+sf_value sf_row_value(const sf_row *row, const void *record) {
+    const char *member = (const char *)record + row->offset;
+    if (row->value)
+        return row->value(record);
+    switch (row->type) {
+    case SF_ROW_NUMBER:
+        return sf_value_real(*(const double *)member);
+    case SF_ROW_COUNT:
+        return sf_value_integer(*(const int64_t *)member);
+    case SF_ROW_INTEGER:
+        return sf_value_integer(*(const int *)member);
+    case SF_ROW_FLAG:
+        return sf_value_flag(*(const bool *)member);
+    case SF_ROW_TEXT:
+        return sf_value_text(member);
+    case SF_ROW_STRING:
+        return sf_value_text(*(const char *const *)member);
+    }
+    return sf_value_text(NULL);
+}
+
+static double factor_of(const sf_row *row) {
+    return row->factor != 0 ? row->factor : 1;
+}
+
+static double shown_factor(const sf_row *row) {
+    return row->shown != 0 ? row->shown : factor_of(row);
+}
+
+static bool is_defined(sf_value value) {
+    switch (value.kind) {
+    case SF_VALUE_REAL:
+        return isfinite(value.real);
+    case SF_VALUE_INTEGER:
+        return value.integer >= 0;
+    case SF_VALUE_FLAG:
+        return true;
+    case SF_VALUE_TEXT:
+        return value.text && *value.text;
+    }
+    return false;
+}
+
+bool sf_row_is_defined(const sf_row *row, const void *record) {
+    return is_defined(sf_row_value(row, record));
+}
+
+double sf_row_number(const sf_row *row, const void *record) {
+    sf_value value = sf_row_value(row, record);
+    if (!is_defined(value))
+        return NAN;
+    return value.kind == SF_VALUE_REAL      ? value.real * factor_of(row)
+           : value.kind == SF_VALUE_INTEGER ? (double)value.integer
+           : value.kind == SF_VALUE_FLAG    ? value.flag
+                                            : NAN;
+}
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral" /* formats are those of the declarations */
+const char *sf_row_shown(const sf_row *row, const void *record, const char *dash, char *text, size_t size) {
+    sf_value value = sf_row_value(row, record);
+    double shown = value.real * shown_factor(row);
+    if (!is_defined(value))
+        snprintf(text, size, "%s", dash);
+    else if (value.kind == SF_VALUE_REAL)
+        snprintf(text, size, row->format ? row->format : fabs(shown) >= 1e4 ? "%.6g" : "%.4g", shown);
+    else if (value.kind == SF_VALUE_INTEGER)
+        snprintf(text, size, "%lld", (long long)value.integer);
+    else
+        snprintf(text, size, "%s", value.kind == SF_VALUE_TEXT ? value.text : value.flag ? "yes" : "no");
+    return text;
+}
+#pragma GCC diagnostic pop
+
+/* ---- JSON ---- */
+
+void sf_row_json(sf_json *json, const sf_row *row, const void *record) {
+    sf_value value = sf_row_value(row, record);
+    if (!row->key)
+        return;
+    if (value.kind == SF_VALUE_REAL)
+        sf_json_number(json, row->key, value.real * factor_of(row));
+    else if (value.kind == SF_VALUE_INTEGER)
+        sf_json_integer(json, row->key, value.integer);
+    else if (value.kind == SF_VALUE_FLAG)
+        sf_json_bool(json, row->key, value.flag);
+    else
+        sf_json_text(json, row->key, is_defined(value) ? value.text : NULL);
+}
+
+void sf_rows_json(sf_json *json, sf_rows rows, const void *record) {
+    for (size_t k = 0; k < rows.count; k++)
+        sf_row_json(json, &rows.row[k], record);
+}
+
+static const void *record_at(sf_records records, int64_t k) {
+    return (const char *)records.first + (size_t)k * records.stride;
+}
+
+void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records records) {
+    sf_json_open(json, key, '[');
+    for (int64_t k = 0; k < records.count; k++) {
+        sf_json_open(json, NULL, '{');
+        sf_rows_json(json, rows, record_at(records, k));
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+/* ---- CSV ---- */
+
+/* A text in quotes where it holds a character of the format. */
+static void put_csv_text(FILE *file, const char *text) {
+    if (!strpbrk(text, ",\"\n\r")) {
+        fputs(text, file);
+        return;
+    }
+    fputc('"', file);
+    for (; *text; text++) {
+        if (*text == '"')
+            fputc('"', file);
+        fputc(*text, file);
+    }
+    fputc('"', file);
+}
+
+static void put_csv_cell(FILE *file, const sf_row *row, const void *record) {
+    sf_value value = sf_row_value(row, record);
+    if (!is_defined(value))
+        return;
+    if (value.kind == SF_VALUE_REAL)
+        fprintf(file, "%.9g", value.real * factor_of(row));
+    else if (value.kind == SF_VALUE_INTEGER)
+        fprintf(file, "%lld", (long long)value.integer);
+    else if (value.kind == SF_VALUE_FLAG)
+        fputc(value.flag ? '1' : '0', file);
+    else
+        put_csv_text(file, value.text);
+}
+
+void sf_rows_csv(FILE *file, sf_rows rows, sf_records records) {
+    for (int64_t k = -1; k < records.count; k++) {
+        bool first = true;
+        for (size_t c = 0; c < rows.count; c++) {
+            if (!rows.row[c].key)
+                continue;
+            if (!first)
+                fputc(',', file);
+            first = false;
+            if (k < 0)
+                fputs(rows.row[c].key, file);
+            else
+                put_csv_cell(file, &rows.row[c], record_at(records, k));
+        }
+        fputc('\n', file);
+    }
+}
+
+/* ---- HTML ---- */
+
+void sf_row_html_cell(sf_html_table *table, const sf_row *row, const void *record) {
+    char text[512];
+    sf_html_cell(table, "%s", sf_row_shown(row, record, "–", text, sizeof text));
+}
+
+void sf_rows_html_facts(sf_html_table *table, sf_rows rows, const void *record) {
+    for (size_t k = 0; k < rows.count; k++) {
+        const sf_row *row = &rows.row[k];
+        char text[512];
+        if (!row->name || !sf_row_is_defined(row, record))
+            continue;
+        sf_row_shown(row, record, "–", text, sizeof text);
+        sf_html_hint(table, row->meaning);
+        sf_html_fact(table, row->name, "%s%s%s", text, row->unit ? " " : "", row->unit ? row->unit : "");
+    }
+}
+
+/* "name (unit)", as tables head a column. */
+static void put_heading(const sf_row *row, char *text, size_t size) {
+    if (row->unit)
+        snprintf(text, size, "%s (%s)", row->name, row->unit);
+    else
+        snprintf(text, size, "%s", row->name);
+}
+
+static bool is_number(const sf_row *row) {
+    return row->type <= SF_ROW_INTEGER;
+}
+
+/* Returns the headings as sf_html_table_begin takes them; owned by the caller, NULL without memory. */
+static char *table_headings(sf_rows rows) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    bool first = true;
+    for (size_t k = 0; out && k < rows.count; k++) {
+        const sf_row *row = &rows.row[k];
+        if (!row->name)
+            continue;
+        char heading[160];
+        put_heading(row, heading, sizeof heading);
+        fprintf(out, "%s%s%s", first ? "" : "|", is_number(row) ? ">" : "", heading);
+        first = false;
+    }
+    if (out)
+        fclose(out);
+    return text;
+}
+
+void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records) {
+    char *headings = table_headings(rows);
+    sf_html_table table = sf_html_table_begin(page, kind, headings ? headings : "");
+    for (int64_t k = 0; k < records.count; k++) {
+        sf_html_row(&table);
+        for (size_t c = 0; c < rows.count; c++)
+            if (rows.row[c].name)
+                sf_row_html_cell(&table, &rows.row[c], record_at(records, k));
+    }
+    sf_html_table_end(&table);
+    free(headings);
+}
+
+/* ---- text ---- */
+
+void sf_row_text(FILE *out, const sf_row *row, const void *record) {
+    char text[160];
+    if (!row->name)
+        return;
+    sf_row_shown(row, record, "-", text, sizeof text);
+    bool unit = row->unit && sf_row_is_defined(row, record);
+    fprintf(out, "  %-24s %12s%s%s\n", row->name, text, unit ? " " : "", unit ? row->unit : "");
+}
+
+void sf_rows_text(FILE *out, sf_rows rows, const void *record) {
+    for (size_t k = 0; k < rows.count; k++)
+        sf_row_text(out, &rows.row[k], record);
+}
+
+/* Returns the value of a text table, or with `record` NULL the heading. */
+static const char *table_text(const sf_row *row, const void *record, char *text, size_t size) {
+    if (record)
+        return sf_row_shown(row, record, "-", text, size);
+    put_heading(row, text, size);
+    return text;
+}
+
+/* Characters of a text in UTF-8. */
+static int width_of(const char *text) {
+    int width = 0;
+    for (; *text; text++)
+        width += ((unsigned char)*text & 0xc0) != 0x80;
+    return width;
+}
+
+/* Numbers stand right in their column, texts left. */
+static void put_padded(FILE *out, const char *text, int width, bool right) {
+    int pad = width - width_of(text);
+    fprintf(out, "  %*s%s%*s", right ? pad : 0, "", text, right ? 0 : pad, "");
+}
+
+void sf_rows_text_table(FILE *out, sf_rows rows, sf_records records) {
+    char text[512];
+    for (int64_t k = -1; k < records.count; k++) {
+        for (size_t c = 0; c < rows.count; c++) {
+            const sf_row *row = &rows.row[c];
+            int width = 0;
+            if (!row->name)
+                continue;
+            for (int64_t j = -1; j < records.count; j++) {
+                int own = width_of(table_text(row, j < 0 ? NULL : record_at(records, j), text, sizeof text));
+                width = own > width ? own : width;
+            }
+            table_text(row, k < 0 ? NULL : record_at(records, k), text, sizeof text);
+            put_padded(out, text, width, is_number(row));
+        }
+        fputc('\n', out);
+    }
+}

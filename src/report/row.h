@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of a report. A declaration states once how a value is called, its unit, its format and its meaning;
+ * one writer each makes JSON, CSV, HTML and text of it. A record is any struct of the program; a declaration
+ * points to a member of it, or has a function that computes the value. A value that a run does not define (a
+ * number that is not finite, a negative count, an empty text) becomes null in JSON, an empty cell in CSV and
+ * a dash for readers. */
+#ifndef SF_REPORT_ROW_H
+#define SF_REPORT_ROW_H
+
+#include "report/html.h"
+#include "report/json.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef enum sf_row_type {
+    SF_ROW_NUMBER,  /* double */
+    SF_ROW_COUNT,   /* int64_t */
+    SF_ROW_INTEGER, /* int */
+    SF_ROW_FLAG,    /* bool */
+    SF_ROW_TEXT,    /* char[] in the record */
+    SF_ROW_STRING,  /* const char *, borrowed */
+} sf_row_type;
+
+/* One value. */
+typedef struct sf_value {
+    enum { SF_VALUE_REAL, SF_VALUE_INTEGER, SF_VALUE_FLAG, SF_VALUE_TEXT } kind;
+    double real; /* in the unit of the record */
+    int64_t integer;
+    bool flag;
+    const char *text; /* NULL or empty: not defined */
+} sf_value;
+
+/* A declaration; static storage. */
+typedef struct sf_row {
+    const char *key;     /* in JSON and CSV, with the unit as its ending; NULL: not written there */
+    const char *name;    /* for readers; NULL: not shown to them */
+    const char *unit;    /* behind the shown value; NULL: none */
+    const char *format;  /* of a shown number, with one conversion of a double; NULL: "%.4g" */
+    double factor;       /* from the record to the unit of the key; 0: 1 */
+    double shown;        /* from the record to the shown unit; 0: as `factor` */
+    const char *meaning; /* of the value, for hints and tables of docs; NULL: none */
+    sf_row_type type;
+    size_t offset;                         /* of the member in the record */
+    sf_value (*value)(const void *record); /* replaces the member; NULL: the member */
+} sf_row;
+
+/* Type and offset of a member, for an initialiser: {.key = "mass_kg", SF_ROW_OF(NUMBER, sf_results, mass)}.
+ */
+#define SF_ROW_OF(kind, record, member) .type = SF_ROW_##kind, .offset = offsetof(record, member)
+
+/* A list of declarations, from an array of them. */
+typedef struct sf_rows {
+    const sf_row *row;
+    size_t count;
+} sf_rows;
+#define SF_ROWS(array) ((sf_rows){(array), sizeof(array) / sizeof((array)[0])})
+
+/* Records that follow each other. */
+typedef struct sf_records {
+    const void *first;
+    size_t stride; /* bytes */
+    int64_t count;
+} sf_records;
+
+sf_value sf_value_real(double value);
+sf_value sf_value_integer(int64_t value);
+sf_value sf_value_flag(bool value);
+sf_value sf_value_text(const char *text);
+
+sf_value sf_row_value(const sf_row *row, const void *record);
+/* The number in the unit of the key, a flag as 0 or 1; NaN: not defined, or a text. */
+double sf_row_number(const sf_row *row, const void *record);
+bool sf_row_is_defined(const sf_row *row, const void *record);
+/* The value as a reader sees it, without the unit, with `dash` where it is not defined. Returns `text`. */
+const char *sf_row_shown(const sf_row *row, const void *record, const char *dash, char *text, size_t size);
+
+/* JSON: members of the open object; an array of objects. */
+void sf_row_json(sf_json *json, const sf_row *row, const void *record);
+void sf_rows_json(sf_json *json, sf_rows rows, const void *record);
+void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records records);
+
+/* CSV: the heading and a line for each record, numbers with nine digits. */
+void sf_rows_csv(FILE *file, sf_rows rows, sf_records records);
+
+/* HTML: a cell; a table of facts "name | value unit"; a table with a column for each declaration that has a
+ * name, and a row for each record. `kind` as for sf_html_table_begin. */
+void sf_row_html_cell(sf_html_table *table, const sf_row *row, const void *record);
+void sf_rows_html_facts(sf_html_table *table, sf_rows rows, const void *record);
+void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records);
+
+/* Text: a line "  name   value unit" for each declaration that has a name. */
+void sf_row_text(FILE *out, const sf_row *row, const void *record);
+void sf_rows_text(FILE *out, sf_rows rows, const void *record);
+/* Text: a heading and a line for each record, columns as wide as their widest cell. */
+void sf_rows_text_table(FILE *out, sf_rows rows, sf_records records);
+
+#endif
