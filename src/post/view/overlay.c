@@ -3,7 +3,7 @@
 
 #include "build_info.h"
 #include "base/program.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/html.h"
 #include "io/provenance.h"
 #include "post/figures/figures.h"
@@ -105,14 +105,14 @@ static sf_status read_run(overlay_run *r, sf_error *err) {
 
 /* ---- output ---- */
 
-static void put_quoted(FILE *out, const char *text, char quote) {
-    fputc(quote, out);
+static void put_quoted(FILE *out, const char *text) {
+    fputc('"', out);
     for (; *text; text++) {
-        if (*text == quote)
-            fputc(quote, out);
+        if (*text == '"')
+            fputc('"', out);
         fputc(*text == '\n' ? ' ' : *text, out);
     }
-    fputc(quote, out);
+    fputc('"', out);
 }
 
 static void put_csv_row(FILE *csv, const overlay *o, const sf_figure *figure) {
@@ -123,8 +123,7 @@ static void put_csv_row(FILE *csv, const overlay *o, const sf_figure *figure) {
         fputc(',', csv);
         if (figure->row.type == SF_ROW_TEXT)
             put_quoted(csv,
-                       sf_row_value(&figure->row, sf_figure_record(figure, &r->results, &r->figures)).text,
-                       '"');
+                       sf_row_value(&figure->row, sf_figure_record(figure, &r->results, &r->figures)).text);
         else if (!isnan(value))
             fprintf(csv, "%.9g", value);
     }
@@ -141,7 +140,7 @@ static sf_status write_csv(const overlay *o, sf_error *err) {
     fputs("figure", csv);
     for (int k = 0; k < o->count; k++) {
         fputc(',', csv);
-        put_quoted(csv, o->run[k].name, '"');
+        put_quoted(csv, o->run[k].name);
     }
     fputs("\ngrade", csv);
     for (int k = 0; k < o->count; k++)
@@ -152,34 +151,27 @@ static sf_status write_csv(const overlay *o, sf_error *err) {
     return sf_staging_close(csv, "compare.csv", err);
 }
 
-/* The filtered curve, its time from first contact. */
-static void put_curve(FILE *g, const overlay_run *r, int number) {
-    const sf_series *s = &r->figures.filtered;
-    int64_t every = s->count / CURVE_POINTS + 1;
-    fprintf(g, "$c%d << EOD\n", number);
-    for (int64_t k = 0; k < s->count; k += every)
-        if (s->time[k] >= r->results.contact_time - 2e-3)
-            fprintf(g, "%.6g,%.6g\n", 1e3 * (s->time[k] - r->results.contact_time), s->value[k]);
-    fputs("EOD\n", g);
-}
-
+/* The filtered curves, their time from first contact. */
 static sf_status write_picture(const overlay *o, char *warning, size_t size, sf_error *err) {
-    FILE *g = sf_gnuplot_begin(&o->output, "compare", 1600, 900, err);
-    if (!g)
-        return err->status;
-    for (int k = 0; k < o->count; k++)
-        put_curve(g, &o->run[k], k);
-    fputs(
-        "set xlabel 'time from first contact (ms)'\nset ylabel 'deceleration (g)'\nset key top right\nplot ",
-        g);
-    for (int k = 0; k < o->count; k++) {
-        fprintf(g, "%s$c%d using 1:2 with lines lw 2 lc rgb '%s' title ", k ? ", \\\n     " : "", k,
-                colours[k]);
-        put_quoted(g, o->run[k].name, '\'');
+    sf_chart *chart = sf_chart_new("compare", 1600, 900, err);
+    sf_panel *panel = sf_chart_panel(chart);
+    if (panel) {
+        sf_axis_label(&panel->x, "time from first contact (ms)");
+        sf_axis_label(&panel->y, "deceleration (g)");
+        panel->key = SF_KEY_TOP_RIGHT;
     }
-    fputc('\n', g);
-    if (sf_staging_close(g, "compare.gp", err) == SF_OK)
-        sf_gnuplot_draw(&o->output, "compare", warning, size);
+    for (int k = 0; k < o->count; k++) {
+        const sf_series *s = &o->run[k].figures.filtered;
+        double contact = o->run[k].results.contact_time;
+        sf_series_data *line = sf_chart_series(
+            chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = colours[k], .width = 2}, "%s",
+            o->run[k].name);
+        for (int64_t i = 0; i < s->count; i += s->count / CURVE_POINTS + 1)
+            if (s->time[i] >= contact - 2e-3)
+                sf_series_point(line, 1e3 * (s->time[i] - contact), s->value[i]);
+    }
+    sf_chart_write(chart, &o->output, warning, size, err);
+    sf_chart_free(chart);
     return err->status;
 }
 
@@ -229,7 +221,7 @@ static sf_status write_page(const overlay *o, sf_error *err) {
                                                : "bad",
                    sf_verdict_phrase(worst), "The worst verdict of %d runs. Indicative, not a certification.",
                    o->count);
-    char *svg = sf_gnuplot_svg(&o->output, "compare", "softfall-post", warning, sizeof warning);
+    char *svg = sf_chart_svg(&o->output, "compare", "softfall-post", warning, sizeof warning);
     sf_html_figure(page, svg, "%s.",
                    svg ? "Deceleration from first contact on, filtered with CFC 1000" : warning);
     free(svg);

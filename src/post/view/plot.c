@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/plot.h"
 
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include <math.h>
+#include <string.h>
 
 enum { WIDTH = 1600, HEIGHT = 830 };
 static const double SEEN = 0.01; /* of the largest value: a curve this far from another is seen beside it */
 
-/* What the picture of a drop shows. */
+/* The curves of a drop and their ranges. */
 typedef struct picture {
     const sf_results *results;
     const sf_figures *figures;
@@ -106,103 +107,92 @@ static bool points_are_seen(const picture *p) {
     return sf_plot_difference(&c->raw, &c->measured, range) > SEEN;
 }
 
-/* The title: the drop with its verdict, and both limits with pass or fail. A report has both in its text. */
-static void put_title(FILE *g, const picture *p) {
+/* The drop with its verdict, and both limits with pass or fail. */
+static void put_title(sf_chart *chart, const picture *p) {
     const sf_results *r = p->results;
-    fprintf(g, "set title \"Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm: %s", r->missile_mass,
-            r->missile_speed, r->thickness * 1e3, sf_verdict_phrase(p->verdict->grade));
+    char limits[160] = "";
     for (int k = 0; k < p->verdict->limit_count; k++) {
         const sf_limit *limit = &p->verdict->limits[k];
+        size_t used = strlen(limits);
         if (isfinite(limit->value))
-            fprintf(g, "%s%s %.4g, limit %.4g: %s", k ? "; " : "\\n", limit->title, limit->value,
-                    limit->bound, sf_limit_phrase(limit));
+            snprintf(limits + used, sizeof limits - used, "%s%s %.4g, limit %.4g: %s", used ? "; " : "\n",
+                     limit->title, limit->value, limit->bound, sf_limit_phrase(limit));
     }
-    fputs("\"\nif (svg) { unset title }\n", g);
+    sf_chart_title(chart, "Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm: %s%s", r->missile_mass,
+                   r->missile_speed, r->thickness * 1e3, sf_verdict_phrase(p->verdict->grade), limits);
 }
 
-/* The limit of a_max as a line. */
-static void put_limit(FILE *g, const picture *p) {
-    if (p->limited)
-        fprintf(
-            g,
-            "set arrow from graph 0, first %.9g to graph 1, first %.9g nohead lw 2.5 dt 2 lc rgb '#cb181d'\n"
-            "set label 'limit %g g' at graph 0.01, first %.9g left offset 0,0.6 tc rgb '#cb181d'\n",
-            p->limit, p->limit, p->limit, p->limit);
+/* The part of the filtered curve within the HIC window, shaded. */
+static void put_hic(sf_chart *chart, const picture *p) {
+    const sf_hic *hic = &p->figures->injury.hic;
+    const sf_series *curve = &p->figures->filtered;
+    sf_series_data *area =
+        sf_chart_series(chart, (sf_series_style){.kind = SF_SERIES_AREA, .colour = "#c6dbef"},
+                        "HIC %.1f: %.2f to %.2f ms", hic->value, hic->t1 * 1e3, hic->t2 * 1e3);
+    for (int64_t k = 0; k < curve->count; k++)
+        if (curve->time[k] >= hic->t1 && curve->time[k] <= hic->t2)
+            sf_series_point(area, 1e3 * curve->time[k], curve->value[k]);
 }
 
-static void put_axes(FILE *g, const picture *p) {
-    put_title(g, p);
-    fprintf(g,
-            "set xlabel 'time (ms)'\nset ylabel '%s (g)'\nset xzeroaxis lw 1 lc rgb '#808080'\n"
-            "if (svg) { set ylabel 'acceleration (g)' } # its caption says which\n",
-            sf_figures_acceleration(p->figures));
-    fprintf(g, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", p->time[0] * 1e3, p->time[1] * 1e3,
-            p->value[0], p->value[1]);
-    put_limit(g, p);
+static void put_curve(sf_chart *chart, const sf_series *curve, double shift, double width, const char *colour,
+                      const char *title) {
+    sf_series_data *line = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = colour, .width = width}, "%s", title);
+    for (int64_t k = 0; k < curve->count; k++)
+        sf_series_point(line, 1e3 * (curve->time[k] + shift), curve->value[k]);
 }
 
-/* A disc at the filtered peak, and its value beside it. */
-static void put_peak(FILE *g, const picture *p) {
-    const sf_injury *i = &p->figures->injury;
-    if (!p->figures->touched || !(i->a_max_g > 0))
-        return;
-    fprintf(
-        g,
-        "set label 'a_max %.1f g' at %.9g,%.9g left offset 1.2,0.5 tc rgb '#08306b' front point pt 7 ps 1.6*dot "
-        "lc rgb '#08306b'\n",
-        i->a_max_g, i->a_max_time * 1e3, i->a_max_g);
-}
-
-static void put_hic(FILE *g, const sf_hic *hic) {
-    fprintf(
-        g,
-        "'acceleration.csv' skip 1 using 1:($1 >= %.9g && $1 <= %.9g ? $2 : NaN) with filledcurves y=0 fc "
-        "rgb '#c6dbef' title 'HIC %.1f: %.2f to %.2f ms', \\\n     ",
-        hic->t1 * 1e3, hic->t2 * 1e3, hic->value, hic->t1 * 1e3, hic->t2 * 1e3);
-}
-
-/* Thin and pale behind the curves, as they may be noisy. */
-static void put_points(FILE *g) {
-    fputs(
-        "'reference.csv' skip 1 using 1:4 with lines lw 1.2 lc rgb '#a0a0a0' title 'measured, as in its file', "
-        "\\\n     ",
-        g);
-}
-
-static void put_measured(FILE *g, const sf_comparison *c) {
-    fprintf(g,
-            ", \\\n     'reference.csv' skip 1 using 1:2 with lines lw 2 lc rgb '#202020' title 'measured");
-    if (c->cfc > 0)
-        fprintf(g, ", CFC %.0f", c->cfc);
-    fprintf(g, ": a_max %.1f g'", c->injury.a_max_g);
-}
-
-static void put_curves(FILE *g, const picture *p) {
+/* The measured points stand thin and pale behind the curves, as they may be noisy. */
+static void put_curves(sf_chart *chart, const picture *p) {
     const sf_figures *f = p->figures;
-    bool hic = f->injury.hic.value > 0;
-    sf_gnuplot_key(g, 1 + hic + p->raw + (p->comparison != NULL) + p->points, SF_PLOT_KEY_COLUMNS);
-    fputs("plot ", g);
-    if (hic)
-        put_hic(g, &f->injury.hic);
+    const sf_comparison *c = p->comparison;
+    char title[96], class[32] = "";
+    if (f->injury.hic.value > 0)
+        put_hic(chart, p);
     if (p->points)
-        put_points(g);
+        put_curve(chart, &c->raw, c->shift, 1.2, "#a0a0a0", "measured, as in its file");
     if (p->raw)
-        fputs("'history.csv' skip 1 using 1:2 with lines lw 1.2 lc rgb '#fd8d3c' title 'raw', \\\n     ", g);
-    fprintf(g, "'acceleration.csv' skip 1 using 1:2 with lines lw 4 lc rgb '#08519c' title '%sCFC %.0f'",
-            p->comparison ? "model, " : "", f->cfc);
-    if (p->comparison)
-        put_measured(g, p->comparison);
-    fputc('\n', g);
+        put_curve(chart, &f->raw, 0, 1.2, "#fd8d3c", "raw");
+    snprintf(title, sizeof title, "%sCFC %.0f", c ? "model, " : "", f->cfc);
+    put_curve(chart, &f->filtered, 0, 4, "#08519c", title);
+    if (!c)
+        return;
+    if (c->cfc > 0)
+        snprintf(class, sizeof class, ", CFC %.0f", c->cfc);
+    snprintf(title, sizeof title, "measured%s: a_max %.1f g", class, c->injury.a_max_g);
+    put_curve(chart, &c->measured, c->shift, 2, "#202020", title);
+}
+
+static void put_drop(sf_chart *chart, sf_panel *panel, const picture *p) {
+    const sf_injury *i = &p->figures->injury;
+    put_title(chart, p);
+    sf_axis_label(&panel->x, "time (ms)");
+    sf_axis_range(&panel->x, p->time[0] * 1e3, p->time[1] * 1e3);
+    sf_axis_label(&panel->y, "%s (g)", sf_figures_acceleration(p->figures));
+    snprintf(panel->y.page_label, sizeof panel->y.page_label, "acceleration (g)");
+    sf_axis_range(&panel->y, p->value[0], p->value[1]);
+    panel->key = SF_KEY_BELOW;
+    panel->key_columns = SF_PLOT_KEY_COLUMNS;
+    if (p->limited)
+        sf_chart_level(chart, p->limit, "#cb181d", "limit %g g", p->limit);
+    if (p->figures->touched && i->a_max_g > 0)
+        sf_chart_spot(chart, i->a_max_time * 1e3, i->a_max_g, "#08306b", "a_max %.1f g", i->a_max_g);
+    put_curves(chart, p);
 }
 
 /* Stress over strain of a compression test. */
-static void put_compression(FILE *g, const sf_results *r, const sf_figures *f, const sf_verdict *v) {
-    fprintf(g,
-            "set title 'Compression of a foam specimen of %.4g mm, %.4g cm²: %s'\nif (svg) { unset title }\n",
-            r->thickness * 1e3, f->area * 1e4, sf_verdict_phrase(v->grade));
-    fputs("set xlabel 'strain'\nset ylabel 'nominal stress (kPa)'\nunset key\n"
-          "plot 'compression.csv' skip 1 using 2:3 with lines lw 3 lc rgb '#08519c'\n",
-          g);
+static void put_compression(sf_chart *chart, sf_panel *panel, const picture *p) {
+    const sf_results *r = p->results;
+    const sf_history *h = &r->history;
+    double area = p->figures->area;
+    sf_chart_title(chart, "Compression of a foam specimen of %.4g mm, %.4g cm²: %s", r->thickness * 1e3,
+                   area * 1e4, sf_verdict_phrase(p->verdict->grade));
+    sf_axis_label(&panel->x, "strain");
+    sf_axis_label(&panel->y, "nominal stress (kPa)");
+    sf_series_points(
+        sf_chart_series(chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = "#08519c", .width = 3},
+                        NULL),
+        h->rows, h->indentation, h->contact_force, 1 / r->thickness, 1e-3 / area, 0);
 }
 
 const char *sf_plot_name(const sf_figures *figures) {
@@ -222,18 +212,13 @@ sf_status sf_plot_write(const sf_staging *output, const sf_results *results, con
     p.raw = sf_plot_difference(&figures->raw, &figures->filtered, p.time) > SEEN;
     p.points = comparison && points_are_seen(&p);
     find_values(&p);
-    FILE *script = sf_gnuplot_begin(output, name, WIDTH, HEIGHT, err);
-    if (!script)
-        return err->status;
-    if (figures->driven) {
-        put_compression(script, results, figures, verdict);
-    } else {
-        put_axes(script, &p);
-        put_peak(script, &p);
-        put_curves(script, &p);
-    }
-    if (sf_staging_close(script, name, err) != SF_OK)
-        return err->status;
-    sf_gnuplot_draw(output, name, warning, size);
-    return SF_OK;
+    sf_chart *chart = sf_chart_new(name, WIDTH, HEIGHT, err);
+    sf_panel *panel = sf_chart_panel(chart);
+    if (panel && figures->driven)
+        put_compression(chart, panel, &p);
+    else if (panel)
+        put_drop(chart, panel, &p);
+    sf_chart_write(chart, output, warning, size, err);
+    sf_chart_free(chart);
+    return err->status;
 }

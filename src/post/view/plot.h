@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* acceleration.png, drawn by gnuplot from acceleration.gp and history.csv (and reference.csv), which stay
- * beside it: the picture can be drawn again, or differently, with `gnuplot acceleration.gp`. Of a run with a
- * prescribed motion, compression.png from compression.gp and compression.csv. */
+/* acceleration.png: the curves, the HIC window and the limit; acceleration.gp, which draws the picture again, or
+ * differently, stays beside it. Of a run with a prescribed motion compression.png: stress over strain. */
 #ifndef SF_POST_PLOT_H
 #define SF_POST_PLOT_H
 
@@ -10,13 +9,13 @@
 #include "post/figures/verdict.h"
 #include "io/staging.h"
 
-/* Of the key: three entries such as "HIC 595.2: 6.54 to 15.33 ms" do not fit beside each other. */
+/* Columns of the key: three entries such as "HIC 595.2: 6.54 to 15.33 ms" do not fit beside each other. */
 enum { SF_PLOT_KEY_COLUMNS = 2 };
 
 /* The name of the script without its ending. */
 const char *sf_plot_name(const sf_figures *figures);
 
-/* After the CSV files. The picture names the verdict and shows its limits. `comparison` may be NULL. If
+/* Writes the script and the picture, which names the verdict and shows its limits. `comparison` may be NULL. If
  * gnuplot is absent or fails, `warning` (size bytes) says so in a sentence, and that is no error; otherwise
  * it is "". */
 sf_status sf_plot_write(const sf_staging *output, const sf_results *results, const sf_figures *figures,
@@ -27,8 +26,8 @@ sf_status sf_plot_write(const sf_staging *output, const sf_results *results, con
  * value, or the measured one above 5 %, and a margin; all of a run without a pulse. */
 void sf_plot_time_range(const sf_figures *figures, const sf_comparison *comparison, double range[2]);
 
-/* The largest difference of two curves over the range, of the largest value of `a`: is `a` seen beside `b`?
- */
+/* Returns the largest difference of two curves over the range, over the largest value of `a`: a curve with a small
+ * one is not seen beside the other. */
 double sf_plot_difference(const sf_series *a, const sf_series *b, const double range[2]);
 
 #endif

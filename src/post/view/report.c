@@ -12,7 +12,7 @@
 #include "post/results/origin.h"
 #include "post/view/plot.h"
 #include "post/view/report_picture.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/html.h"
 
 /* Without the brackets and quotes of the case's syntax. */
@@ -232,7 +232,7 @@ static void put_bodies(const page *p) {
 static void put_curve(const page *p, const sf_staging *output) {
     char warning[320];
     const sf_figures *f = p->figures;
-    char *svg = sf_gnuplot_svg(output, sf_plot_name(f), "softfall-post", warning, sizeof warning);
+    char *svg = sf_chart_svg(output, sf_plot_name(f), "softfall-post", warning, sizeof warning);
     if (!svg)
         sf_html_figure(p->file, NULL, "%s.", warning);
     else if (f->driven)

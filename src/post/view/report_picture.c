@@ -2,7 +2,7 @@
 #include "post/view/report_picture.h"
 
 #include "base/units.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "post/view/cut.h"
 #include "post/view/picture.h"
 #include "post/view/plot.h"
@@ -153,15 +153,18 @@ static char *draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], c
 
 /* ---- curves ---- */
 
-/* Draws NAME as SVG and removes its script. */
-static char *take_curve(const sf_staging *output, const char *name, char *text, size_t size) {
-    char warning[320], file[64];
-    char *svg = sf_gnuplot_svg(output, name, "softfall-post", warning, sizeof warning);
-    snprintf(file, sizeof file, "%s.gp", name);
-    sf_staging_remove(output, file);
+/* Draws a chart for the page, and frees it. */
+static char *take_curve(sf_chart *chart, const sf_staging *output, char *text, size_t size, sf_error *err) {
+    char warning[320];
+    char *svg = sf_chart_page(chart, output, "softfall-post", warning, sizeof warning, err);
     if (!svg)
         snprintf(text, size, "%s.", warning);
+    sf_chart_free(chart);
     return svg;
+}
+
+static sf_series_style line_of(const char *colour, double width) {
+    return (sf_series_style){.kind = SF_SERIES_LINE, .colour = colour, .width = width};
 }
 
 /* A step of 1, 2 or 5 times a power of ten that divides the axis into five parts or a few less. */
@@ -171,17 +174,6 @@ static double tic_step(double top) {
 }
 
 enum { SMALL_WIDTH = 790, SMALL_HEIGHT = 720, HALF_WIDTH = 1130, FORCE_HEIGHT = 570, HALF_HEIGHT = 460 };
-
-static void put_profile(FILE *g, const sf_section_point *station, double top, const sf_results *r,
-                        const instant *i, int number) {
-    fprintf(g, "$instant%d << EOD\n", number);
-    for (int s = 0; s < SF_SECTION_STATIONS; s++)
-        if (sf_section_inside(&station[s]))
-            fprintf(g, "%.6g,%.6g\n",
-                    1e-3 * sf_section_mean(i->frame.field[SF_FRAME_VON_MISES], 1, 0, &station[s]),
-                    1e3 * (top - sf_section_mean(r->position, 3, 2, &station[s])));
-    fputs("EOD\n", g);
-}
 
 static sf_status draw_profile(const sf_staging *output, const sf_results *r, const instant list[SF_INSTANTS],
                               char **svg, char *text, size_t size, sf_error *err) {
@@ -193,53 +185,52 @@ static sf_status draw_profile(const sf_staging *output, const sf_results *r, con
         count += list[k].head != NULL;
     if (count == 0)
         return SF_OK;
-    FILE *g = sf_gnuplot_begin(output, "profile", SMALL_WIDTH, SMALL_HEIGHT, err);
-    if (!g)
-        return err->status;
     double top = sf_section_stations(r, station);
-    for (int k = 0; k < SF_INSTANTS; k++)
-        if (list[k].head)
-            put_profile(g, station, top, r, &list[k], k);
-    fprintf(
-        g,
-        "set xlabel 'von Mises stress (kPa)'\nset ylabel 'undeformed depth (mm)' offset 1,0\nset yrange [%.6g:0]\n"
-        "set logscale x\n",
-        r->thickness * 1e3);
-    fputs(
-        "set bmargin 4.6\nset key at screen 0.55,0.015 center bottom horizontal maxcols 3 Left reverse samplen 1.2 "
-        "width -1.5\nplot ",
-        g);
-    for (int k = 0; k < SF_INSTANTS; k++)
-        if (list[k].head)
-            fprintf(g, "$instant%d using 1:2 with lines lw 4 lc rgb '%s' title '%.1f ms'%s", k, colour[k],
-                    list[k].head->time * 1e3, --count > 0 ? ", " : "\n");
-    if (sf_staging_close(g, "profile.gp", err) != SF_OK)
-        return err->status;
+    sf_chart *chart = sf_chart_new("profile", SMALL_WIDTH, SMALL_HEIGHT, err);
+    sf_panel *panel = sf_chart_panel(chart);
+    if (panel) {
+        sf_axis_label(&panel->x, "von Mises stress (kPa)");
+        sf_axis_label(&panel->y, "undeformed depth (mm)");
+        sf_axis_range(&panel->y, r->thickness * 1e3, 0);
+        panel->x.logarithmic = true;
+        panel->key = SF_KEY_BELOW;
+    }
+    for (int k = 0; k < SF_INSTANTS; k++) {
+        if (!list[k].head)
+            continue;
+        sf_series_data *line =
+            sf_chart_series(chart, line_of(colour[k], 4), "%.1f ms", list[k].head->time * 1e3);
+        for (int s = 0; s < SF_SECTION_STATIONS; s++)
+            if (sf_section_inside(&station[s]))
+                sf_series_point(
+                    line, 1e-3 * sf_section_mean(list[k].frame.field[SF_FRAME_VON_MISES], 1, 0, &station[s]),
+                    1e3 * (top - sf_section_mean(r->position, 3, 2, &station[s])));
+    }
     snprintf(text, size, "Von Mises stress through the thickness, under the axis of the missile.");
-    *svg = take_curve(output, "profile", text, size);
-    return SF_OK;
+    *svg = take_curve(chart, output, text, size, err);
+    return err->status;
 }
 
 static sf_status draw_force(const sf_staging *output, const sf_history *h, char **svg, char *text,
                             size_t size, sf_error *err) {
-    FILE *g = sf_gnuplot_begin(output, "force", HALF_WIDTH, FORCE_HEIGHT, err);
-    if (!g)
-        return err->status;
-    fprintf(
-        g,
-        "set xlabel 'indentation (mm)'\nset ylabel 'contact force (kN)'\nset yrange [0:*]\nset xrange [0:*]\n"
-        "set ytics %.6g\nunset key\nplot 'history.csv' using "
-        "(column('indentation_mm')):(column('contact_force_N')/1000) with lines lw 3.5 lc rgb '#08519c'\n",
-        tic_step(fmax(1e-3 * sf_history_largest(h, h->contact_force), 1e-9)));
-    if (sf_staging_close(g, "force.gp", err) != SF_OK)
-        return err->status;
+    sf_chart *chart = sf_chart_new("force", HALF_WIDTH, FORCE_HEIGHT, err);
+    sf_panel *panel = sf_chart_panel(chart);
+    if (panel) {
+        sf_axis_label(&panel->x, "indentation (mm)");
+        sf_axis_range(&panel->x, 0, NAN);
+        sf_axis_label(&panel->y, "contact force (kN)");
+        sf_axis_range(&panel->y, 0, NAN);
+        panel->y.step = tic_step(fmax(1e-3 * sf_history_largest(h, h->contact_force), 1e-9));
+    }
+    sf_series_points(sf_chart_series(chart, line_of("#08519c", 3.5), NULL), h->rows, h->indentation,
+                     h->contact_force, 1e3, 1e-3, 0);
     snprintf(text, size, "Force on the missile over its indentation.");
-    *svg = take_curve(output, "force", text, size);
-    return SF_OK;
+    *svg = take_curve(chart, output, text, size, err);
+    return err->status;
 }
 
-/* The curves that are seen beside the largest. */
-static void put_energies(FILE *g, const sf_history *h, double top) {
+/* The energies that are seen beside the largest. */
+static void put_energies(sf_chart *chart, const sf_history *h, double top) {
     static const struct {
         const char *name, *title, *colour;
     } list[] = {
@@ -247,19 +238,12 @@ static void put_energies(FILE *g, const sf_history *h, double top) {
         {"energy_hysteresis", "hysteresis", "#cb181d"},       {"energy_viscous", "viscous", "#f08030"},
         {"energy_kinetic_pad", "pad in motion", "#a6761d"},   {"energy_friction", "friction", "#e7298a"},
         {"energy_stabilisation", "stabilisation", "#8856a7"}, {"energy_contact", "contact", "#41ab5d"}};
-    bool any = false;
     for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
-        for (int c = 0; c < SF_HISTORY_COUNT; c++) {
-            const sf_history_column *column = sf_history_column_get(c);
-            if (strcmp(column->name, list[k].name) != 0 || sf_history_largest(h, h->column[c]) < 0.01 * top)
-                continue;
-            fprintf(
-                g,
-                "%s 'history.csv' using (column('time_ms')):(column('%s')) with lines lw 3 lc rgb '%s' title '%s'",
-                any ? "," : "plot", column->csv, list[k].colour, list[k].title);
-            any = true;
-        }
-    fputs(any ? "\n" : "plot 0 notitle\n", g);
+        for (int c = 0; c < SF_HISTORY_COUNT; c++)
+            if (strcmp(sf_history_column_get(c)->name, list[k].name) == 0 &&
+                sf_history_largest(h, h->column[c]) >= 0.01 * top)
+                sf_series_points(sf_chart_series(chart, line_of(list[k].colour, 3), "%s", list[k].title),
+                                 h->rows, h->time, h->column[c], 1e3, 1, 0);
 }
 
 static sf_status draw_energies(const sf_staging *output, const sf_history *h, const sf_figures *f, char **svg,
@@ -267,22 +251,21 @@ static sf_status draw_energies(const sf_staging *output, const sf_history *h, co
     double range[2];
     double top =
         fmax(sf_history_largest(h, h->energy_kinetic_missile), sf_history_largest(h, h->energy_stored));
-    FILE *g = sf_gnuplot_begin(output, "energies", HALF_WIDTH, HALF_HEIGHT, err);
-    if (!g)
-        return err->status;
+    sf_chart *chart = sf_chart_new("energies", HALF_WIDTH, HALF_HEIGHT, err);
+    sf_panel *panel = sf_chart_panel(chart);
     sf_plot_time_range(f, NULL, range);
-    fprintf(
-        g,
-        "set xlabel 'time (ms)'\nset ylabel 'energy (J)'\nset yrange [0:*]\nset xrange [%.6g:%.6g]\n"
-        "set ytics %.6g\nset rmargin 17\n"
-        "set key at screen 0.99,0.58 right center vertical maxcols 1 Left reverse samplen 1.5 spacing 0.9\n",
-        range[0] * 1e3, range[1] * 1e3, tic_step(fmax(top, 1e-9)));
-    put_energies(g, h, top);
-    if (sf_staging_close(g, "energies.gp", err) != SF_OK)
-        return err->status;
+    if (panel) {
+        sf_axis_label(&panel->x, "time (ms)");
+        sf_axis_range(&panel->x, range[0] * 1e3, range[1] * 1e3);
+        sf_axis_label(&panel->y, "energy (J)");
+        sf_axis_range(&panel->y, 0, NAN);
+        panel->y.step = tic_step(fmax(top, 1e-9));
+        panel->key = SF_KEY_RIGHT;
+    }
+    put_energies(chart, h, top);
     snprintf(text, size, "Energies of the whole pad and missile; those below 1 %% are left out.");
-    *svg = take_curve(output, "energies", text, size);
-    return SF_OK;
+    *svg = take_curve(chart, output, text, size, err);
+    return err->status;
 }
 
 /* ---- all ---- */

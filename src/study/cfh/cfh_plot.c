@@ -2,8 +2,9 @@
 #include "study/cfh/cfh_plot.h"
 
 #include "study/cfh/spread_report.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include <math.h>
+#include <string.h>
 
 /* Heights (m) of the picture: the successes, the failures not far above them, and a margin. */
 static void height_range(const sf_cfh_report *r, double range[2]) {
@@ -25,155 +26,132 @@ static double value_top(const sf_cfh_report *r, sf_cfh_criterion c) {
     return 1.12 * top;
 }
 
-static void put_style(FILE *g, const sf_cfh_report *r) {
-    double range[2];
+/* Both panels stand above each other; the x axis is below the lower one, the rig's above the upper one. */
+static void put_axes(sf_panel *panel, const sf_cfh_report *r, sf_cfh_criterion c) {
+    bool upper = c == SF_CFH_A_MAX, rig = r->rig->pairs > 0;
+    double range[2], top = rig ? 0.855 : 0.93, middle = 0.5 * (0.155 + top);
     height_range(r, range);
-    fputs("set key at screen 0.54,0.025 center center horizontal maxcols 5 Left reverse samplen 2 width 2\n",
-          g);
-    fprintf(g, "set xrange [%.6g:%.6g]\n", range[0], range[1]);
+    const double area[4] = {0.11, 0.97, upper ? middle + 0.025 : 0.155, upper ? top : middle - 0.025};
+    memcpy(panel->area, area, sizeof area);
+    sf_axis_label(&panel->x, "drop height, free fall (m)");
+    sf_axis_range(&panel->x, range[0], range[1]);
+    panel->x.hidden = upper;
+    sf_axis_label(&panel->y, "%s", upper ? "a_max (g)" : "HIC");
+    sf_axis_range(&panel->y, 0, value_top(r, c));
+    if (upper && rig) {
+        sf_axis_label(&panel->x2, "drop height on the rig (m)");
+        sf_axis_range(&panel->x2, sf_cfh_rig_height(r->rig, range[0]), sf_cfh_rig_height(r->rig, range[1]));
+    }
+    panel->key = upper ? SF_KEY_NONE : SF_KEY_BELOW; /* one key, below both */
+    panel->key_columns = 5;
 }
 
-/* The x axis below the lower panel, the rig's above the upper one. */
-static void put_panel_axes(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
-    bool upper = c == SF_CFH_A_MAX;
-    double range[2];
-    height_range(r, range);
-    if (upper && r->rig->pairs > 0)
-        fprintf(g,
-                "set x2range [%.6g:%.6g]\nset x2tics nomirror out scale 0.6\nset border 7\n"
-                "set x2label 'drop height on the rig (m)' offset 0,-0.4\n",
-                sf_cfh_rig_height(r->rig, range[0]), sf_cfh_rig_height(r->rig, range[1]));
-    else
-        fputs("unset x2tics\nunset x2label\nset border 3\n", g);
-    fputs(upper ? "set format x ''\nunset xlabel\n"
-                : "set format x '%g'\nset xlabel 'drop height, free fall (m)'\n",
-          g);
-    fputs(upper ? "set key off\n" : "set key on\n", g); /* one key, below both */
-    fprintf(g, "set ylabel '%s'\nset yrange [0:%.6g]\n", upper ? "a_max (g)" : "HIC", value_top(r, c));
-}
-
-/* The interval of the crossing as a band, where the draws give one. */
-static void put_interval(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c, const char *colour) {
-    double range[2];
+/* 95 % of the draws at each height. */
+static void put_band(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
     if (!r->spread)
         return;
-    height_range(r, range);
-    const sf_cfh_interval *interval = sf_cfh_spread_whole(r->spread, (int)c);
-    double low = fmax(interval->low, range[0]), high = fmin(interval->high, range[1]);
-    if (low < high)
-        fprintf(
-            g,
-            "set object 1 rectangle from first %.9g, graph 0 to first %.9g, first %.9g back fc rgb '%s' fs "
-            "solid 0.25 noborder\n",
-            low, high, r->plan->limit[c], colour);
+    sf_series_data *range = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_RANGE, .colour = "#6baed6", .opacity = 0.4},
+        "95 %% of the draws");
+    for (int k = 0; k < r->spread->grid; k++) {
+        const sf_cfh_band *band = &r->spread->band[c][k];
+        if (isfinite(band->low) && isfinite(band->high))
+            sf_series_add(range, r->spread->height[k], band->median, band->low, band->high);
+    }
 }
 
-/* The crossing as a line with its height beside it. */
-static void put_crossing(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
+/* The interval of the crossing as a band, where the draws give one, and the crossing as a line with its
+ * height. */
+static void put_crossing(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
     const sf_cfh_crossing *crossing = &r->result->crossing[c];
     bool decides = r->result->verdict == SF_CFH_FOUND && r->result->deciding == c;
     const char *colour = decides ? "#cb181d" : "#606060";
-    fputs("unset object\nunset arrow\nunset label\n", g);
-    fprintf(g,
-            "set label 2 'limit %g%s' at graph 0.01, first %.9g left offset 0,0.7 front tc rgb '#cb181d'\n",
-            r->plan->limit[c], sf_cfh_unit(c), r->plan->limit[c]);
-    put_interval(g, r, c, colour);
-    if (isnan(crossing->height))
-        return;
-    fprintf(g,
-            "set arrow 1 from first %.9g, graph 0 to first %.9g, first %.9g nohead front lw 2 lc rgb '%s'\n",
-            crossing->height, crossing->height, r->plan->limit[c], colour);
-    fprintf(g, "set label 1 '%.3f m%s' at first %.9g, first %.9g right offset -0.6,0.8 front tc rgb '%s'\n",
-            crossing->height, decides ? ", decides" : "", crossing->height, r->plan->limit[c], colour);
-}
-
-static bool any_failed(const sf_cfh_points *points) {
-    for (int k = 0; k < points->count; k++)
-        if (points->point[k].failed)
-            return true;
-    return false;
-}
-
-static void put_curves(FILE *g, const sf_cfh_report *r, sf_cfh_criterion c) {
-    const sf_cfh_fit *fit = &r->result->crossing[c].fit;
-    int column = c == SF_CFH_A_MAX ? 3 : 4;
-    if (fit->count > 0)
-        fprintf(g, "fit(h) = exp(%.12g + %.12g*(log(h) - %.12g) + %.12g*(log(h) - %.12g)**2)\n", fit->c[0],
-                fit->c[1], fit->centre, fit->c[2], fit->centre);
-    fputs("plot ", g);
-    if (r->spread)
-        fprintf(
-            g,
-            "'cfh_band.csv' skip 1 using 1:%d:%d with filledcurves fc rgb '#6baed6' fs solid 0.4 noborder title "
-            "'95 %% of the draws', \\\n     ",
-            c == SF_CFH_A_MAX ? 2 : 5, c == SF_CFH_A_MAX ? 4 : 7);
-    fprintf(g, "%.9g with lines lw 2.5 dt 2 lc rgb '#cb181d' title 'limit', \\\n     ", r->plan->limit[c]);
-    if (fit->count > 0) {
-        double lowest = 0, highest = 0;
-        for (int k = 0, n = 0; k < r->points->count; k++) {
-            if (r->points->point[k].failed)
-                continue;
-            if (n == fit->first)
-                lowest = r->points->point[k].height;
-            if (n == fit->first + fit->count - 1)
-                highest = r->points->point[k].height;
-            n++;
-        }
-        fprintf(
-            g,
-            "[h=%.9g:%.9g] '+' using (h):(fit(h)) with lines lw 3.5 lc rgb '#08519c' title 'fit', \\\n     ",
-            lowest, highest);
-    }
-    fprintf(g, "'cfh.csv' skip 1 using 1:%d with points pt 7 ps 1.8*dot lc rgb '#08519c' title 'simulated'",
-            column);
-    if (any_failed(r->points))
-        fputs(
-            ", \\\n     'cfh.csv' skip 1 using ($11 == 1 ? $1 : NaN):(0) with points pt 2 ps 2.2*dot lw 3 lc "
-            "rgb '#606060' title 'failed'",
-            g);
-    fputc('\n', g);
-}
-
-/* The title says the verdict in a few words. */
-static void put_title(FILE *g, const sf_cfh_report *r) {
-    const sf_cfh_result *v = r->result;
-    fprintf(
-        g,
-        "set multiplot layout 2,1 margins 0.11,0.97,0.155,%s spacing 0,0.05 title (svg ? '' : 'Critical fall height",
-        r->rig->pairs > 0 ? "0.855" : "0.93");
-    if (v->verdict == SF_CFH_FOUND)
-        fprintf(g, " %.3f m of free fall", v->crossing[v->deciding].height);
-    else if (v->verdict == SF_CFH_ABOVE)
-        fprintf(g, " above %.3f m of free fall", v->highest);
-    else if (v->verdict == SF_CFH_BELOW)
-        fprintf(g, " below %.3f m of free fall", v->lowest);
-    else
-        fputs(" not determined", g);
-    if (v->verdict == SF_CFH_FOUND && r->rig->pairs > 0)
-        fprintf(g, ", %.3f m on the rig", sf_cfh_rig_height(r->rig, v->crossing[v->deciding].height));
+    double limit = r->plan->limit[c], range[2];
+    height_range(r, range);
+    sf_chart_level(chart, limit, "#cb181d", "limit %g%s", limit, sf_cfh_unit(c));
     if (r->spread) {
-        char text[64];
-        fprintf(g, "; 95 %% interval %s",
-                sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, SF_CFH_FIRST), text, sizeof text));
+        const sf_cfh_interval *interval = sf_cfh_spread_whole(r->spread, (int)c);
+        const double x[2] = {fmax(interval->low, range[0]), fmin(interval->high, range[1])};
+        if (x[0] < x[1])
+            sf_chart_band(chart, x, (const double[2]){-INFINITY, limit}, colour, 0.25);
     }
-    fputs(" (indicative)')\n", g);
+    if (!isnan(crossing->height))
+        sf_chart_drop(chart, crossing->height, limit, colour, "%.3f m%s", crossing->height,
+                      decides ? ", decides" : "");
+}
+
+/* The fit between the lowest and the highest of its points. */
+static void put_fit(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
+    enum { STEPS = 200 };
+    const sf_cfh_fit *fit = &r->result->crossing[c].fit;
+    double lowest = 0, highest = 0;
+    if (fit->count == 0)
+        return;
+    for (int k = 0, n = 0; k < r->points->count; k++) {
+        if (r->points->point[k].failed)
+            continue;
+        if (n == fit->first)
+            lowest = r->points->point[k].height;
+        if (n++ == fit->first + fit->count - 1)
+            highest = r->points->point[k].height;
+    }
+    sf_series_data *line = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = "#08519c", .width = 3.5}, "fit");
+    for (int k = 0; k <= STEPS; k++) {
+        double height = lowest + (highest - lowest) * k / STEPS;
+        sf_series_point(line, height, sf_cfh_fit_at(fit, height));
+    }
+}
+
+static void put_points(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
+    sf_series_data *simulated = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_POINTS, .colour = "#08519c", .size = 1.8}, "simulated");
+    sf_series_data *failed = sf_chart_series(
+        chart,
+        (sf_series_style){
+            .kind = SF_SERIES_POINTS, .colour = "#606060", .shape = SF_POINT_CROSS, .size = 2.2, .width = 3},
+        "failed");
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        sf_series_point(p->failed ? failed : simulated, p->height, p->failed ? 0 : p->value[c]);
+    }
+}
+
+/* The verdict in a few words. */
+static void put_title(sf_chart *chart, const sf_cfh_report *r) {
+    const sf_cfh_result *v = r->result;
+    char height[96] = "not determined", rig[48] = "", interval[64], spread[96] = "";
+    if (v->verdict == SF_CFH_FOUND)
+        snprintf(height, sizeof height, "%.3f m of free fall", v->crossing[v->deciding].height);
+    else if (v->verdict == SF_CFH_ABOVE)
+        snprintf(height, sizeof height, "above %.3f m of free fall", v->highest);
+    else if (v->verdict == SF_CFH_BELOW)
+        snprintf(height, sizeof height, "below %.3f m of free fall", v->lowest);
+    if (v->verdict == SF_CFH_FOUND && r->rig->pairs > 0)
+        snprintf(rig, sizeof rig, ", %.3f m on the rig",
+                 sf_cfh_rig_height(r->rig, v->crossing[v->deciding].height));
+    if (r->spread)
+        snprintf(
+            spread, sizeof spread, "; 95 %% interval %s",
+            sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, SF_CFH_FIRST), interval, sizeof interval));
+    sf_chart_title(chart, "Critical fall height %s%s%s (indicative)", height, rig, spread);
 }
 
 sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *warning, size_t size,
                       sf_error *err) {
-    FILE *g = sf_gnuplot_begin(output, "cfh", 1600, 1300, err);
-    if (!g)
-        return err->status;
-    put_style(g, r);
-    put_title(g, r);
+    sf_chart *chart = sf_chart_new("cfh", 1600, 1300, err);
+    put_title(chart, r);
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
-        put_panel_axes(g, r, c);
-        put_crossing(g, r, c);
-        put_curves(g, r, c);
+        sf_panel *panel = sf_chart_panel(chart);
+        if (!panel)
+            break;
+        put_axes(panel, r, c);
+        put_band(chart, r, c);
+        put_crossing(chart, r, c);
+        put_fit(chart, r, c);
+        put_points(chart, r, c);
     }
-    fputs("unset multiplot\n", g);
-    if (sf_staging_close(g, "cfh.gp", err) != SF_OK)
-        return err->status;
-    sf_gnuplot_draw(output, "cfh", warning, size);
-    return SF_OK;
+    sf_chart_write(chart, output, warning, size, err);
+    sf_chart_free(chart);
+    return err->status;
 }

@@ -5,7 +5,7 @@
 
 #include "study/cfh/cfh_report.h"
 
-/* `warning` (size bytes): why there is no picture, or "". cfh.csv and cfh_band.csv must have been written. */
+/* `warning` (size bytes) says why there is no picture, or is "". */
 sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *report, char *warning, size_t size,
                       sf_error *err);
 

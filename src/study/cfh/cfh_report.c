@@ -4,7 +4,7 @@
 #include "build_info.h"
 #include "study/cfh/series.h"
 #include "study/cfh/spread_report.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/html.h"
 #include "report/json.h"
 #include "post/results/origin.h"
@@ -509,7 +509,7 @@ static void put_bodies(FILE *page, const sf_cfh_report *r) {
 
 static void put_picture(FILE *page, const sf_staging *output, const sf_cfh_report *r) {
     char warning[320];
-    char *svg = sf_gnuplot_svg(output, "cfh", "softfall-cfh", warning, sizeof warning);
+    char *svg = sf_chart_svg(output, "cfh", "softfall-cfh", warning, sizeof warning);
     if (svg)
         sf_html_figure(
             page, svg, "a_max and HIC over the drop height%s.",

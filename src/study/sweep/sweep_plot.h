@@ -13,7 +13,7 @@ typedef struct sf_sweep_picture {
 const sf_sweep_picture *sf_sweep_pictures(void);
 
 /* Writes NAME.gp and NAME.png of each picture that the runs allow. `folder`: that of the results' folders
- * ("DIR/runs"). `warning`: as sf_gnuplot_draw. */
+ * ("DIR/runs"). `warning`: as sf_chart_write. */
 sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *analysis, const char *folder,
                         char *warning, size_t size, sf_error *err);
 

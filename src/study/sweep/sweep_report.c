@@ -2,7 +2,7 @@
 #include "study/sweep/sweep_report.h"
 
 #include "build_info.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/html.h"
 #include "report/json.h"
 #include "study/sweep/sweep_plot.h"
@@ -279,7 +279,7 @@ static void put_pictures(FILE *page, const sf_staging *output) {
         snprintf(script, sizeof script, "%s.gp", p->name);
         if (!sf_staging_has(output, script))
             continue;
-        char *svg = sf_gnuplot_svg(output, p->name, "softfall-sweep", warning, sizeof warning);
+        char *svg = sf_chart_svg(output, p->name, "softfall-sweep", warning, sizeof warning);
         if (svg)
             sf_html_figure(page, svg, "%s.", p->caption);
         else

@@ -4,7 +4,7 @@
 
 #include "build_info.h"
 #include "study/fit/compression/phrase.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/html.h"
 #include <math.h>
 #include <stdlib.h>
@@ -174,7 +174,7 @@ static void put_quality(FILE *out, const sf_compression_fit *fit, const sf_compr
 
 static void put_picture(FILE *out, const sf_staging *output) {
     char warning[320];
-    char *svg = sf_gnuplot_svg(output, "fit", "softfall-fit", warning, sizeof warning);
+    char *svg = sf_chart_svg(output, "fit", "softfall-fit", warning, sizeof warning);
     if (svg)
         sf_html_figure(out, svg,
                        "Data (points) and fit (lines), and the deviations over the scatter (band: ±2).");

@@ -4,7 +4,7 @@
 #include "build_info.h"
 #include "study/fit/drop/inference_report.h"
 #include "study/fit/drop/drop_report_parts.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include <stdlib.h>
 
 static void put_misfit(FILE *f, const sf_drop_fit *fit) {
@@ -54,7 +54,7 @@ static void put_banner(FILE *f, const sf_drop_fit *fit) {
 
 static void put_picture(FILE *f, const sf_staging *output) {
     char warning[320];
-    char *svg = sf_gnuplot_svg(output, "fit", "softfall-fit", warning, sizeof warning);
+    char *svg = sf_chart_svg(output, "fit", "softfall-fit", warning, sizeof warning);
     if (svg)
         sf_html_figure(
             f, svg,
@@ -119,12 +119,11 @@ sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *av
                                const char *command, const sf_staging *output, char *warning, size_t size,
                                sf_error *err) {
     if (sf_report_curve_csv(fit, output, err) != SF_OK || sf_report_drops_csv(fit, output, err) != SF_OK ||
-        sf_report_picture(fit, output, err) != SF_OK ||
+        sf_report_picture(fit, output, warning, size, err) != SF_OK ||
         sf_report_material(fit, average, input_path, output, err) != SF_OK ||
         write_json(fit, average, input_path, output, err) != SF_OK ||
         (average && sf_inference_csv(average, output, err) != SF_OK))
         return err->status;
-    sf_gnuplot_draw(output, "fit", warning, size);
     return write_report(fit, average, input_path, command, output, err);
 }
 

@@ -4,10 +4,11 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "build_info.h"
 #include "material/low_density_foam.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "study/fit/drop/inference_report.h"
 #include "study/material_file.h"
 
@@ -34,28 +35,45 @@ void sf_report_curve_html(FILE *f, const sf_drop_fit *fit) {
     sf_html_table_end(&table);
 }
 
-sf_status sf_report_curve_csv(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
+/* The loading curve in the middle of each strain bin. */
+typedef struct sf_strain_bin {
+    double strain, stress, low, high; /* -, kPa */
+    double information;               /* share of the drops' */
+} sf_strain_bin;
+
+static sf_status list_strain_bins(const sf_drop_fit *fit, sf_strain_bin bin[SF_FIT_STRAIN_BINS],
+                                  sf_error *err) {
     sf_foam_card card;
+    sf_curve curve;
     double sum = 0;
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        sum += fit->information[b];
+    SF_TRY(sf_drop_fit_card(fit->input, fit->result.u, &card, err));
+    if (sf_curve_build(&card, 0, &curve, err) == SF_OK)
+        for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+            double slope, energy, band = exp(sf_report_half_width(fit) * fit->curve_sd[b]);
+            bin[b].strain = 0.05 * (b + 0.5);
+            sf_curve_evaluate(&curve, bin[b].strain, &bin[b].stress, &slope, &energy);
+            bin[b].stress *= 1e-3;
+            bin[b].low = bin[b].stress / band;
+            bin[b].high = bin[b].stress * band;
+            bin[b].information = fit->information[b] / fmax(sum, 1e-300);
+        }
+    sf_curve_free(&curve);
+    sf_foam_card_free(&card);
+    return err->status;
+}
+
+sf_status sf_report_curve_csv(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
+    sf_strain_bin bin[SF_FIT_STRAIN_BINS];
+    SF_TRY(list_strain_bins(fit, bin, err));
     FILE *f = sf_staging_open(output, "fit-curve.csv", err);
     if (!f)
         return err->status;
+    fputs("strain,stress_kPa,low95_kPa,high95_kPa,information\n", f);
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
-        sum += fit->information[b];
-    if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
-        sf_curve curve;
-        fputs("strain,stress_kPa,low95_kPa,high95_kPa,information\n", f);
-        if (sf_curve_build(&card, 0, &curve, err) == SF_OK)
-            for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
-                double strain = 0.05 * (b + 0.5), stress, slope, energy,
-                       band = exp(sf_report_half_width(fit) * fit->curve_sd[b]);
-                sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
-                fprintf(f, "%.3f,%.6g,%.6g,%.6g,%.6g\n", strain, 1e-3 * stress, 1e-3 * stress / band,
-                        1e-3 * stress * band, fit->information[b] / fmax(sum, 1e-300));
-            }
-        sf_curve_free(&curve);
-        sf_foam_card_free(&card);
-    }
+        fprintf(f, "%.3f,%.6g,%.6g,%.6g,%.6g\n", bin[b].strain, bin[b].stress, bin[b].low, bin[b].high,
+                bin[b].information);
     return sf_staging_close(f, "fit-curve.csv", err);
 }
 
@@ -603,47 +621,91 @@ static double peak_time_ms(const sf_series *curve) {
     return 1e3 * curve->time[at];
 }
 
-static void put_strain_panels(FILE *f) {
-    fputs(
-        "set size 0.5,0.5\nset origin 0,0.46\nset xtics 0.2\n"
-        "set key left top Left reverse samplen 2\nset xlabel 'engineering strain'\nset xrange [0:0.95]\n"
-        "set ylabel 'nominal stress (kPa)'\nset logscale y\n"
-        "plot 'fit-curve.csv' skip 1 u 1:3:4 w filledcurves fc rgb '#c6dbef' t '95 %', '' skip 1 u 1:2 w l "
-        "lw 3 lc rgb '#08519c' t 'loading curve'\n"
-        "unset logscale y\nset origin 0.5,0.46\nunset key\nset ylabel 'information of the drops (share)'\nset yrange [0:*]\n"
-        "set boxwidth 0.045\nset style fill solid 0.6\n"
-        "plot 'fit-curve.csv' skip 1 u 1:5 w boxes lc rgb '#fd8d3c' t 'information by strain'\n",
-        f);
+static sf_panel *new_panel(sf_chart *chart, const char *x, const char *y, double left, double right,
+                           double bottom, double top) {
+    const double area[4] = {left, right, bottom, top};
+    sf_panel *panel = sf_chart_panel(chart);
+    if (!panel)
+        return NULL;
+    memcpy(panel->area, area, sizeof area);
+    sf_axis_label(&panel->x, "%s", x);
+    sf_axis_label(&panel->y, "%s", y);
+    return panel;
+}
+
+/* The loading curve with its interval, and which strains the drops see. */
+static sf_status put_strain_panels(sf_chart *chart, const sf_drop_fit *fit, sf_error *err) {
+    sf_strain_bin bin[SF_FIT_STRAIN_BINS];
+    SF_TRY(list_strain_bins(fit, bin, err));
+    sf_panel *panel = new_panel(chart, "engineering strain", "nominal stress (kPa)", 0.09, 0.49, 0.53, 0.92);
+    if (panel) {
+        sf_axis_range(&panel->x, 0, 0.95);
+        panel->x.step = 0.2;
+        panel->y.logarithmic = true;
+        panel->key = SF_KEY_TOP_LEFT;
+    }
+    sf_series_data *range =
+        sf_chart_series(chart, (sf_series_style){.kind = SF_SERIES_RANGE, .colour = "#c6dbef"}, "95 %%");
+    sf_series_data *curve = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = "#08519c", .width = 3}, "loading curve");
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+        sf_series_add(range, bin[b].strain, bin[b].stress, bin[b].low, bin[b].high);
+        sf_series_point(curve, bin[b].strain, bin[b].stress);
+    }
+    panel =
+        new_panel(chart, "engineering strain", "information of the drops (share)", 0.58, 0.98, 0.53, 0.92);
+    if (panel) {
+        sf_axis_range(&panel->x, 0, 0.95);
+        panel->x.step = 0.2;
+        sf_axis_range(&panel->y, 0, NAN);
+    }
+    sf_series_data *boxes = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_BOXES, .colour = "#fd8d3c", .size = 0.045, .opacity = 0.6},
+        NULL);
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
+        sf_series_point(boxes, bin[b].strain, bin[b].information);
+    return err->status;
 }
 
 /* Simulated curves; a circle at each measured peak. */
-static void put_drop_panel(FILE *f, const sf_drop_fit *fit) {
-    fputs(
-        "set size 1,0.46\nset origin 0,0\nset autoscale\nset xtics auto\nset xrange [0:*]\nset yrange [0:*]\nset xlabel 'time after contact (ms)'\n"
-        "set ylabel 'acceleration (g)'\nset key on\n",
-        f);
-    sf_gnuplot_key(f, fit->input->drop_count + 1, 3);
-    for (int d = 0; d < fit->measured_drops; d++)
-        if (!isnan(fit->input->drop[d].value[SF_FIT_A_MAX]))
-            fprintf(f, "set label '' at %.6g,%.6g point pt 6 ps 2*dot lw 2 lc %d\n",
-                    peak_time_ms(&fit->simulated[d].curve), fit->input->drop[d].value[SF_FIT_A_MAX], d + 1);
-    fputs("plot ", f);
+static void put_drop_panel(sf_chart *chart, const sf_drop_fit *fit) {
+    static const char *const colours[] = {"#9400d3", "#009e73", "#56b4e9", "#e69f00",
+                                          "#f0e442", "#0072b2", "#e51e10", "#000000"};
+    sf_panel *panel = new_panel(chart, "time after contact (ms)", "acceleration (g)", 0.09, 0.98, 0.14, 0.43);
+    if (panel) {
+        sf_axis_range(&panel->x, 0, NAN);
+        sf_axis_range(&panel->y, 0, NAN);
+        panel->key = SF_KEY_BELOW;
+    }
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
-        fprintf(f, "'fit-drops.csv' index %d u 1:2 w l lw 3 dt %d lc %d t '%s%s', ", d,
-                drop->predicted ? 2 : 1, d + 1, drop->name, drop->predicted ? " (predicted)" : "");
+        const sf_series *s = &fit->simulated[d].curve;
+        const sf_series_style style = {.kind = SF_SERIES_LINE,
+                                       .colour = colours[d % (int)(sizeof colours / sizeof colours[0])],
+                                       .width = 3,
+                                       .dashed = drop->predicted};
+        sf_series_points(
+            sf_chart_series(chart, style, "%s%s", drop->name, drop->predicted ? " (predicted)" : ""),
+            s->count, s->time, s->value, 1e3, 1, 0);
     }
-    fputs("NaN w p pt 6 ps 2*dot lw 2 lc rgb '#404040' t 'measured peak'\n", f);
+    sf_series_data *peaks = sf_chart_series(
+        chart,
+        (sf_series_style){
+            .kind = SF_SERIES_POINTS, .colour = "#404040", .shape = SF_POINT_CIRCLE, .size = 2, .width = 2},
+        "measured peak");
+    for (int d = 0; d < fit->measured_drops; d++)
+        if (!isnan(fit->input->drop[d].value[SF_FIT_A_MAX]))
+            sf_series_point(peaks, peak_time_ms(&fit->simulated[d].curve),
+                            fit->input->drop[d].value[SF_FIT_A_MAX]);
 }
 
-sf_status sf_report_picture(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
-    FILE *f = sf_gnuplot_begin(output, "fit", 1700, 1350, err);
-    if (!f)
-        return err->status;
-    fprintf(f, "set multiplot title 'Identification from drops: %s'\n", fit->input->material_name);
-    put_strain_panels(f);
-    if (fit->input->drop_count > 0)
-        put_drop_panel(f, fit);
-    fputs("unset multiplot\n", f);
-    return sf_staging_close(f, "fit.gp", err);
+sf_status sf_report_picture(const sf_drop_fit *fit, const sf_staging *output, char *warning, size_t size,
+                            sf_error *err) {
+    sf_chart *chart = sf_chart_new("fit", 1700, 1350, err);
+    sf_chart_title(chart, "Identification from drops: %s", fit->input->material_name);
+    if (chart && put_strain_panels(chart, fit, err) == SF_OK && fit->input->drop_count > 0)
+        put_drop_panel(chart, fit);
+    sf_chart_write(chart, output, warning, size, err);
+    sf_chart_free(chart);
+    return err->status;
 }

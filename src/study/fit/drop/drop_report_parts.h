@@ -72,6 +72,7 @@ sf_status sf_report_curve_csv(const sf_drop_fit *fit, const sf_staging *output, 
 /* The material file with its comments; `average`: NULL without a posterior. */
 sf_status sf_report_material(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
                              const sf_staging *output, sf_error *err);
-/* fit.gp, the script of the picture. */
-sf_status sf_report_picture(const sf_drop_fit *fit, const sf_staging *output, sf_error *err);
+/* fit.gp and fit.png; `warning` (size bytes) says why there is no picture, or is "". */
+sf_status sf_report_picture(const sf_drop_fit *fit, const sf_staging *output, char *warning, size_t size,
+                            sf_error *err);
 #endif

@@ -1,55 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "report/gnuplot.h"
+/* Pictures of a chart's script by gnuplot. */
+#include "report/chart_data.h"
 
 #include "io/plain_file.h"
 #include "io/process.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { NAME_SIZE = 64 };
-
-FILE *sf_gnuplot_begin(const sf_staging *output, const char *name, int width, int height, sf_error *err) {
-    char file[NAME_SIZE];
-    snprintf(file, sizeof file, "%s.gp", name);
-    FILE *script = sf_staging_open(output, file, err);
-    if (!script)
-        return NULL;
-    fprintf(
-        script,
-        "# gnuplot %s.gp draws %s.png, gnuplot -c %s.gp svg draws %s.svg: from any folder, beside this file.\n"
-        "set encoding utf8\n"
-        "if (exists('ARG0')) {\n    folder = ''\n"
-        "    do for [k = 1:strlen(ARG0)] { if (substr(ARG0, k, k) eq '/') { folder = substr(ARG0, 1, k) } }\n"
-        "    if (folder ne '') { cd folder }\n}\n",
-        name, name, name, name);
-    fprintf(script,
-            "svg = exists('ARG1') && ARG1 eq 'svg'\ndot = svg ? 0.5 : 1 # size of points\n"
-            "if (svg) {\n"
-            "    set terminal svg size %d,%d font 'Arial,11' linewidth 0.5 dashlength 2 noenhanced\n"
-            "    set output '%s.svg'\n"
-            "} else {\n"
-            "    set terminal pngcairo size %d,%d font 'DejaVu Sans,20' noenhanced background rgb 'white'\n"
-            "    set output '%s.png'\n}\n",
-            9 * width / 25, 9 * height / 25, name, width, height, name);
-    fputs("set datafile separator ','\n"
-          "set grid back lt 1 lc rgb '#d8d8d8' lw 1\nset border 3 lw 1.5 lc rgb '#404040'\n"
-          "set tics nomirror out scale 0.6\nset xlabel offset 0,0.4\n",
-          script);
-    return script;
-}
-
-void sf_gnuplot_key(FILE *script, int entries, int columns) {
-    int rows = (entries + columns - 1) / columns;
-    if (entries <= 0)
-        fputs("unset key\n", script);
-    else
-        fprintf(
-            script,
-            "set bmargin %.1f\nset key at screen 0.5,0.015 center bottom horizontal maxcols %d Left reverse "
-            "samplen 1.5 width (svg ? -4 : 1) spacing 1.1\n",
-            3.4 + 1.2 * rows, (entries + rows - 1) / rows);
-}
 
 /* Runs NAME.gp for a picture of that ending. `program`: that writes the page of the picture, or NULL if the
  * script stays and draws it later. */
@@ -79,10 +37,6 @@ static void run(const sf_staging *output, const char *name, const char *ending, 
                  picture, code, program ? program : command);
 }
 
-void sf_gnuplot_draw(const sf_staging *output, const char *name, char *warning, size_t size) {
-    run(output, name, "png", NULL, warning, size);
-}
-
 /* Reads a file of the staging directory and removes it; NULL on failure. */
 static char *take_file(const sf_staging *output, const char *name) {
     sf_error ignored = SF_ERROR_INIT;
@@ -95,7 +49,7 @@ static char *take_file(const sf_staging *output, const char *name) {
     return text;
 }
 
-/* What a reference to an id, or the id itself, begins with; its length there, or 0. */
+/* Returns the length of the beginning of an id, or of a reference to one; 0: there is none. */
 static size_t id_prefix(const char *text) {
     static const char *const prefix[] = {" id=\"", " id='", "href=\"#", "href='#", "url(#"};
     for (size_t k = 0; k < sizeof prefix / sizeof prefix[0]; k++)
@@ -104,7 +58,7 @@ static size_t id_prefix(const char *text) {
     return 0;
 }
 
-/* The length of the element <title> that begins here; 0 if none does. A browser would show gnuplot's names of
+/* Returns the length of the element <title> that begins here, or 0. A browser would show gnuplot's names of
  * the curves. */
 static size_t title_length(const char *text) {
     static const char end[] = "</title>";
@@ -137,8 +91,8 @@ char *sf_gnuplot_element(const char *text, const char *name) {
     return NULL;
 }
 
-char *sf_gnuplot_svg(const sf_staging *output, const char *name, const char *program, char *warning,
-                     size_t size) {
+char *sf_chart_svg(const sf_staging *output, const char *name, const char *program, char *warning,
+                   size_t size) {
     char picture[NAME_SIZE], *element = NULL;
     run(output, name, "svg", program, warning, size);
     snprintf(picture, sizeof picture, "%s.svg", name);
@@ -149,4 +103,25 @@ char *sf_gnuplot_svg(const sf_staging *output, const char *name, const char *pro
         snprintf(warning, size, "%s was drawn, but cannot be read", picture);
     free(text);
     return element;
+}
+
+sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *warning, size_t size,
+                         sf_error *err) {
+    warning[0] = '\0';
+    if (!chart || sf_chart_script(chart, output, err) != SF_OK)
+        return err->status;
+    run(output, chart->name, "png", NULL, warning, size);
+    return SF_OK;
+}
+
+char *sf_chart_page(const sf_chart *chart, const sf_staging *output, const char *program, char *warning,
+                    size_t size, sf_error *err) {
+    char script[NAME_SIZE];
+    warning[0] = '\0';
+    if (!chart || sf_chart_script(chart, output, err) != SF_OK)
+        return NULL;
+    char *svg = sf_chart_svg(output, chart->name, program, warning, size);
+    snprintf(script, sizeof script, "%s.gp", chart->name);
+    sf_staging_remove(output, script);
+    return svg;
 }

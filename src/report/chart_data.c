@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/chart_data.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FORMAT_INTO(text, last)                                                                              \
+    do {                                                                                                     \
+        va_list arguments;                                                                                   \
+        va_start(arguments, last);                                                                           \
+        vsnprintf(text, sizeof(text), last, arguments);                                                      \
+        va_end(arguments);                                                                                   \
+    } while (0)
+
+/* Returns the array with room for one element more; NULL after a failure, which err has. */
+static void *grown(sf_chart *chart, void *array, size_t count, size_t size) {
+    if (chart->err->status != SF_OK)
+        return NULL;
+    void *more = (count & (count - 1)) == 0 ? realloc(array, (count ? 2 * count : 1) * size) : array;
+    if (!more)
+        SF_FAIL(chart->err, SF_ERR_MEMORY, "out of memory for the picture %s", chart->name);
+    return more;
+}
+
+sf_chart *sf_chart_new(const char *name, int width, int height, sf_error *err) {
+    sf_chart *chart = sf_alloc(err, 1, sizeof *chart, "a picture");
+    if (chart)
+        *chart = (sf_chart){.name = name, .width = width, .height = height, .columns = 1, .err = err};
+    return chart;
+}
+
+static void free_axis(sf_axis *axis) {
+    for (int k = 0; k < axis->word_count; k++)
+        free(axis->word[k]);
+    free(axis->word);
+}
+
+void sf_chart_free(sf_chart *chart) {
+    if (!chart)
+        return;
+    for (size_t k = 0; k < chart->panel_count; k++) {
+        sf_chart_panel_data *p = chart->panel[k];
+        for (size_t s = 0; s < p->series_count; s++) {
+            for (size_t i = 0; p->series[s]->text && i < p->series[s]->count; i++)
+                free(p->series[s]->text[i]);
+            free(p->series[s]->text);
+            free(p->series[s]->value);
+            free(p->series[s]);
+        }
+        free(p->series);
+        free(p->mark);
+        free_axis(&p->shown.x);
+        free_axis(&p->shown.y);
+        free_axis(&p->shown.x2);
+        free(p);
+    }
+    free(chart->panel);
+    free(chart);
+}
+
+void sf_chart_title(sf_chart *chart, const char *format, ...) {
+    if (chart)
+        FORMAT_INTO(chart->title, format);
+}
+
+void sf_chart_columns(sf_chart *chart, int columns) {
+    if (chart)
+        chart->columns = columns;
+}
+
+sf_panel *sf_chart_panel(sf_chart *chart) {
+    static const sf_axis automatic = {.low = NAN, .high = NAN};
+    sf_chart_panel_data **list = chart ? grown(chart, chart->panel, chart->panel_count, sizeof *list) : NULL;
+    if (!list)
+        return NULL;
+    chart->panel = list;
+    sf_chart_panel_data *panel = sf_alloc(chart->err, 1, sizeof *panel, "a picture");
+    if (!panel)
+        return NULL;
+    *panel = (sf_chart_panel_data){.shown = {.x = automatic, .y = automatic, .x2 = automatic}};
+    list[chart->panel_count++] = panel;
+    return &panel->shown;
+}
+
+void sf_axis_label(sf_axis *axis, const char *format, ...) {
+    FORMAT_INTO(axis->label, format);
+}
+
+void sf_axis_range(sf_axis *axis, double low, double high) {
+    axis->low = low;
+    axis->high = high;
+}
+
+void sf_axis_word(sf_chart *chart, sf_axis *axis, const char *word) {
+    char **list = grown(chart, axis->word, (size_t)axis->word_count, sizeof *list);
+    if (!list)
+        return;
+    axis->word = list;
+    list[axis->word_count] = strdup(word);
+    if (list[axis->word_count])
+        axis->word_count++;
+}
+
+static sf_chart_panel_data *last_panel(const sf_chart *chart) {
+    return chart && chart->err->status == SF_OK && chart->panel_count > 0
+               ? chart->panel[chart->panel_count - 1]
+               : NULL;
+}
+
+/* ---- series ---- */
+
+sf_series_data *sf_chart_series(sf_chart *chart, sf_series_style style, const char *title, ...) {
+    sf_chart_panel_data *p = last_panel(chart);
+    sf_series_data **list = p ? grown(chart, p->series, p->series_count, sizeof *list) : NULL;
+    if (!list)
+        return NULL;
+    p->series = list;
+    sf_series_data *series = sf_alloc(chart->err, 1, sizeof *series, "a picture");
+    if (!series)
+        return NULL;
+    *series = (sf_series_data){.chart = chart, .style = style};
+    if (title)
+        FORMAT_INTO(series->title, title);
+    list[p->series_count++] = series;
+    return series;
+}
+
+void sf_series_add(sf_series_data *s, double x, double y, double low, double high) {
+    sf_series_value *list = s ? grown(s->chart, s->value, s->count, sizeof *list) : NULL;
+    if (!list)
+        return;
+    s->value = list;
+    list[s->count++] = (sf_series_value){x, y, low, high};
+}
+
+void sf_series_point(sf_series_data *s, double x, double y) {
+    sf_series_add(s, x, y, NAN, NAN);
+}
+
+void sf_series_points(sf_series_data *s, int64_t count, const double *x, const double *y, double x_factor,
+                      double y_factor, int64_t most) {
+    int64_t every = most > 0 ? count / most + 1 : 1;
+    for (int64_t k = 0; k < count; k += every)
+        sf_series_point(s, x_factor * x[k], y_factor * y[k]);
+}
+
+void sf_series_label(sf_series_data *s, double x, double y, const char *format, ...) {
+    char text[SF_CHART_TEXT];
+    char **list = s ? grown(s->chart, s->text, s->count, sizeof *list) : NULL;
+    if (!list)
+        return;
+    s->text = list;
+    FORMAT_INTO(text, format);
+    list[s->count] = strdup(text);
+    if (list[s->count])
+        sf_series_point(s, x, y);
+}
+
+/* ---- marks ---- */
+
+static sf_chart_mark *new_mark(sf_chart *chart, sf_mark_kind kind, const char *colour) {
+    sf_chart_panel_data *p = last_panel(chart);
+    sf_chart_mark *list = p ? grown(chart, p->mark, p->mark_count, sizeof *list) : NULL;
+    if (!list)
+        return NULL;
+    p->mark = list;
+    list[p->mark_count] = (sf_chart_mark){.kind = kind, .colour = colour};
+    return &list[p->mark_count++];
+}
+
+void sf_chart_level(sf_chart *chart, double y, const char *colour, const char *text, ...) {
+    sf_chart_mark *m = new_mark(chart, SF_MARK_LEVEL, colour);
+    if (!m)
+        return;
+    m->y[0] = y;
+    if (text)
+        FORMAT_INTO(m->text, text);
+}
+
+void sf_chart_drop(sf_chart *chart, double x, double top, const char *colour, const char *text, ...) {
+    sf_chart_mark *m = new_mark(chart, SF_MARK_DROP, colour);
+    if (!m)
+        return;
+    m->x[0] = x;
+    m->y[0] = top;
+    if (text)
+        FORMAT_INTO(m->text, text);
+}
+
+void sf_chart_spot(sf_chart *chart, double x, double y, const char *colour, const char *text, ...) {
+    sf_chart_mark *m = new_mark(chart, SF_MARK_SPOT, colour);
+    if (!m)
+        return;
+    m->x[0] = x;
+    m->y[0] = y;
+    if (text)
+        FORMAT_INTO(m->text, text);
+}
+
+void sf_chart_band(sf_chart *chart, const double x[2], const double y[2], const char *colour,
+                   double opacity) {
+    sf_chart_mark *m = new_mark(chart, SF_MARK_BAND, colour);
+    if (!m)
+        return;
+    memcpy(m->x, x, sizeof m->x);
+    memcpy(m->y, y, sizeof m->y);
+    m->opacity = opacity;
+}
