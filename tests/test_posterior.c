@@ -336,7 +336,7 @@ static void test_limit_is_marked(void **state) {
 
 /* Chains that know the responses walk along narrow, bent ridges, where those that do not know them stand
  * still; the emulator, a polynomial, is not the exponential, and the moments are right all the same. */
-static void test_errands(void **state) {
+static void test_delayed_steps(void **state) {
     (void)state;
     double start[RIDGE_PARAMETERS] = {0}, covariance[RIDGE_PARAMETERS * RIDGE_PARAMETERS] = {0};
     sf_target target = {.parameters = RIDGE_PARAMETERS,
@@ -544,7 +544,7 @@ int main(void) {
         cmocka_unit_test(test_evidence_is_marked),
         cmocka_unit_test(test_modes),
         cmocka_unit_test(test_limit_is_marked),
-        cmocka_unit_test(test_errands),
+        cmocka_unit_test(test_delayed_steps),
         cmocka_unit_test(test_threads_and_seeds),
         cmocka_unit_test(test_leave_one_out),
         cmocka_unit_test(test_pareto_shape),

@@ -4,10 +4,10 @@
  *   - independence: the proposal is drawn from a mixture of t-distributions (mixture.h) matched to all
  * chains;
  *   - random walk: normal with the chains' covariance times 2.38^2 / n, or a hundredth of that;
- *   - errand, where the target tells its responses: many steps of the first two kinds on the density that an
- *     emulator of the responses gives (emulator.h), whose end is then accepted or rejected as a whole by the
- *     target itself (delayed acceptance: Christen and Fox, J. Comput. Graph. Stat. 14, 2005, 795-810). So the
- *     chains are those of the target, however good the emulator is.
+ *   - delayed acceptance, where the target gives its responses: many steps of the first two kinds on the
+ * density that an emulator of the responses gives (emulator.h), whose end is then accepted or rejected as a
+ * whole by the target itself (Christen and Fox, J. Comput. Graph. Stat. 14, 2005, 795-810). So the chains are
+ * those of the target, however good the emulator is.
  *
  * All are matched during burn-in, round by round, and fixed from then on; chains that do not reach the
  * criteria within a quarter of the most steps, and then within half of them, begin anew with what they
@@ -43,7 +43,7 @@ typedef struct sf_chains {
     double *rhat;          /* [parameters + quantities]; NaN: a quantity that no state has. A state
                               without it counts with the largest value of the others; owned */
     double *effective;     /* [parameters + quantities]; owned */
-    double accepted;       /* share of the proposals after burn-in, an errand being one */
+    double accepted;       /* share of the proposals after burn-in; a delayed step is one */
     long long evaluations; /* of the target */
     bool converged;
     sf_mixture proposal; /* the one that was fixed */

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { N = SF_POSTERIOR_MOST, START_TRIES = 50, ERRAND_STEPS = 100 };
-static const double START_STRETCH = 2, INDEPENDENT = 0.6, SHORT = 0.3, ERRANDS = 0.8, FLATTENED = 0.85;
+enum { N = SF_POSTERIOR_MOST, START_TRIES = 50, DELAYED_STEPS = 100 };
+static const double START_STRETCH = 2, INDEPENDENT = 0.6, SHORT = 0.3, DELAYED = 0.8, FLATTENED = 0.85;
 static const double FAR = 40; /* of the log density below the best, where the emulator need not know it */
 
 /* ---- steps ---- */
@@ -73,14 +73,14 @@ static bool step(const sf_walk *w, sf_walker *c, sf_state *at,
     return true;
 }
 
-/* Many steps on the emulator, accepted as a whole. No step where the emulator does not reach: no errand ends
- * there either. */
-static bool run_errand(const sf_walk *w, sf_walker *c, sf_state *at) {
+/* Many steps on the emulator, whose end the target accepts or rejects. No step is made where the emulator
+ * does not reach, and none ends there. */
+static bool delayed_step(const sf_walk *w, sf_walker *c, sf_state *at) {
     sf_state to = *at;
     double start = emulate(w, c, at->u);
     bool moved = false;
     to.density = start;
-    for (int k = 0; k < ERRAND_STEPS && isfinite(start); k++)
+    for (int k = 0; k < DELAYED_STEPS && isfinite(start); k++)
         moved = step(w, c, &to, emulate) || moved;
     if (!moved)
         return false;
@@ -96,9 +96,9 @@ void sf_walker_walk(const sf_walk *w, int steps, sf_walker *c) {
     int n = w->target->parameters;
     c->at.proposal = sf_mixture_log_density(&w->proposal, c->at.u); /* it may have changed */
     for (int k = 0; k < steps; k++) {
-        bool errand = w->emulator.terms > 0 && gsl_rng_uniform(c->random) < ERRANDS;
+        bool delayed = w->emulator.terms > 0 && gsl_rng_uniform(c->random) < DELAYED;
         c->proposed++;
-        c->accepted += errand ? run_errand(w, c, &c->at) : step(w, c, &c->at, evaluate);
+        c->accepted += delayed ? delayed_step(w, c, &c->at) : step(w, c, &c->at, evaluate);
         memcpy(&c->path[k * n], c->at.u, (size_t)n * sizeof *c->at.u);
         c->density[k] = c->at.density;
     }
