@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-BOUNDS = {".h": 157, ".c": 158}
+BOUNDS = {".h": 0, ".c": 0}
 FIRST = "Of|What|Whether|Is|Are|Does|Do|Has|How|Where|Those|That|From|As|Beside|Nothing|None"
 COMMENT = re.compile(rf"(?:/\*+|//)\s*({FIRST})\b")
 

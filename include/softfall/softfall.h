@@ -60,7 +60,7 @@ typedef enum softfall_severity {
     SOFTFALL_WARNING = 1 /* legal, but probably not intended */
 } softfall_severity;
 
-/* Where warnings and notes go. `sentence` is valid during the call only. A sink of NULL drops them. */
+/* A sink receives warnings and notes. `sentence` is valid during the call only. A sink of NULL drops them. */
 typedef struct softfall_sink {
     void (*tell)(void *user, softfall_severity severity, const char *sentence);
     void *user; /* passed to `tell` */
@@ -176,9 +176,9 @@ SOFTFALL_API softfall_status softfall_drop_field(const softfall_drop *drop, cons
  * prescribed) is NaN. Indicative, not a certification. */
 typedef struct softfall_figures softfall_figures;
 
-/* Of a drop so far (three steps at least), or of a results.h5 of softfall-solve. `filter`: channel frequency
- * class (SAE J211) 60, 180, 600 or 1000; softfall-post takes 1000 by default. `out` is owned by the caller.
- */
+/* Computes the figures of a drop so far (three steps at least), or of a results.h5 of softfall-solve.
+ * `filter`: channel frequency class (SAE J211) 60, 180, 600 or 1000; softfall-post takes 1000 by default.
+ * `out` is owned by the caller. */
 SOFTFALL_API softfall_status softfall_drop_figures(const softfall_drop *drop, double filter,
                                                    softfall_figures **out, softfall_error *error);
 SOFTFALL_API softfall_status softfall_results_figures(const char *path, double filter, softfall_figures **out,

@@ -55,8 +55,8 @@ void sf_error_clean(char *sentence);
  * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
 void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);
 
-/* Where warnings and notes go: a function that may produce some takes a sink from its caller. Only the
- * programs print. */
+/* A sink receives warnings and notes: a function that may produce some takes a sink from its caller. Only
+ * the programs print. */
 
 typedef enum sf_severity {
     SF_NOTE,    /* a choice that was made for the user */

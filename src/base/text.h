@@ -10,10 +10,10 @@
  * not finite. */
 const char *sf_decimal_read(const char *text, double *value);
 
-/* Is the whole text one finite number? */
+/* True if the whole text is one finite number. */
 bool sf_decimal_is(const char *text, double *value);
 
-/* Is the whole text one whole number from `low` to `high`? */
+/* True if the whole text is one whole number from `low` to `high`. */
 bool sf_whole_is(const char *text, long low, long high, int *value);
 
 /* Length of the well-formed UTF-8 sequence at `s`, 0 if there is none (RFC 3629). */

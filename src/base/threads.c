@@ -28,7 +28,7 @@ static struct {
     char value[40];
 } fault;
 
-/* Nothing is initialised yet: no function of a library and no sanitizer may be called from here on. */
+/* No memory is initialised yet: no function of a library and no sanitizer may be called after this line. */
 #ifdef __clang__
 #define FIRST __attribute__((no_sanitize("address", "thread", "undefined"), no_builtin))
 #else
@@ -37,7 +37,7 @@ static struct {
                    optimize("no-tree-loop-distribute-patterns")))
 #endif
 
-/* What follows the prefix in the text; NULL if the text begins otherwise. */
+/* Returns the rest of the text behind the prefix; NULL if the text begins otherwise. */
 FIRST static const char *after(const char *text, const char *prefix) {
     for (; *prefix; text++, prefix++)
         if (*text != *prefix)
@@ -95,7 +95,7 @@ FIRST static void keep_fault(int which, const char *value) {
     fault.value[k] = '\0';
 }
 
-/* Does the variable stay? */
+/* True if the variable stays in the environment. */
 FIRST static bool stays(const char *entry) {
     for (int k = 0; k < KNOWN; k++) {
         const char *value = after(entry, known[k].name);

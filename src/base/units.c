@@ -252,7 +252,7 @@ static bool starts(const char *text, const char *with) {
     return strncmp(text, with, strlen(with)) == 0;
 }
 
-/* Does the name stand in the list "a|b"? */
+/* True if the list "a|b" has the name. */
 static bool is_listed(const char *name, const char *list) {
     size_t length = strlen(name);
     for (const char *at = list; at; at = strchr(at, '|')) {

@@ -23,7 +23,7 @@ typedef struct sf_case_curve {
     bool extended;                        /* the file began above zero strain and (0, 0) was put before it */
 } sf_case_curve;
 
-/* How such a file is read, `what` in sentences; also of tests with unloading. */
+/* Returns the layout of a curve file, also of tests with unloading; `what` names the file in sentences. */
 sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check);
 
 /* Reads and checks a curve; SF_ERR_INPUT names file, line and value. On failure `*curve` is zeroed. */

@@ -100,7 +100,7 @@ static bool is_hexadecimal(char c) {
     return c != '\0' && strchr(HEXADECIMAL, c);
 }
 
-/* Of \a, \b and \v libconfig 1.5 keeps the backslash, and newer ones do not. */
+/* libconfig 1.5 keeps the backslash of \a, \b and \v, and newer versions do not. */
 static sf_status read_escape(cursor *c) {
     char next = c->at + 1 < c->end ? c->at[1] : '\0';
     bool code = next == 'x' && c->end - c->at > 3 && is_hexadecimal(c->at[2]) && is_hexadecimal(c->at[3]);

@@ -46,8 +46,8 @@ sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err);
 
 enum { SF_CASE_WHERE_SIZE = 512 /* of a text that says where a setting stands */ };
 
-/* Where the lines of a case's text come from, as its includes are put in place before libconfig reads it:
- * from line `first` of the text on, they are those of the file `path` from `line` on. */
+/* A piece of a case's text, whose includes are put in place before libconfig reads it: from line `first`
+ * of the text on, the lines are those of the file `path` from `line` on. */
 typedef struct sf_case_piece {
     int first, line;
     char *path; /* owned */

@@ -13,7 +13,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* How a value is written in the case, and what stands at the key's offset in sf_case. */
+/* The kind says how a value is written in the case, and which type the member at the key's offset in
+ * sf_case has. */
 typedef enum sf_key_kind {
     SF_KEY_QUANTITY,   /* "4.6 kg" or the word `words`: double, SI (the word's value is `word_value`) */
     SF_KEY_UNIT,       /* "mm": double, m per unit */

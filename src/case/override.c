@@ -19,7 +19,7 @@ static bool mark(config_setting_t *setting, const char *text, unsigned line) {
     return true;
 }
 
-/* Where the copies of a setting come from: a --set text, or (text NULL) the file that holds the setting. */
+/* The source of the copies of a setting: a --set text, or (text NULL) the file that holds the setting. */
 typedef struct copy_source {
     const char *text;
     const sf_case_source *source; /* of the text that was read */

@@ -229,7 +229,7 @@ static sf_status add_setting(sf_case_parts *parts, const sf_settings *settings, 
     return err->status;
 }
 
-/* What kind of file the setting names; -1: none. */
+/* Returns the kind of file that the setting names; -1: none. */
 static int kind_of_file(const sf_setting *s) {
     sf_key_list list;
     char path[SF_SETTING_PATH_SIZE + 16];
@@ -261,8 +261,8 @@ bool sf_case_key_is_file(const char *key) {
     return kind_of_file(&s) >= 0;
 }
 
-/* Of the settings in text[begin, end) of the part: names of files, which begin at the case's folder, from /
- * on, as the part may be a file of another folder. */
+/* Roots the names of files among the settings in text[begin, end) of the part: they begin at the case's
+ * folder, written from / on, as the part may be a file of another folder. */
 static sf_status root_files(sf_case_parts *parts, int part, size_t begin, size_t end, sf_error *err) {
     sf_settings settings;
     char *folder = sf_case_folder_of(parts->part[0].path, err);
@@ -351,14 +351,14 @@ typedef struct edits {
     edit *list; /* [count] */
 } edits;
 
-/* From the back, so that places stay true. */
+/* Sorts from the back, so that places stay true. */
 static int compare_edits(const void *a, const void *b) {
     const edit *p = a, *q = b;
     return p->part != q->part ? p->part - q->part : (p->begin < q->begin) - (p->begin > q->begin);
 }
 
-/* Where a name that begins in the folder part of `from` leads in the new folder; NULL: out of it. From
- * malloc. */
+/* Returns the place in the new folder of a name that begins in the folder part of `from`; NULL: outside of
+ * it. From malloc. */
 static char *find_wanted(const char *from, const char *name, sf_error *err) {
     static const char root[] = "/\001"; /* no folder's name */
     char *folder = NULL, *out = NULL;
@@ -422,7 +422,7 @@ static char *place_file(sf_case_parts *parts, const sf_setting *s, sf_case_place
     return text;
 }
 
-/* What becomes of the names: first of the parts, on whose names those of the files depend. */
+/* Finds the new names: first those of the parts, on whose names those of the files depend. */
 static sf_status find_edits(sf_case_parts *parts, const sf_settings *settings, edits *out,
                             sf_case_place place, void *context, sf_error *err) {
     out->list = sf_alloc(err, (unsigned long)settings->count, sizeof *out->list, "the names of files");

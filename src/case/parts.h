@@ -16,7 +16,7 @@ sf_status sf_case_parts_read(const char *path, sf_case_parts *parts, sf_error *e
 /* Puts a --set text, "group.key=value" or "group=@file", where it belongs. */
 sf_status sf_case_parts_set(sf_case_parts *parts, const char *text, sf_error *err);
 
-/* Is the value of "group.key" the name of a file? */
+/* True if the value of "group.key" names a file. */
 bool sf_case_key_is_file(const char *key);
 
 /* A file that the case names: what it is, and how. */

@@ -82,7 +82,7 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
     return SF_OK;
 }
 
-/* Of everything in `setting`, the group called `group`; "" for the file. */
+/* Checks the names of everything in `setting`, the group called `group`; "" for the file. */
 static sf_status check_names(const sf_case_reader *reader, const config_setting_t *setting, const char *group,
                              sf_error *err) {
     unknown u = {0};
@@ -90,13 +90,13 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
     return u.count > 0 ? refuse_unknown(reader, &u, err) : SF_OK;
 }
 
-/* What stands in the files that a key names is hashed where they are read (study/run_folder.c). */
+/* True if the key names files, whose contents are hashed where they are read (study/run_folder.c). */
 static bool names_files(const sf_key *key) {
     return key->kind == SF_KEY_PATH || key->kind == SF_KEY_CURVE || key->kind == SF_KEY_CURVES ||
            key->kind == SF_KEY_MOTION;
 }
 
-/* Of the parameters of a geometry, in any order: a --set text puts its own behind the others. */
+/* Hashes the parameters of a geometry in any order: a --set text puts its own behind the others. */
 static void hash_parameters(sf_case *out, const sf_key *key) {
     const sf_geo_source *source = (const sf_geo_source *)((const char *)out + key->offset);
     uint64_t sum = 0;
@@ -240,7 +240,7 @@ static bool key_is_given(const void *reader, const char *group, const char *key)
     return sf_case_is_given(reader, group, key);
 }
 
-/* What the law itself refuses when the solver builds it: it concerns the curves. */
+/* Checks the law itself as the solver will build it: it may refuse the curves. */
 static sf_status check_law(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_material *m = reader->material;

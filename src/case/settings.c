@@ -183,7 +183,7 @@ static sf_status read_value(reader *r, const char *path) {
     return SF_OK;
 }
 
-/* Those of a group up to its end. */
+/* Reads the settings of a group up to its end. */
 static sf_status read_settings(reader *r, const char *path) {
     while (r->err->status == SF_OK && r->token[r->at].kind && r->token[r->at].kind != '}') {
         const token name = r->token[r->at++];

@@ -19,7 +19,7 @@ typedef struct sf_case_parts {
     sf_case_part *part; /* [count], the case file first */
 } sf_case_parts;
 
-/* Where the settings of a case stand in its text. Internal to src/case. */
+/* The places of the settings of a case in its text. Internal to src/case. */
 
 enum { SF_SETTING_PATH_SIZE = 256 };
 
@@ -39,7 +39,7 @@ typedef struct sf_settings {
         *setting; /* [count] the includes, then in the order of the text; a group before what is in it */
 } sf_settings;
 
-/* Of the text as it is now. Release with sf_settings_free, also on failure. */
+/* Finds the settings of the present text. Release with sf_settings_free, also on failure. */
 sf_status sf_settings_find(const sf_case_parts *parts, sf_settings *settings, sf_error *err);
 void sf_settings_free(sf_settings *settings);
 

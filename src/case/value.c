@@ -84,7 +84,7 @@ static sf_status check_bounds(const sf_case_reader *reader, const sf_key *key,
                    *unit ? " " : "", unit, upper);
 }
 
-/* Where the key's value goes. */
+/* Returns the place of the key's value. */
 static void *place_of(const sf_case_reader *reader, const sf_key *key) {
     return (key->in_card ? (char *)reader->material->card : (char *)reader->out) + key->offset;
 }
@@ -465,7 +465,7 @@ bool sf_case_is_response_error(const sf_case_reader *reader, const char *group, 
     return strcmp(group, reader->material_group) == 0 && strcmp(name, SF_RESPONSE_ERROR) == 0;
 }
 
-/* Where the case has the numbers of kind 0. */
+/* The case has the numbers of kind 0 at this offset. */
 static const size_t SHARED = offsetof(sf_case, response_error) + offsetof(sf_response_error, shared),
                     OWN = offsetof(sf_case, response_error) + offsetof(sf_response_error, own_sd);
 

@@ -14,7 +14,7 @@ sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const co
 
 #define SF_RESPONSE_ERROR "response_error"
 
-/* Is this the group, in the group of the reader's material? */
+/* True if this is the group `response_error` in the group of the reader's material. */
 bool sf_case_is_response_error(const sf_case_reader *reader, const char *group, const char *name);
 
 /* Reads it into the case, if the material has it. SF_ERR_INPUT: no group, an unknown key, a value that is no

@@ -57,7 +57,7 @@ void sf_case_print_setting(FILE *file, const config_setting_t *setting) {
     fputs(group ? "}" : type == CONFIG_TYPE_ARRAY ? "]" : ")", file);
 }
 
-/* How a value of the key is written. */
+/* Prints how a value of the key is written. */
 static void print_kind(FILE *file, const sf_key *key) {
     static const char *const phrase[] = {
         [SF_KEY_UNIT] = "unit of length",

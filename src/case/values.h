@@ -9,7 +9,7 @@
 /* The keys of a case with their values as texts, for who lets a user change them. Of the table of keys
  * (case/keys.c), which is internal to src/case. */
 
-/* How a value can be entered. */
+/* The kinds of entry that the window has for a value. */
 typedef enum sf_case_value_kind {
     SF_CASE_VALUE_TEXT,   /* "4.5 m/s", or a name */
     SF_CASE_VALUE_LIST,   /* ["10 mm", "0 mm"] */

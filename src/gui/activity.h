@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the window is doing, and what a button or the end of a program makes of it. */
+/* The activity of the window, and the next one that a button or the end of a program leads to. */
 #ifndef SF_GUI_STATE_H
 #define SF_GUI_STATE_H
 

@@ -198,7 +198,7 @@ static void add_material(sf_fields *fields) {
     snprintf(f->name, sizeof f->name, "2Case/1material");
 }
 
-/* What the user had changed stays changed. */
+/* Keeps the changes that the user has made. */
 static void keep_changes(const sf_fields *before, sf_fields *fields) {
     for (int k = 0; k < fields->count; k++) {
         sf_field *f = &fields->field[k];
@@ -407,7 +407,7 @@ static bool is_of_word(int c) {
     return isalnum(c) || c == '_';
 }
 
-/* Where the sentence has the word by itself; NULL: nowhere. */
+/* Returns the place at which the sentence has the word by itself; NULL: there is none. */
 static const char *find_word_in(const char *sentence, const char *word) {
     size_t length = strlen(word);
     for (const char *at = sentence; (at = strstr(at, word)) != NULL; at += length)
@@ -416,7 +416,7 @@ static const char *find_word_in(const char *sentence, const char *word) {
     return NULL;
 }
 
-/* Of the material, if a file of the window stands in its place. */
+/* Finds the key of the material in the sentence, if a file of the window stands in the material's place. */
 static const char *find_key_in(const sf_field *f, const char *sentence) {
     bool plain = strchr(f->key, '.') == NULL;
     return plain && strcmp(f->now, f->given) == 0 ? NULL : find_word_in(sentence, f->key);

@@ -22,9 +22,10 @@ typedef struct sf_geo_names {
     sf_geo_name name[SF_GEO_NAMES];
 } sf_geo_names;
 
-/* Of a file that is no text of gmsh's language there are none. Errors: the file cannot be read. */
+/* Reads the names that a geometry defines; a file that is no text of gmsh's language has none. Errors: the
+ * file cannot be read. */
 sf_status sf_geo_names_read(const char *path, sf_geo_names *names, sf_error *err);
-/* Those of a text alone, added. */
+/* Adds the names that a text defines. */
 void sf_geo_names_scan(const char *text, sf_geo_names *names);
 
 /* The fields of the tree: the keys of the case, from the table of keys, and the parameters of its geometries.

@@ -5,7 +5,7 @@
 
 #include "post/results/results.h"
 
-/* What softfall-pre says of a model, and the sentences of programs, from their output. */
+/* Shows the checks of softfall-pre, and the sentences of programs, from their output. */
 
 /* Puts the checks that the text of softfall-pre holds into the branch Checks of the tree. */
 void sf_checks_show(const char *text);

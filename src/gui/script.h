@@ -18,7 +18,7 @@ typedef struct sf_script {
 
 /* SF_ERR_INPUT: the file cannot be read. Release with sf_script_close. */
 sf_status sf_script_open(const char *path, sf_script *script, sf_error *err);
-/* Does the next line if it need not wait; what it prints goes to `out`. Errors name the line. */
+/* Runs the next line if it need not wait; its output goes to `out`. Errors name the line. */
 sf_status sf_script_step(sf_script *script, sf_session *session, FILE *out, sf_error *err);
 void sf_script_close(sf_script *script);
 

@@ -67,7 +67,7 @@ static void name_label(const sf_session *s, char *label, size_t size) {
         snprintf(label, size, "%.40s", strrchr(absolute, '/') + 1);
 }
 
-/* Beside the present folder, by the name of the case. */
+/* Shows the target folder: beside the present one, with the name of the case. */
 static void show_target(const sf_session *s) {
     char label[64], target[PATH_MAX];
     name_label(s, label, sizeof label);
@@ -309,7 +309,8 @@ static sf_status start_save(sf_session *s, sf_error *err) {
 
 static void show_model(sf_session *s);
 
-/* What an earlier run has left in the folder must not stand beside the one that begins. */
+/* Removes the results of an earlier run from the folder, so that they do not stand beside those of the new
+ * run. */
 static void remove_results(sf_session *s) {
     static const char *const products[] = {"report.html", "pad.xdmf"};
     char path[SF_RUN_PATH_SIZE + 64];
@@ -516,7 +517,7 @@ static void fail(sf_session *s, const char *log, int code) {
     tell(s, true, sentence);
 }
 
-/* What the program that has ended leaves to show. */
+/* Shows the results of the program that has ended. */
 static void take_end(sf_session *s, sf_activity before, const char *log) {
     if ((before == SF_MESHING || before == SF_PREPARING) && log && s->activity != SF_FAILED) {
         sf_checks_show(log);

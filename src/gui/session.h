@@ -11,7 +11,7 @@
 #include "gui/children.h"
 #include "io/process.h"
 
-/* Where the case puts the missile, until softfall-pre does so exactly. */
+/* The missile's place by the case alone, until softfall-pre has computed the exact one. */
 typedef struct sf_session_place {
     bool given;
     double position[2], gap; /* m */

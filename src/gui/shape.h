@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From model and results to bodies that can be shown: the skin of the pad, and the missile. */
+/* Makes bodies that can be shown from model and results: the skin of the pad, and the missile. */
 #ifndef SF_GUI_SHAPE_H
 #define SF_GUI_SHAPE_H
 

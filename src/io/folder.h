@@ -14,14 +14,14 @@
  * SF_ERR_INPUT: it holds files but no mark, or is no folder. */
 sf_status sf_folder_own(const char *path, sf_error *err);
 
-/* Has an open folder the mark? */
+/* True if an open folder has the mark of softfall. */
 bool sf_folder_is_own(int handle);
 
 /* Opens it: -1 with errno on failure. */
 int sf_folder_open(const char *path);
 
-/* Of the files in an open folder whose names are `known`: SF_ERR_INPUT if one is not softfall's
- * (sf_replace_is_ours) or was read by this process; removes those that are, but the one named `kept` (NULL:
+/* Checks the files in an open folder whose names are `known`: SF_ERR_INPUT if one is not softfall's
+ * (sf_replace_is_ours) or was read by this process. Removes the others but the one named `kept` (NULL:
  * none). */
 sf_status sf_folder_check(int handle, const char *path, bool (*known)(const char *name), sf_error *err);
 void sf_folder_remove_known(int handle, bool (*known)(const char *name), const char *kept);
@@ -59,7 +59,7 @@ typedef struct sf_store_part {
     size_t size; /* bytes */
 } sf_store_part;
 
-/* What was kept. `data` is aligned for 64 bits; release `block` with free(). */
+/* A value of the store. `data` is aligned for 64 bits; release `block` with free(). */
 typedef struct sf_stored {
     void *block;
     const char *data;

@@ -152,9 +152,9 @@ static int walk(hid_t file, const char *path, char part[OBJECT_SIZE], H5L_info_t
     return LINK_HARD;
 }
 
-/* Does the external link at `path` stand for the object of the same path in a file of the folder that belongs
- * to this file while its run is in progress (FILE.run, docs/formats.md)? Then the folder and the name there.
- */
+/* True if the external link at `path` stands for the object of the same path in a file of the folder that
+ * belongs to this file while its run is in progress (FILE.run, docs/formats.md); `folder` and the name
+ * there are then set. */
 static bool is_own_link(const sf_h5 *file, const char *path, size_t size, char folder[PATH_MAX],
                         char name[NAME_MAX + 1]) {
     char value[1024];
@@ -442,8 +442,8 @@ static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, s
     return SF_OK;
 }
 
-/* Nothing may be asked of a dataset, not even its extent, before its storage is known: the extent of a
- * virtual one is looked up in the other files. */
+/* The storage of a dataset must be known before any other property is asked for: even the extent of a
+ * virtual dataset is looked up in the other files. */
 static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, sf_error *err) {
     hid_t in;
     int found = find_object(file, path, &in);

@@ -110,7 +110,7 @@ void sf_plain_forget(void) {
 
 /* ---- opening ---- */
 
-/* What it is instead of a plain file; NULL if it is one. */
+/* Returns the kind of a file that is not plain; NULL if it is plain. */
 static const char *other_kind(mode_t mode) {
     switch (mode & S_IFMT) {
     case S_IFREG:
@@ -309,8 +309,8 @@ static bool is_settled(const struct stat *info) {
     return info->st_mtim.tv_sec + 1 < now.tv_sec && info->st_ctim.tv_sec + 1 < now.tv_sec;
 }
 
-/* Where the path stands, or else may: in one of the PROBES places from that of its hash on, an empty one
- * first. */
+/* Returns the place of the path, or a free one: one of the PROBES places from that of its hash on, an
+ * empty one first. */
 static kept_hash *place_of(const char *path) {
     enum { PROBES = 16 };
     uint64_t home = sf_hash_bytes(SF_HASH_START, path, strlen(path));

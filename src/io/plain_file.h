@@ -65,8 +65,8 @@ void sf_plain_forget(void);
 
 /* Paths as texts: nothing is looked up but the working directory, and links are not followed. */
 
-/* From /, without ".", ".." and double slashes; a relative path begins at `folder` (NULL: the working
- * directory). From malloc, NULL on failure. */
+/* Returns the absolute path without ".", ".." and double slashes; a relative path begins at `folder`
+ * (NULL: the working directory). From malloc, NULL on failure. */
 char *sf_path_whole(const char *folder, const char *path, sf_error *err);
 
 /* The part of whole paths below `folder`; NULL: `path` is not below it. Points into `path`. */
@@ -77,7 +77,7 @@ size_t sf_path_folder_length(const char *path);
 /* The last part. */
 const char *sf_path_name(const char *path);
 
-/* How a file in the folder of `from` names the file `to`; both from the same folder, without "." and "..".
- * From malloc, NULL on failure. */
+/* Returns the name of the file `to` relative to the folder of `from`; both from the same folder, without
+ * "." and "..". From malloc, NULL on failure. */
 char *sf_path_between(const char *from, const char *to, sf_error *err);
 #endif

@@ -97,7 +97,7 @@ static void notice_children(void) {
         sigaction(SIGCHLD, &action, NULL);
 }
 
-/* Where it runs, reads and prints. */
+/* Sets the folder, the input and the output of the process. */
 static int prepare(posix_spawn_file_actions_t *actions, const sf_process *p) {
     int result = p->folder ? posix_spawn_file_actions_addchdir_np(actions, p->folder) : 0;
     if (result == 0)

@@ -18,7 +18,7 @@ sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *e
  * SF_ERR_IO if it is not there. */
 sf_status sf_process_find_shared(const char *name, char *path, size_t size, sf_error *err);
 
-/* Is there a program of this name in PATH? */
+/* True if there is a program of this name in PATH. */
 bool sf_process_is_in_path(const char *name);
 
 typedef struct sf_process {
@@ -39,8 +39,8 @@ typedef struct sf_process {
  * errno value that says why it cannot be run. From then on SIGCHLD is not ignored. */
 int sf_process_run(const sf_process *process, int *exit_code);
 
-/* From now on SIGINT and SIGTERM do not end this process but are passed on to the stoppable program that
- * runs; one that is started later gets SIGTERM at once. */
+/* After this call SIGINT and SIGTERM do not end this process but are passed on to the stoppable program
+ * that runs; one that is started later gets SIGTERM at once. */
 void sf_process_handle_signals(void);
 /* True once such a signal has come. */
 bool sf_process_stopped(void);
@@ -52,11 +52,12 @@ enum { SF_PROCESS_JOBS = 64 }; /* side by side, at most */
 /* Work that sf_process_pool has done in a process of its own. */
 typedef sf_status (*sf_process_work)(void *context, int index, sf_error *err);
 
-/* Does `work` for every index below `count`, `jobs` at a time (at most SF_PROCESS_JOBS), each in a copy of
- * this process that ends with it: what it changes in memory is lost, its failure comes back in result[index]
- * (the source line apart); of one that a signal ended, SF_ERR_LIBRARY with SF_PROCESS_KILLED. Signals are
- * passed on to the copies and by these to their stoppable programs; after a signal no more is begun
- * (SF_INTERRUPTED). A copy ends when this process does. All are waited for. `err`: a copy cannot be made. */
+/* Calls `work` for every index below `count`, `jobs` at a time (at most SF_PROCESS_JOBS), each in a copy
+ * of this process that ends with the call: its changes of the memory are lost, its failure comes back in
+ * result[index] (the source line apart); a copy that a signal ended gives SF_ERR_LIBRARY with
+ * SF_PROCESS_KILLED. Signals are passed on to the copies and by these to their stoppable programs; after a
+ * signal no more is begun (SF_INTERRUPTED). A copy ends when this process does. The call waits for all of
+ * them. `err`: a copy cannot be made. */
 sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
                           sf_error *err);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a file comes from: the texts under /provenance (docs/formats.md). */
+/* The provenance of a file: the texts under /provenance (docs/formats.md). */
 #ifndef SF_IO_PROVENANCE_H
 #define SF_IO_PROVENANCE_H
 
@@ -29,7 +29,7 @@ typedef struct sf_provenance {
 sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenance *provenance,
                               sf_error *err);
 
-/* Those two attributes alone. */
+/* Writes the two attributes of format and version alone. */
 sf_status sf_provenance_mark(sf_h5 *file, const char *format, sf_error *err);
 
 /* Refuses a file that is not of `format` or is of a newer version; `path` is for the sentence. */

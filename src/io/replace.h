@@ -14,10 +14,10 @@
 
 enum { SF_PATH_SIZE = 4096 };
 
-/* Whether an output of this name can be written, before anything is computed or made. SF_ERR_INPUT: the name
- * is empty or too long (also with what is appended to it), or stands for a folder, pipe, socket or device, or
- * for a file that this process has read (io/plain_file.h). SF_ERR_IO: its folder is missing or cannot be
- * written in. */
+/* Checks that an output of this name can be written, before anything is computed or made. SF_ERR_INPUT:
+ * the name is empty or too long (also with the endings that are appended to it), or stands for a folder,
+ * pipe, socket or device, or for a file that this process has read (io/plain_file.h). SF_ERR_IO: its
+ * folder is missing or cannot be written in. */
 sf_status sf_replace_check(const char *path, sf_error *err);
 
 /* The last part of that: the folder in which `path` would be. */

@@ -50,7 +50,7 @@ sf_status sf_seal_add(const char *path, sf_error *err) {
     return SF_OK;
 }
 
-/* What the open file ends with. */
+/* Examines the end of the open file. */
 static sf_seal_state examine(FILE *file) {
     seal stored, found;
     if (fseeko(file, -(off_t)sizeof stored, SEEK_END) != 0 || fread(&stored, sizeof stored, 1, file) != 1 ||

@@ -18,10 +18,10 @@ typedef struct sf_staging {
     bool created;             /* the directory did not exist before */
 } sf_staging;
 
-/* Whether that can be the output directory, before anything is computed or made. SF_ERR_INPUT: the name is
- * empty or too long, there is no folder of that name, or it holds one of the files without `force`, or one
- * that cannot be replaced (io/replace.h: a folder, a pipe, a device, an input). The other functions check
- * again. */
+/* Checks that this can be the output directory, before anything is computed or made. SF_ERR_INPUT: the
+ * name is empty or too long, there is no folder of that name, or it holds one of the files without
+ * `force`, or one that cannot be replaced (io/replace.h: a folder, a pipe, a device, an input). The other
+ * functions check again. */
 sf_status sf_staging_check(const char *directory, const char *const *names, bool force, sf_error *err);
 
 /* Makes the directory if need be. SF_ERR_INPUT if it holds one of the named files already and `force` is

@@ -226,7 +226,7 @@ static bool is_word_byte(char c) {
     return isalnum((unsigned char)c) || (unsigned char)c >= 0x80;
 }
 
-/* Is the word of `length` bytes in the list "time|t|*zeit"? */
+/* True if the list "time|t|*zeit" has the word of `length` bytes. */
 static bool is_listed(const char *word, size_t length, const char *list) {
     while (*list) {
         size_t size = strcspn(list, "|");
@@ -252,7 +252,7 @@ static bool holds_word(const char *name, const char *list) {
     return false;
 }
 
-/* Has the user chosen this cell, by its whole text or by its name without the unit? */
+/* True if the user has chosen this cell, by its whole text or by its name without the unit. */
 static bool is_chosen(const reading *r, int c, int i) {
     const char *chosen = r->layout->chosen[c];
     title t = {.unit = ""};
@@ -381,7 +381,7 @@ static bool may_hold_units(const sf_table_cells *cells, const sf_table_cells *be
     return any && below->count <= cells->count;
 }
 
-/* Do the cells below both columns hold their units? Then they must be those of the heading. */
+/* Checks the cells below both columns if they hold units: those must be the units of the heading. */
 static void check_below(const reading *r, const sf_table_cells *below) {
     sf_table_heading *h = r->heading;
     for (int c = 0; c < 2; c++) {

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/units.h"
 
-/* What a program expects of a table of two columns (io/table_csv.h). */
+/* The requirements of a program on a table of two columns (io/table_csv.h). */
 
 enum { SF_TABLE_RATIO = SF_QUANTITY_COUNT }; /* kind of a column without dimension: "%" or "1" */
 

@@ -47,7 +47,7 @@ static char *copy_name(const char *path) {
     return strndup(path, length);
 }
 
-/* As mkdir would make it: mkdtemp lets only the owner in. */
+/* Gives the folder the mode that mkdir would give; mkdtemp lets only the owner in. */
 static void open_to_others(const char *path) {
     mode_t mask = umask(0);
     umask(mask);

@@ -100,8 +100,8 @@ typedef struct sf_law {
      * (m): the first time step. */
     void (*rest_bounds)(const void *card, double length, double *tangent, double *viscosity);
 
-    /* Does the card lie where the solver is known to be weak? The sentence, which begins with the law's name.
-     * NULL: no card does. */
+    /* True if the card lies where the solver is known to be weak; `text` is then a sentence that begins
+     * with the law's name. NULL: no card does. */
     bool (*caution)(const void *card, char *text, size_t size);
 
     /* Points. */

@@ -53,7 +53,7 @@ static sf_curve_line stopped(const sf_densification *law, const sf_curve_line *l
     return end;
 }
 
-/* Where the law beyond the data ends. */
+/* Returns the straight line with which the law beyond the data ends. */
 static sf_curve_line straight_end(const sf_densification *law) {
     bool full = law->limit >= 1;
     double least = full ? SF_STRAIGHT_ROOM_AT_1 : SF_STRAIGHT_ROOM,

@@ -65,7 +65,7 @@ bool sf_foam_has_kelvin(const void *card);
 bool sf_foam_has_rate_factor(const void *card);
 bool sf_foam_has_informed(const void *card);
 
-/* What SHAPE and ALPHA allow together; SF_ERR_MODEL. */
+/* Checks the bounds that SHAPE and ALPHA have together; SF_ERR_MODEL. */
 sf_status sf_foam_check_shared(const void *card, sf_error *err);
 
 /* Rules on the keys of a case: sf_law.check_keys. */

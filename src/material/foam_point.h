@@ -8,10 +8,10 @@
 #include "material/laws.h"
 #include "material/unloading.h"
 
-/* What the foam laws share at a material point: a law gives the loading energy W of the principal stretches
- * and its derivatives (sf_foam_kind); hysteresis, Maxwell branch, Kelvin and DAMP viscosity, stress, work and
- * bounds follow here (theory, section "Foam"). Pure functions on batches of SF_LANES points; arrays are
- * [component][lane]. Matrices are row-major (9) or symmetric (xx, yy, zz, xy, yz, xz). */
+/* The common part of the foam laws at a material point: a law gives the loading energy W of the principal
+ * stretches and its derivatives (sf_foam_kind); hysteresis, Maxwell branch, Kelvin and DAMP viscosity,
+ * stress, work and bounds follow here (theory, section "Foam"). Pure functions on batches of SF_LANES
+ * points; arrays are [component][lane]. Matrices are row-major (9) or symmetric (xx, yy, zz, xy, yz, xz). */
 
 /* Numbers of hysteresis and viscosity. A law's numbers hold them as the members of SF_FOAM_OPTIONS. */
 #define SF_FOAM_OPTIONS                                                                                      \
@@ -56,7 +56,7 @@ typedef struct sf_foam_rate {
     double green[3][SF_LANES]; /* in: s-1, rate of the Green strain N . Ė N */
 } sf_foam_rate;
 
-/* What a law is. */
+/* The loading law of a foam law. */
 typedef struct sf_foam_kind {
     const void *numbers;
     double rest;      /* Pa, the larger slope at rest */
@@ -66,7 +66,7 @@ typedef struct sf_foam_kind {
      * step as the present rate has it; called where a stretch is below `dense`. NULL: none */
     double dense;
     void (*ahead)(const void *numbers, double next[3][SF_LANES], double steepest[3][SF_LANES]);
-    /* Of a law's own, instead of the rate factor. NULL: none */
+    /* Rate term of the law itself; NULL if the rate factor applies */
     void (*overstress)(const void *numbers, double dt, sf_law_batch *batch, const sf_foam_loading *law,
                        sf_foam_rate *rate);
 } sf_foam_kind;
@@ -85,8 +85,8 @@ double sf_foam_axial_factor(const sf_foam_options *options, double energy, sf_un
 /* The filtered rate (s-1) after the step. */
 double sf_foam_axial_filter(const sf_foam_options *options, double dt, double green_rate, double stretch,
                             sf_uniaxial *point);
-/* What the rate factor adds to the factor on the stress of loading; 0 without one. Advances the filtered
- * rate. */
+/* Returns the share that the rate factor adds to the factor on the stress of loading; 0 without one.
+ * Advances the filtered rate. */
 double sf_foam_axial_gain(const sf_foam_options *options, double dt, double green_rate, double stretch,
                           sf_uniaxial *point);
 /* Second Piola-Kirchhoff stress (Pa) of Maxwell branch and Kelvin viscosity. */

@@ -18,7 +18,7 @@ static const sf_hyperfoam_term *term(const void *card, int k) {
     return &((const sf_hyperfoam_card *)card)->term[k];
 }
 
-/* What of term k acts. */
+/* True if term k has the parameter: mu always acts, nu and beta exclude each other. */
 #define ACTS(k)                                                                                              \
     static bool has_term_##k(const void *card) {                                                             \
         return term(card, k)->mu != 0;                                                                       \
@@ -61,7 +61,7 @@ static const sf_parameter parameters[] = {
 
 /* ---- rules ---- */
 
-/* Of one term; `name` names the place. */
+/* Checks one term; `name` names the place. */
 static sf_status check_term(const sf_hyperfoam_term *t, const char *name, sf_error *err) {
     if (t->mu != 0 && fabs(t->alpha) < 0.01)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: alpha is %g; its amount must be 0.01 at least", name,
@@ -402,9 +402,9 @@ static double parts(const sf_hyperfoam *foam, const double stretch[3], double d[
     return b;
 }
 
-/* Is it positive definite? With two d[i] at or below 0 it is not, whatever b: a change of the two against
- * each other shows it. Otherwise the sign of its determinant decides, and 1/d[i] is the change of least work.
- */
+/* True if the matrix is positive definite. With two d[i] at or below 0 it is not, whatever b: a change of
+ * the two against each other shows it. Otherwise the sign of its determinant decides, and 1/d[i] is the
+ * change of least work. */
 static bool positive(double b, const double d[3], double v[3]) {
     int below[3], count = 0;
     double sum = 1;
@@ -425,7 +425,8 @@ static bool positive(double b, const double d[3], double v[3]) {
     return count == 0 ? sum > 0 : b > 0 && sum < 0;
 }
 
-/* Is the law stable there? Otherwise the term that takes most from the work of the critical change. */
+/* True if the law is stable there; otherwise `term` is the one that takes most from the work of the
+ * critical change. */
 static bool stable(const sf_hyperfoam *foam, const double stretch[3], int *term) {
     double d[3], along[3], b = parts(foam, stretch, d);
     if (positive(b, d, along))

@@ -67,7 +67,7 @@ bool sf_hyperfoam_release(const sf_hyperfoam *foam, int held, double stretch[3])
  * if there is none. Of one term it is nu at any strain. */
 double sf_hyperfoam_poisson(const sf_hyperfoam *foam, double strain);
 
-/* Where the terms cease to be stable. */
+/* The place at which the terms cease to be stable. */
 typedef struct sf_hyperfoam_failure {
     const char *path; /* "uniaxial compression" ... ; static storage */
     double strain;    /* - */

@@ -174,6 +174,6 @@ typedef struct sf_internal_energy {
     double contact;       /* -, energy lost in contact over the peak; likewise */
 } sf_internal_energy;
 
-/* Of a history with at least one row. */
+/* Needs a history with at least one row. */
 sf_internal_energy sf_history_internal_energy(const sf_history *history);
 #endif

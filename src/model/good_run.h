@@ -110,8 +110,8 @@ typedef struct sf_drop_kind_info {
     int digits;
     bool always; /* in reports, measured or not */
     const char *needs;
-    /* Where the foam collapses the number is above every value: so are peaks. False: no order, as a pulse
-     * that has no end has no window. */
+    /* True if a collapsed foam counts as above every value, as of peaks. False: the number has no order,
+     * as a pulse that has no end has no window. */
     bool above_all;
 } sf_drop_kind_info;
 

@@ -182,9 +182,9 @@ static inline int64_t sf_model_point_node(const sf_model *model, int64_t point) 
                                         : model->rest_node[point - model->contact_count];
 }
 
-/* Has the missile a prescribed motion (model/model.h)? Else the drop decides. */
+/* True if the missile has a prescribed motion; otherwise the drop decides. */
 bool sf_missile_is_driven(const sf_model *model);
-/* Has it six degrees of freedom? */
+/* True if the missile has six degrees of freedom. */
 bool sf_missile_turns(const sf_model *model);
 /* Can a body have this tensor of inertia: are its principal moments positive, and none larger than the sum of
  * the other two? `principal` [3] (kg m2), ascending. */
@@ -193,7 +193,7 @@ bool sf_missile_inertia_is_possible(const double inertia[6], double principal[3]
  * undeformed pad's top, from which the thickness is measured, after the missile's displacement (m) along its
  * direction; negative above the plane. */
 double sf_missile_card_depth(const sf_missile_card *card, double displacement);
-/* Does the missile move straight down? */
+/* True if the missile moves straight down. */
 bool sf_missile_card_is_vertical(const sf_missile_card *card);
 
 /* The material of a node; borrowed. */
@@ -252,8 +252,8 @@ const sf_model_field *sf_model_fields(size_t *count);
 
 /* The symmetry planes of a model. */
 
-/* Is a plane normal to the axis (0 x, 1 y) a symmetry plane of the model, which has its sets? Then *place (m)
- * is where on that axis; else 0. */
+/* True if a plane normal to the axis (0 x, 1 y) is a symmetry plane of the model, which has its sets;
+ * *place (m) is then its position on that axis, else 0. */
 bool sf_symmetry_plane(const sf_model *model, int axis, double *place);
 
 /* The prescribed motion of a missile driven by a machine (model->motion_*): displacement along its direction,

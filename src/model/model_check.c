@@ -218,7 +218,7 @@ static sf_status check_nodes(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
-/* Is `node` in row i of the edges, which ascends? */
+/* True if `node` is in row i of the edges, which ascends. */
 static bool has_edge(const sf_model *m, int64_t i, int64_t node) {
     int64_t low = m->edge_ptr[i], high = m->edge_ptr[i + 1];
     while (low < high) {

@@ -44,7 +44,7 @@ static sf_status write_fields(sf_h5 *h5, const sf_model *model, sf_error *err) {
 
 enum { PATH_SIZE = 128 };
 
-/* Of parameter `p`: of the key E /material/0/E, of densification.limit /material/0/densification_limit. */
+/* Names parameter `p`: the key E is /material/0/E, densification.limit is /material/0/densification_limit. */
 static void name_parameter(int64_t index, const sf_parameter *p, char path[PATH_SIZE]) {
     const char *group = strchr(p->group, '.');
     snprintf(path, PATH_SIZE, "/material/%lld/%s%s%s", (long long)index, group ? group + 1 : "",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a case, a mesh and a missile surface to the model: cloud, supports, smoothing domains, masses,
+/* Builds the model from a case, a mesh and a missile surface: cloud, supports, smoothing domains, masses,
  * constraints, contact points, missile. */
 #ifndef SF_PRE_BUILD_H
 #define SF_PRE_BUILD_H

@@ -6,7 +6,7 @@
 #include "model/model.h"
 #include "pre/mesh/mesh.h"
 
-/* Is the mesh fine enough? The expected error of a_max from the spacing under the missile. */
+/* The expected error of a_max from the spacing under the missile, by which the mesh is judged. */
 
 /* The law: C (h/t)^2 + D (h/w)^2 with the thickness t and the half width w of the contact zone; C and D are
  * calibrated in docs/theory.md, section 11. */
@@ -26,8 +26,8 @@ void sf_contact_zone_measure(const sf_model *model, sf_contact_zone *zone);
 /* Expected relative error of a_max, or 0 with a prescribed motion, which has no a_max. */
 double sf_mesh_error_expect(const sf_model *model, const sf_contact_zone *zone);
 
-/* Does a model make sense as a drop? The checks that need the case and the group names of the geometry, which
- * sf_model_check does not have. */
+/* Checks whether a model makes sense as a drop: those checks that need the case and the group names of the
+ * geometry, which sf_model_check does not have. */
 
 /* SF_ERR_INPUT, naming the key, the value and the bound: the pad's thickness is not one of a pad; the
  * missile's share in the model is lighter than a node; the missile starts inside the pad; it is not symmetric

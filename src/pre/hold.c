@@ -15,7 +15,7 @@ typedef struct cell_face {
     int32_t cell;
 } cell_face;
 
-/* What stands for those joined to `k` so far: the lowest. */
+/* Returns the lowest of those joined to `k` so far, which represents them. */
 static int32_t leader(int32_t *parent, int32_t k) {
     while (parent[k] != k)
         k = parent[k] = parent[parent[k]];
@@ -221,7 +221,7 @@ typedef struct rows {
     const uint8_t *mask;         /* [count]; NULL: z */
 } rows;
 
-/* What constraints, the anvil (the weight holds what rests) and ties forbid. */
+/* Adds the motions that constraints, the anvil (the weight holds a resting pad) and ties forbid. */
 static void add_rows(holder *h, sf_hold *hold) {
     const sf_model *m = h->model;
     const int32_t *body = h->bodies->node;

@@ -20,8 +20,8 @@ typedef struct sf_bodies {
 sf_status sf_bodies_find(const sf_model *model, sf_bodies *bodies, sf_error *err);
 void sf_bodies_free(sf_bodies *bodies);
 
-/* What holds the pad? Its rigid motions, and those of its connected parts (pre/hold.h) against each other,
- * that base, anvil, symmetry planes and ties leave free. */
+/* Finds the rigid-body modes of the pad, and of its connected parts against each other, that base, anvil,
+ * symmetry planes and ties leave free. */
 
 #define SF_HOLD_MOST 0.5 /* of the underside's nodes, held along z: mostly held */
 

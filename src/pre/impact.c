@@ -10,7 +10,7 @@ static const double ON_PLANE = 1e-6;        /* of the thickness */
 static const double AT_NODE = 1e-9;         /* of the thickness */
 static const double STRAIGHT = M_PI + 1e-6; /* rad */
 
-/* Is the bottom of the card's sphere a point of its cap? */
+/* True if the bottom of the card's sphere is a point of its cap. */
 static bool has_bottom(const sf_missile_card *card) {
     return card->shape == SF_SHAPE_SPHERE && -card->direction[2] >= card->sphere_cap_cosine;
 }
@@ -137,7 +137,7 @@ double sf_impact_top(const sf_model *m) {
     return top;
 }
 
-/* Where the point, moving along the direction, comes to the height of the pad's top. */
+/* Moves the point along the direction to the height of the pad's top. */
 static void follow(const sf_missile_card *card, double top, double point[3]) {
     double travel = (top - point[2]) / card->direction[2];
     for (int axis = 0; axis < 3; axis++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a case to its model: the geometry through gmsh, then build.h. */
+/* Makes the model of a case: the geometry through gmsh, then build.h. */
 #ifndef SF_PRE_MAKE_H
 #define SF_PRE_MAKE_H
 

@@ -67,7 +67,7 @@ static double volume_of(const sf_model *m, const sf_build_report *r, int64_t k) 
     return volume;
 }
 
-/* Of a missile that is drawn whole and closed. */
+/* Prints the mass properties of a missile that is drawn whole and closed. */
 static void print_body(FILE *out, const sf_model *m) {
     sf_solid solid;
     sf_error open = SF_ERROR_INIT;

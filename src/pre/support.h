@@ -14,7 +14,7 @@ const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const cha
 /* The axis (0 x, 1 y, 2 z) that a plane group is normal to, or -1. Needs positions and thickness. */
 int sf_group_plane_axis(const sf_model *model, const sf_node_set *set);
 
-/* What the pad stands on: pad.base, the groups of pad.fixed and pad.sliding, and the anvil's plane. */
+/* The support of the pad: pad.base, the groups of pad.fixed and pad.sliding, and the anvil's plane. */
 
 /* By node [node_count]: held components (SF_FIX_*), 1 if they count for the base reaction, 1 if it rests. */
 typedef struct sf_base_marks {

@@ -112,7 +112,7 @@ static sf_status run_group(const options *o, const sf_manifest *m, const char *o
     return err->status;
 }
 
-/* How the runs stand; those that failed with their sentences. */
+/* Lists the status of the runs; those that failed with their sentences. */
 static sf_status list_runs(const sf_manifest *m, sf_error *err) {
     const sf_runner runner = {.folder = m->runs};
     int number[4] = {0};

@@ -49,7 +49,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     }
 }
 
-/* Of the case file of that name, or of the example. */
+/* Makes the folder of the case file of that name, or of the example. */
 static sf_status make(const options *o, const char *path, const char *origin, sf_error *err) {
     const sf_sink sink = sf_program_sink("softfall-new");
     const sf_case_folder_request request = {.case_path = path,

@@ -36,7 +36,8 @@ void sf_html_tiles_begin(FILE *page);
 void sf_html_tile(FILE *page, const char *kind, const char *title, const char *value, const char *remark);
 void sf_html_tiles_end(FILE *page);
 
-/* What follows stands side by side until the end. `kind`: "" equal widths; "narrow", "wide": the first is. */
+/* The parts that follow stand side by side until the end. `kind`: "" equal widths; "narrow", "wide": the
+ * first is. */
 void sf_html_columns_begin(FILE *page, const char *kind);
 void sf_html_columns_end(FILE *page);
 
@@ -70,7 +71,7 @@ void sf_html_hint(sf_html_table *table, const char *text);
 /* The value with so many digits after the point, or a dash if it is not finite. */
 void sf_html_number(sf_html_table *table, int digits, double value);
 void sf_html_table_end(sf_html_table *table);
-/* Of a table without headings: a row. */
+/* Adds a row to a table without headings. */
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -330,7 +330,7 @@ void sf_missile_apply(const sf_model *m, sf_missile *missile, const double x[3],
     }
 }
 
-/* Has it turned so far that the rim of its spherical cap is lower than the cap? */
+/* True if the missile has turned so far that the rim of its spherical cap is lower than the cap. */
 static bool rim_leads(const sf_model *m, const sf_missile *missile) {
     double down[3];
     if (!sf_missile_turns(m) || m->missile.shape != SF_SHAPE_SPHERE)

@@ -60,7 +60,7 @@ const double *sf_missile_direction(const sf_model *model);
 
 /* Translation (m) since t = 0, of the centre. */
 void sf_missile_translation(const sf_model *model, const sf_missile *missile, double out[3]);
-/* What instruments in the missile see, at the present time, after sf_missile_kick. */
+/* The quantities that instruments in the missile measure at the present time, after sf_missile_kick. */
 typedef struct sf_missile_view {
     double translation[3];          /* m */
     double quaternion[4];           /* orientation, base/mat3.h */
@@ -86,7 +86,7 @@ bool sf_missile_gap(const sf_model *model, const sf_missile *missile, const sf_m
 
 /* ---- its part in one contact solve ---- */
 
-/* How the missile moves in the next step under the contact forces that are found so far. */
+/* The motion of the missile in the next step under the contact forces that are found so far. */
 typedef struct sf_missile_response {
     const double *direction; /* [3], of the model */
     double mobility;         /* kg-1; 0 of a driven missile */
@@ -120,8 +120,8 @@ void sf_missile_reload(sf_missile_response *response, const double x[3], const d
 void sf_missile_recoil(const sf_missile_response *response, const double x[3], double out[3]);
 /* Acceleration along the unit vector n, of the point at x, for each newton along n there (kg-1). */
 double sf_missile_mobility(const sf_missile_response *response, const double x[3], const double n[3]);
-/* What friction takes for that mobility in every direction across the normal: a bound; 0 unless it turns,
- * whose guide holds it. */
+/* Returns a bound of that mobility in every direction across the normal, for friction; 0 unless the
+ * missile turns: its guide holds it. */
 double sf_missile_looseness(const sf_missile_response *response, const double x[3]);
 
 /* ---- forces and the step ---- */
@@ -150,8 +150,8 @@ double sf_missile_along(const sf_model *model, const double vector[3]);
 double sf_missile_momentum(const sf_model *model, const sf_missile *missile);
 /* Kinetic energy (J) at the present time, after sf_missile_kick; dt_v (s): the distance of the half steps. */
 double sf_missile_kinetic(const sf_model *model, const sf_missile *missile, double dt_v);
-/* What the balance of momentum in space counts of the missile (solver/ledger.h): momentum (kg m s-1) and
- * angular momentum about the origin (kg m2 s-1) at the half step, 0 unless it turns. */
+/* Returns the missile's part in the balance of momentum in space (solver/ledger.h): momentum (kg m s-1)
+ * and angular momentum about the origin (kg m2 s-1) at the half step, 0 unless it turns. */
 void sf_missile_momenta(const sf_model *model, const sf_missile *missile, double linear[3],
                         double angular[3]);
 /* And what acts there from outside through the missile, force (N) and moment about the origin (N m): the
@@ -171,8 +171,8 @@ double sf_missile_reading(const sf_model *model, const sf_missile *missile);
 double sf_missile_contact_force(const sf_model *model, const sf_missile *missile);
 /* Depth (m) of its lowest point below the undeformed top; negative before contact. */
 double sf_missile_depth(const sf_model *model, const sf_missile *missile);
-/* Is it not driven, and on its way away from the pad? If it turns: its centre rises, and either all of its
- * points do or it is clear of the pad however it turns. */
+/* True if the missile is not driven and on its way away from the pad. If it turns: its centre rises, and
+ * either all of its points do or it is clear of the pad however it turns. */
 bool sf_missile_is_leaving(const sf_model *model, const sf_missile *missile);
 
 #endif

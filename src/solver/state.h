@@ -149,7 +149,7 @@ typedef struct sf_state {
     double *pair_sum;       /* [n] m3 */
     double *pair_stiffness; /* [n] Pa */
 
-    /* Of a pad of layers. */
+    /* Only a pad of layers has these. */
     double *viscous_work; /* [n] J, to date */
     double *compressed;   /* [n] -, largest compression to date */
 

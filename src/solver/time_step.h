@@ -9,7 +9,7 @@
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* Is the frequency measured in this step? That needs state->directional. */
+/* True if the frequency is measured in this step; it then needs state->directional. */
 bool sf_time_step_due(const sf_state *state);
 
 /* Chooses state->dt from the partial sums of the domains: shrinks at once; between measurements it does not

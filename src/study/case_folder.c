@@ -102,7 +102,7 @@ static const char *free_name(const folder *f, const char *name, const char *path
 
 /* ---- geometries ---- */
 
-/* Does a text of the geometry name the file by this very path? */
+/* True if a text of the geometry names the file by this very path. */
 static bool is_named_whole(const sf_broker *read, const char *path) {
     char quoted[PATH_SIZE + 2];
     snprintf(quoted, sizeof quoted, "\"%s\"", path);
@@ -316,7 +316,7 @@ static sf_status write_readme(folder *f, sf_error *err) {
     return SF_OK;
 }
 
-/* What becomes of every file: their names, then their texts. */
+/* Collects every file: first their names, then their texts. */
 static sf_status collect(folder *f, sf_error *err) {
     const sf_case_folder_request *q = f->request;
     if (sf_case_parts_read(q->case_path, &f->parts, err) != SF_OK)
@@ -356,7 +356,7 @@ static sf_status mesh_each(const sf_case *c, sf_meshed mesh[2], sf_error *err) {
     return err->status;
 }
 
-/* Nothing outside of the new folder is read there. */
+/* Checks that the new case reads no file outside of the new folder. */
 static sf_status check_reading(const folder *f, const sf_broker *read, const char *root, sf_error *err) {
     for (size_t k = 0; k < read->count && err->status == SF_OK; k++) {
         char *whole = sf_path_whole(NULL, read->file[k].path, err);

@@ -35,7 +35,7 @@ sf_status sf_columns_build(const sf_results *results, sf_columns *columns, sf_er
 sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
                           double *rebound, double *contact, sf_error *err);
 
-/* What an accelerometer in the missile gives: figures of the curve, filtered with CFC 1000. */
+/* The readings of an accelerometer in the missile: figures of the curve, filtered with CFC 1000. */
 typedef struct sf_columns_figures {
     double a_max_g, hic;
     double hic_window;   /* s, its length */
@@ -50,9 +50,9 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
 
 /* HIC of a single pulse, a hundred times as fast as the search of post/figures/injury.h, for surrogates. */
 
-/* Of a curve that rises to one peak and falls, both ends of the window have the same deceleration: the
- * maximum over one level is found instead of that over two instants. The part below a fifth of the peak may
- * have any shape. Any other curve goes to sf_hic_evaluate; so do pulses whose best level is below a quarter
- * of the peak. No limit of the window. */
+/* Computes HIC of a curve that rises to one peak and falls: both ends of the window have the same
+ * deceleration, so that the maximum over one level is found instead of that over two instants. The part
+ * below a fifth of the peak may have any shape. Any other curve goes to sf_hic_evaluate; so do pulses
+ * whose best level is below a quarter of the peak. The window has no limit. */
 sf_status sf_pulse_hic(const sf_series *acceleration_g, sf_hic *hic, sf_error *err);
 #endif

@@ -16,7 +16,7 @@ typedef struct sf_runner_drop {
     const char *overrides[SF_RUNNER_OVERRIDES]; /* "group.key=value" */
 } sf_runner_drop;
 
-/* What runs a batch, and what of it is run. Strings are borrowed. */
+/* The engine of a batch, and the part of the batch that it runs. Strings are borrowed. */
 typedef struct sf_runner_engine {
     const char *name;    /* NULL or "local": this process; "snakemake" (engine.h) */
     const char *profile; /* of Snakemake; NULL: none */

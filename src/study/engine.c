@@ -28,7 +28,7 @@ static sf_status find_profile(const char *name, char path[PATH_MAX], sf_error *e
     return SF_OK;
 }
 
-/* Is it one of Snakemake's profiles: a folder with one of the files that it reads? */
+/* True if the folder is one of Snakemake's profiles: it has one of the files that Snakemake reads. */
 static bool is_profile(const char *folder) {
     char file[SF_RUN_PATH_SIZE];
     for (int version = 7; version < 10; version++) {
@@ -51,7 +51,7 @@ static bool is_profile_below(const char *parent, const char *rest, const char *n
            is_profile(folder);
 }
 
-/* Where Snakemake looks for a name that is no path: the user's profiles, the machine's. */
+/* True if Snakemake finds the name, which is no path, among the user's profiles or the machine's. */
 static bool is_profile_name(const char *name) {
     const char *user = getenv("XDG_CONFIG_HOME"), *machine = getenv("XDG_CONFIG_DIRS");
     return (user && *user ? is_profile_below(user, "", name)

@@ -40,7 +40,7 @@ static sf_status add(sf_examples *e, const char *name, sf_error *err) {
     return SF_OK;
 }
 
-/* Those with a case. */
+/* Lists the examples that have a case. */
 static sf_status list(sf_examples *e, sf_error *err) {
     DIR *folder = opendir(e->folder);
     const struct dirent *entry;

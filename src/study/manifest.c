@@ -43,7 +43,7 @@ static sf_status check_drop(const sf_runner_drop *drop, sf_error *err) {
     return err->status;
 }
 
-/* What follows the group in the line of a drop. */
+/* Prints the columns behind the group in the line of a drop. */
 static void print_drop(FILE *out, const sf_runner_drop *drop) {
     fprintf(out, "\t%s\t%s\t%s", drop->label, drop->case_path, drop->material ? drop->material : "");
     for (int k = 0; k < drop->override_count; k++)

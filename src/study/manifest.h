@@ -53,7 +53,7 @@ sf_status sf_manifest_write_outcome(const char *path, int count, const sf_manife
                                     const sf_error *failure, sf_error *err);
 /* Puts the failures in the file into failure[k] of the drop with that key; false: there is no such file. */
 bool sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure);
-/* How many failures there are in the file; -1: there is no such file. */
+/* Returns the number of failures in the file; -1: there is no such file. */
 int sf_manifest_count_failed(const char *path);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a campaign wants to know of a finished drop, in a small text beside its results: figures.txt. It is
- * read in place of results.h5 as long as that is the file that it was made of (size and time); without it, or
- * with one of another version, damaged or half written, results.h5 is read and it is written anew. */
+/* Figures of a finished drop, cached beside its results in a small text, figures.txt. It is read in place
+ * of results.h5 as long as that is the file that it was made of (size and time); without it, or with one
+ * of another version, damaged or half written, results.h5 is read and it is written anew. */
 #ifndef SF_CAMPAIGN_RECORD_H
 #define SF_CAMPAIGN_RECORD_H
 

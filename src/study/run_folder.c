@@ -232,7 +232,7 @@ static sf_status run_program(const char *const *arguments, const char *log, sf_e
                    "%s (exit code %d; see %s)", said, code, log);
 }
 
-/* Is the folder of its run locked (solver/run/output.c)? */
+/* True if the folder of its run is locked (solver/run/output.c). */
 bool sf_run_folder_is_running(const sf_run_folder *at) {
     char folder[SF_RUN_PATH_SIZE + 8];
     snprintf(folder, sizeof folder, "%s.run", at->results);

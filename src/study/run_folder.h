@@ -23,19 +23,19 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 /* The part of it that is of the case alone, without geometry files and programs. */
 uint64_t sf_campaign_case_hash(const sf_case *c);
 
-/* Has every file that the geometries read, by the list at `text` of the HDF5 file `path` (docs/formats.md,
- * geometry_files), the content that it had? `folder`: of the pad's and the missile's geometry, where paths in
- * the list begin; "" without a geometry of the missile. `unlisted`: the answer if there is no such file or
- * list. */
+/* True if every file that the geometries read, by the list at `text` of the HDF5 file `path`
+ * (docs/formats.md, geometry_files), has the content that it had. `folder`: that of the pad's and the
+ * missile's geometry, where paths in the list begin; "" without a geometry of the missile. `unlisted`: the
+ * answer if there is no such file or list. */
 bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
                                   bool unlisted);
-/* That list, from malloc; NULL if there is none. */
+/* Returns that list, from malloc; NULL if there is none. */
 char *sf_campaign_geometry_list(const char *path, const char *text);
 
 /* The folder of one drop: it holds the log, the model and the checkpoint while the drop is not finished, and
  * the results. */
 
-/* Beside the folders of the drops: meshes and domains that they share (io/folder.h). */
+/* The folder of meshes and domains that the drops share, beside the drops' folders (io/folder.h). */
 #define SF_RUN_SHARED "shared"
 
 enum { SF_RUN_PATH_SIZE = PATH_MAX + 128 };

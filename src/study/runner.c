@@ -214,7 +214,7 @@ sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf
 
 /* ---- batches ---- */
 
-/* What is known of a drop of a batch; small, as there may be very many. */
+/* The request of a drop of a batch; small, as there may be very many. */
 typedef struct request {
     uint64_t key;
     bool reused;
@@ -357,7 +357,8 @@ static void name_killed(const batch *b, sf_error *failure) {
     }
 }
 
-/* How many drops run side by side; says where that is not what was asked for. */
+/* Returns the number of drops that run side by side; warns where that is not the number that was asked
+ * for. */
 static int count_abreast(const sf_runner *runner, int pending) {
     int jobs = runner->jobs > 0 ? runner->jobs : runner->threads, most = SF_PROCESS_JOBS;
     int abreast = jobs < most ? jobs : most;
@@ -404,8 +405,8 @@ static sf_status simulate_here(batch *b, sf_error *failure, sf_error *err) {
     return err->status;
 }
 
-/* What the engine left: a drop without results and without a sentence was not run to its end. `complaint`: of
- * the engine. */
+/* Reads the results of the engine: a drop without results and without a sentence was not run to its end.
+ * `complaint`: that of the engine. */
 static void look_again(const batch *b, const sf_manifest *m, const char *manifest, int code,
                        const char *complaint, sf_error *failure) {
     char path[SF_RUN_PATH_SIZE];

@@ -48,7 +48,7 @@ typedef struct sf_runner_result {
     bool reused;
 } sf_runner_result;
 
-/* Does a campaign set this key ("output.fields") itself, whatever the drop says? */
+/* True if a campaign itself sets this key ("output.fields"), over the value of the drop. */
 bool sf_runner_sets_key(const char *key);
 
 /* Simulates the drop unless a finished run of the same inputs is there: the same values of every key of the
@@ -85,7 +85,7 @@ sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uin
 
 typedef enum sf_runner_state { SF_DROP_OPEN, SF_DROP_RUNNING, SF_DROP_DONE, SF_DROP_FAILED } sf_runner_state;
 
-/* How a drop stands; `*failure` of one that failed. Nothing is changed. Errors: of its inputs. */
+/* Finds the status of a drop; `*failure` of one that failed. Changes nothing. Errors: those of its inputs. */
 sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
                          sf_error *failure, sf_error *err);
 /* open, running, done, failed */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is shown beside the geometry: bodies of triangles and quadrangles that move from frame to frame, and
- * curves. */
+/* Bodies of triangles and quadrangles that move from frame to frame, and curves, shown beside the
+ * geometry. */
 #ifndef SF_GUI_GMSH_VIEW_H
 #define SF_GUI_GMSH_VIEW_H
 

@@ -30,7 +30,7 @@ void sf_geometry_clear(void);
 /* gmsh's window and its tree of parameters (ONELAB), by gmsh's C API. The folder src/gui/gmsh is the only
  * part of the window that calls gmsh; nothing in it knows of cases and runs. One thread. */
 
-/* What stands at an entry of the tree. */
+/* The kinds of entry in the tree. */
 typedef enum sf_entry_kind {
     SF_ENTRY_TEXT,   /* a text that can be changed */
     SF_ENTRY_FILE,   /* the same, with a chooser of files */

@@ -97,7 +97,8 @@ static sf_status filter_resultant(const sf_results *r, const double *const chann
     return err->status;
 }
 
-/* What is added to the specific force along z, and against the direction of a guided missile. */
+/* Returns the acceleration that is added to the specific force along z, and against the direction of a
+ * guided missile. */
 static double shift_of_z(const sf_results *r) {
     return r->kinematic ? r->gravity_along / r->missile_direction[2] : 0;
 }
@@ -234,7 +235,7 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
         f->smallest_jacobian = fmin(f->smallest_jacobian, h->smallest_jacobian[i]);
 }
 
-/* Of the fields at the peak, if the file has them. What a failed run left of them may be damaged. */
+/* Computes figures of the fields at the peak, if the file has them; those of a failed run may be damaged. */
 static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *err) {
     sf_error problem = SF_ERROR_INIT;
     sf_frame peak;
@@ -275,7 +276,7 @@ static sf_status add_depth(const sf_results *r, const sf_frame_head *head, doubl
     return SF_OK;
 }
 
-/* What a failed run left of its frames may be damaged. */
+/* Computes the depth below the anvil; frames of a failed run may be damaged. */
 static sf_status compute_below_anvil(const sf_results *r, sf_figures *f, sf_error *err) {
     double high = -INFINITY, depth = 0;
     sf_error problem = SF_ERROR_INIT;

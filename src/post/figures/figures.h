@@ -162,7 +162,7 @@ double sf_figure_number(const sf_figure *figure, const sf_results *results, cons
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *figures, sf_error *err);
 void sf_figures_free(sf_figures *figures);
 
-/* What the curves show, a few words; static storage. */
+/* Returns the name of the acceleration that the curves show, a few words; static storage. */
 const char *sf_figures_acceleration(const sf_figures *figures);
 
 #endif

@@ -87,7 +87,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Of an even number of values the upper one of the two in the middle, so that half of them reach it. */
+/* Returns the upper median: at least half of the values are less than or equal to it. */
 static double median(double *value, int64_t count) {
     qsort(value, (size_t)count, sizeof *value, ascending);
     return value[count / 2];

@@ -61,7 +61,7 @@ const char *sf_verdict_phrase(sf_grade grade);
 void sf_verdict_compute(const sf_results *results, const sf_figures *figures, const sf_limits *limits,
                         sf_verdict *verdict);
 
-/* How the status of a run that ended on the anvil begins (solver/run/run.c). */
+/* The beginning of the status of a run that ended on the anvil (solver/run/run.c). */
 #define SF_ENDED_ON_ANVIL "the missile reached the anvil"
 
 /* Bytes that hold every line of sf_verdict_line. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What results.h5 says of its case: texts of /provenance, as a report shows them. */
+/* The texts of /provenance in results.h5 about its case, for a report. */
 #ifndef SF_POST_ORIGIN_H
 #define SF_POST_ORIGIN_H
 

@@ -28,7 +28,7 @@ typedef struct sf_frame {
     double *field[SF_FRAME_FIELDS]; /* [node_count][components], NULL if the file does not hold it */
 } sf_frame;
 
-/* Of one layer, whole pad, to date. */
+/* Sums over one layer, whole pad, to date. */
 typedef struct sf_layer_sums {
     double stored, hysteresis, viscous; /* J */
     double compression;                 /* -, largest */
@@ -111,7 +111,7 @@ void sf_results_close(sf_results *results);
 /* Every field that the group holds, checked for shape and finiteness; release with sf_frame_free. SF_ERR_IO:
  * the group is gone, too, as a run in progress moves its frames: open the results again. */
 sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame, sf_error *err);
-/* Of them those in `fields`, bits SF_FIELD_*. */
+/* Reads only the fields in `fields`, bits SF_FIELD_*. */
 sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
                                sf_frame *frame, sf_error *err);
 void sf_frame_free(sf_frame *frame);
@@ -120,7 +120,7 @@ void sf_frame_free(sf_frame *frame);
 static inline double sf_results_along(const sf_results *results, const double vector[3]) {
     return sf_dot3(vector, results->missile_direction);
 }
-/* Where the missile's point that was at x (m) at t = 0 is in that frame. */
+/* Finds the position in that frame of the missile's point that was at x (m) at t = 0. */
 void sf_results_place(const sf_results *results, const sf_frame_head *head, const double x[3], double out[3]);
 /* Speed of the missile downwards, along -z, at t = 0, m s-1. */
 double sf_results_fall_speed(const sf_results *results);

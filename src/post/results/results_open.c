@@ -157,7 +157,7 @@ static sf_status read_layers(sf_results *r, sf_error *err) {
     return read_layer_names(r, err);
 }
 
-/* What the frame says by layer; nothing if it does not. */
+/* Reads the sums by layer of the frame; none if the frame has none. */
 static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_error *err) {
     static const char *const names[] = {"layer_stored", "layer_hysteresis", "layer_viscous",
                                         "layer_compression"};

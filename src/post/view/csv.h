@@ -41,12 +41,12 @@ typedef struct sf_section_point {
 
 /* The points under the axis, top to bottom, evenly spaced; returns the height of the top (m). */
 double sf_section_stations(const sf_results *results, sf_section_point station[SF_SECTION_STATIONS]);
-/* Is the point in a cell? Otherwise its mean means nothing. */
+/* True if the point lies in a cell; otherwise its mean has no meaning. */
 bool sf_section_inside(const sf_section_point *point);
 /* A component of a field ([node_count][components]) there. */
 double sf_section_mean(const double *field, int components, int component, const sf_section_point *point);
 
-/* From /peak, or without it the frame of the largest acceleration. `*written` is false if that holds no von
- * Mises stress: then there is no file. */
+/* Writes the section of /peak, or without it of the frame of the largest acceleration. `*written` is false
+ * if that holds no von Mises stress: then there is no file. */
 sf_status sf_section_write(const sf_staging *output, const sf_results *results, bool *written, sf_error *err);
 #endif

@@ -52,7 +52,7 @@ int sf_cell_faces(int type, const int (**faces)[4]) {
     }
 }
 
-/* Of the thickness: what lies closer to an end is at it. */
+/* A point closer to an end than this part of the thickness is at the end. */
 static const double AT_END = 1e-6;
 
 /* Extent of points along x (0) or y. */

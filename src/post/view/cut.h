@@ -13,8 +13,8 @@ int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]);
 /* Faces in order around them, -1 in the fourth place of a triangle; returns how many. */
 int sf_cell_faces(int type, const int (**faces)[4]);
 
-/* Where the symmetry planes of a model and the missile's axis lie: what every picture and section of the pad
- * is laid out by. */
+/* The places of the symmetry planes of a model and of the missile's axis, by which pictures and sections
+ * of the pad are laid out. */
 
 /* Places (m) of the symmetry planes normal to x and y; NaN: none. False: the model is a half or a quarter,
  * and its planes cannot be told (results of earlier versions). */

@@ -16,7 +16,7 @@ static const char FACTS[] = "\nDROP = {}";
 
 /* ---- the facts ---- */
 
-/* What colours the pad: the first of these that all frames have. */
+/* The field that colours the pad: the first of these that all frames have. */
 static const struct {
     sf_frame_field field;
     double factor;

@@ -22,7 +22,7 @@ typedef struct sf_picture_style {
     double half_width;    /* m, of what is shown, to both sides of the axis; INFINITY: the whole pad */
 } sf_picture_style;
 
-/* From malloc, owned by the caller; NULL on failure. */
+/* Returns the picture from malloc, owned by the caller; NULL on failure. */
 char *sf_picture_draw(const sf_cut *cut, const sf_picture *pictures, int count, const sf_picture_style *style,
                       sf_error *err);
 

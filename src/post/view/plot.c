@@ -76,8 +76,8 @@ double sf_plot_difference(const sf_series *a, const sf_series *b, const double r
     return top > 0 ? difference / top : 0;
 }
 
-/* From 0, or below it if the curves really go there, to a bit above the highest of them and, unless that is
- * far above, the limit. */
+/* The axis runs from 0, or below 0 if the curves really go there, to a bit above the highest of them and,
+ * unless that is far above, the limit. */
 static void find_values(picture *p) {
     const sf_series *curves[3] = {&p->figures->filtered, p->raw ? &p->figures->raw : NULL,
                                   !p->comparison ? NULL

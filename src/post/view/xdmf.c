@@ -30,7 +30,7 @@ int sf_missile_array_count(const sf_results *r) {
 
 /* ---- which frames ---- */
 
-/* Is there a frame of the very step of /peak? */
+/* True if there is a frame of the very step of /peak. */
 static bool is_among_frames(const sf_results *r, const sf_frame_head *head) {
     for (int64_t k = 0; k < r->frame_count; k++)
         if (r->frames[k].time == head->time)
@@ -125,7 +125,8 @@ static sf_status write_topology(const store *s, sf_error *err) {
     return err->status;
 }
 
-/* Of each cell, and in a pad of layers of each node: a cell belongs to one material as its nodes do. */
+/* Writes the material of each cell, and in a pad of layers of each node: a cell belongs to one material as
+ * its nodes do. */
 static sf_status write_materials(const store *s, sf_error *err) {
     const sf_results *r = s->results;
     uint8_t *material = sf_alloc(err, (unsigned long)r->cell_count, sizeof *material, "materials of cells");
@@ -445,7 +446,7 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_
     return err->status;
 }
 
-/* Does an .xdmf file of the directory speak of these data? Also if that is not known. */
+/* True if an .xdmf file of the directory names these data, or if that is not known. */
 static bool is_named(const char *directory, const char *data) {
     DIR *listing = opendir(directory);
     bool named = !listing;
@@ -465,7 +466,7 @@ static bool is_named(const char *directory, const char *data) {
     return named;
 }
 
-/* Is that the name of data that softfall wrote: pad-HASH.h5 with the hash of the content? */
+/* True if the name is that of data which softfall wrote: pad-HASH.h5 with the hash of the content. */
 static bool are_ours(const char *path, const char *name) {
     unsigned long long hash = 0;
     uint64_t found = 0;

@@ -4,7 +4,7 @@
 #include "io/staging.h"
 #include "post/results/results.h"
 
-/* What pad.xdmf speaks of: which frames are shown, and their data as an HDF5 file. */
+/* The contents of pad.xdmf: the frames that are shown, and their data as an HDF5 file. */
 
 typedef struct sf_xdmf_options {
     const char *command_line;
@@ -38,7 +38,7 @@ enum {
     SF_MISSILE_ARRAYS
 };
 extern const sf_missile_array sf_missile_arrays[SF_MISSILE_ARRAYS];
-/* How many of them the missile of these results has. */
+/* Returns the number of arrays that the missile of these results has. */
 int sf_missile_array_count(const sf_results *results);
 
 /* Release with sf_shown_free. */

@@ -76,7 +76,8 @@ done:
     return err->status;
 }
 
-/* Is the point r inside the tetrahedron of the origin and a, b, c, and not too near the face a b c? */
+/* True if the point r is inside the tetrahedron of the origin and a, b, c, and not too near the face a b
+ * c. */
 static bool is_within(const double r[3], const double a[3], const double b[3], const double c[3]) {
     static const double EDGE = -1e-9;
     double volume = sf_triple3(a, b, c), u = sf_triple3(r, b, c) / volume, v = sf_triple3(a, r, c) / volume,

@@ -6,16 +6,15 @@
 #include "pre/cloud/dual.h"
 #include "pre/mesh/mesh.h"
 
-/* Is the pad one body? Parts that do not share cell faces, and cells that lie in each other, cannot be meant.
- */
+/* Checks that the pad is one body: its parts share cell faces, and no cells lie in each other. */
 
 /* SF_ERR_INPUT, with the place, if a node or a face of the pad's surface lies inside a cell, if the cells are
  * not all connected through faces, or if those around a node are not. The cost is linear in the number of
  * cells. */
 sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, sf_error *err);
 
-/* Do the surface groups that a case names lie on the surface of the pad? Where cells are missing they do not.
- */
+/* Checks that the surface groups that a case names lie on the surface of the pad; where cells are missing
+ * they do not. */
 
 /* SF_ERR_INPUT, with the place, if a face of the groups for contact, base or symmetry has no cell of the pad
  * behind it, if one of contact or symmetry lies inside the pad, or if a face in the plane of a symmetry group

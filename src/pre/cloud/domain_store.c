@@ -10,7 +10,7 @@
 static const char KIND[] = "domains";
 enum { PARTS = 9 };
 
-/* What is not an array. */
+/* The numbers of the store beside its arrays. */
 typedef struct numbers {
     int64_t nodes, count, phi_count; /* count: of entries of B */
     double worst_condition, worst_position[3];

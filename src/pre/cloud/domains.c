@@ -265,7 +265,7 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
     return err->status;
 }
 
-/* Where is the narrowest gap that hides nodes from each other? */
+/* Finds the narrowest gap that hides nodes from each other. */
 static void find_gap(builder *b) {
     sf_domains *out = b->out;
     out->hidden_distance = INFINITY;

@@ -89,7 +89,8 @@ static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
     return err->status;
 }
 
-/* Do both cells see the face with its vertices in the same sense? They then lie on the same side of it. */
+/* True if both cells see the face with its vertices in the same sense: they then lie on the same side of
+ * it. */
 static bool is_same_side(const sf_mesh *mesh, const raw_face *a, const raw_face *b) {
     const sf_cell_topology *first = sf_cell_topology_of(mesh->cell_type[a->cell]),
                            *second = sf_cell_topology_of(mesh->cell_type[b->cell]);

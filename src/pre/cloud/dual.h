@@ -82,7 +82,7 @@ typedef struct sf_surface_sides {
     double away;   /* m2, of the faces whose outward normal is within 60 degrees of the direction */
 } sf_surface_sides;
 
-/* How the group faces what comes along `direction` (unit vector). */
+/* Finds the orientation of the group against a body that comes along `direction` (unit vector). */
 sf_status sf_surface_look(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
                           const double direction[3], sf_surface_sides *sides, sf_error *err);
 #endif

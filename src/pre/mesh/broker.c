@@ -15,7 +15,7 @@
 
 enum { MOST_FILES = 1000 };
 
-/* What the libraries below gmsh look for: they are told that it is not there. */
+/* The files that the libraries below gmsh look for: they are told that the file is not there. */
 static const char *const of_libraries[] = {
     "/etc/", "/proc/", "/sys/", "/usr/lib/locale/", "/usr/share/locale/", "/usr/share/zoneinfo/",
 };

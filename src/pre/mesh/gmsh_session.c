@@ -12,7 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Of softfall-pre at its peak, per node of the mesh: measured on the example pad (docs/reliability.md). */
+/* Memory of softfall-pre at its peak, per node of the mesh: measured on the example pad
+ * (docs/reliability.md). */
 static const double BYTES_PER_NODE = 4500;
 
 struct sf_gmsh {
@@ -242,7 +243,7 @@ static int face_vertices(int gmsh_type) {
     return gmsh_type == 2 ? 3 : gmsh_type == 3 ? 4 : 0;
 }
 
-/* Where the elements of one entity go. */
+/* The destination of the elements of one entity. */
 typedef struct destination {
     sf_raw_mesh *raw;
     int chosen;    /* of cells: 1 + place of the group, or 0 */

@@ -95,7 +95,7 @@ const sf_node_set *sf_mesh_find_set(const sf_mesh *mesh, const char *name) {
     return NULL;
 }
 
-/* Is the background mesh fit to carry smoothing domains? */
+/* Checks that the background mesh can carry smoothing domains. */
 
 enum { MAX_VERTICES = 8 };
 

@@ -353,7 +353,8 @@ static sf_status match_cells(surface_builder *b, sf_error *err) {
     return SF_OK;
 }
 
-/* From the inside to each face: from the cell behind it, or from the centroid of the whole surface. */
+/* Finds the outward direction of each face: from the cell behind it, or from the centroid of the whole
+ * surface. */
 static void find_outward(surface_builder *b) {
     const sf_raw_mesh *raw = b->raw;
     double middle[3] = {0.0, 0.0, 0.0}, c[3];

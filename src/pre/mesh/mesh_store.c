@@ -27,7 +27,7 @@ static bool join(const section *s, const char *name, size_t length, const char *
                     name, ending) < PATH_SIZE;
 }
 
-/* Has the file the content that it had? */
+/* True if the file has the content that it had. */
 static bool is_same(const section *s, uint64_t then, const char *name, size_t length) {
     char path[PATH_SIZE];
     uint64_t hash = 0;

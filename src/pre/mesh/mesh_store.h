@@ -10,15 +10,16 @@
 #define SF_GMSH_FILES_OF "geometry"
 #define SF_GMSH_UNKNOWN_FILES "unknown"
 
-/* Has every file of the list the content that it had, and has none got options beside it? `folder`: of the
- * pad's and of the missile's geometry, where paths in the list begin; "" without a geometry of the missile.
- * False, too, where the list does not know all files. */
+/* True if every file of the list has the content that it had, and none got options beside it. `folder`:
+ * that of the pad's and of the missile's geometry, where paths in the list begin; "" without a geometry of
+ * the missile. False, too, where the list does not know all files. */
 bool sf_geometry_files_are_same(const char *const folder[2], const char *files);
 
 /* The mesh of a geometry, kept in a store (io/folder.h) for the drops of a campaign: as gmsh made it, with
  * the list of what gmsh read. It is used again as long as these files are as they were. */
 
-/* Of the geometry's own file, its parameters and softfall-mesh. False: not known, and nothing is shared. */
+/* Computes the key from the geometry's own file, its parameters and softfall-mesh. False: the key is not
+ * known, and nothing is shared. */
 bool sf_mesh_store_key(const sf_geo_source *source, uint64_t *key);
 
 /* The mesh into the empty `*out`, and the geometry's part of sf_gmsh_files, from malloc. False: none. */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is not read yet. `bad` once something was missing or out of range; then all reads give zero. */
+/* The unread rest. `bad` once something was missing or out of range; then all reads give zero. */
 typedef struct reader {
     const uint64_t *word;
     size_t left; /* words */

@@ -47,7 +47,7 @@ static bool is_there(char *path, size_t size, const char *folder, const char *be
     return snprintf(path, size, "%s%s/%s", folder, below, NAME) < (int)size && access(path, X_OK) == 0;
 }
 
-/* Beside `file`, or in its neighbourhood. */
+/* Finds the program beside `file`, or in its neighbourhood. */
 static bool find_near(const char *file, char *path, size_t size) {
     static const char *const below[] = {"", "/../libexec/softfall", "/../../libexec/softfall", "/../bin"};
     char folder[PATH_MAX];
@@ -120,8 +120,8 @@ static int prepare(posix_spawn_file_actions_t *actions, const ends *e) {
     return result == 0 ? posix_spawn_file_actions_addclosefrom_np(actions, SF_MESHER_PARAMETERS + 1) : result;
 }
 
-/* Nothing of the user's but where libraries are. The options are for the sanitizers of a test build: gmsh
- * crashes, and keeps memory. */
+/* The child inherits only the places of libraries from the user's environment. The options are for the
+ * sanitizers of a test build: gmsh crashes, and keeps memory. */
 static int spawn(const char *path, const posix_spawn_file_actions_t *actions,
                  const posix_spawnattr_t *attributes, pid_t *process) {
     static const char sanitizers[] =
@@ -333,7 +333,7 @@ static void end_line(conversation *c) {
         snprintf(c->error_line, sizeof c->error_line, "%s", c->line + 5 + strspn(c->line + 5, " :"));
 }
 
-/* What gmsh prints: only its last line and its first error are kept. */
+/* Receives a line that gmsh prints: only its last line and its first error are kept. */
 static bool hear_print(conversation *c) {
     char text[4096];
     ssize_t size = read(c->child.print, text, sizeof text);
@@ -404,7 +404,7 @@ static void converse(conversation *c, sf_error *err) {
 
 /* ---- what became of it ---- */
 
-/* What the geometry may not do is worth knowing when gmsh fails. */
+/* Adds the forbidden actions of the geometry to the message when gmsh fails. */
 static sf_status fail(const conversation *c, const char *what, sf_error *err) {
     char more[700] = "";
     if (*c->broker.written)

@@ -9,8 +9,8 @@
 #include "pre/mesh/broker.h"
 #include "pre/mesh/mesh_stream.h"
 
-/* How much memory softfall-pre may take: SOFTFALL_MEMORY_MB of the environment if it is set, else what Linux
- * calls available. */
+/* The memory that softfall-pre may take: SOFTFALL_MEMORY_MB of the environment if it is set, else the
+ * memory that Linux calls available. */
 
 /* Bytes; INFINITY if unknown. */
 double sf_memory_available(void);

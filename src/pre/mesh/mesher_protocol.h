@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What softfall-pre (the parent, pre/mesh/mesher.h) and softfall-mesh (the child, src/mesher) say to one
- * another. The child runs gmsh on a file that may be hostile: the parent believes nothing that it says. */
+/* The messages between softfall-pre (the parent, pre/mesh/mesher.h) and softfall-mesh (the child,
+ * pre/mesher). The child runs gmsh on a file that may be hostile: the parent checks everything that it
+ * receives. */
 #ifndef SF_PRE_MESH_MESHER_PROTOCOL_H
 #define SF_PRE_MESH_MESHER_PROTOCOL_H
 
@@ -64,7 +65,7 @@ typedef struct sf_mesher_answer {
 #define SF_MESH_STREAM_BEGIN UINT64_C(0x31306873656d6673)
 #define SF_MESH_STREAM_END UINT64_C(0x646e656873656d00)
 
-/* Does the path end in `suffix`, in letters of either case? So gmsh tells formats apart. */
+/* True if the path ends in `suffix`, in letters of either case: gmsh tells formats apart in this way. */
 static inline bool sf_mesher_has_suffix(const char *path, const char *suffix) {
     size_t n = strlen(path), m = strlen(suffix);
     return n > m && strcasecmp(path + n - m, suffix) == 0;

@@ -106,7 +106,7 @@ static sf_status walk(orienter *o, int64_t seed, int64_t *count, sf_error *err) 
     return SF_OK;
 }
 
-/* Is the part, with the flips of the walk, to be turned over? */
+/* True if the part, with the flips of the walk, must be turned over. */
 static bool is_inverted(const orienter *o, int64_t count, const double direction[3]) {
     double area = 0, facing = 0, given = 0, volume = 0;
     bool closed = true;
@@ -230,7 +230,7 @@ static sf_status list_faces(hull_builder *b, sf_error *err) {
     return SF_OK;
 }
 
-/* Does the face at i of the list belong to one cell only? */
+/* True if the face at i of the list belongs to one cell only. */
 static bool is_outer(const hull_builder *b, size_t i) {
     return (i == 0 || sf_raw_face_compare(b->list[i - 1].tag, b->list[i].tag) != 0) &&
            (i + 1 == b->count || sf_raw_face_compare(b->list[i + 1].tag, b->list[i].tag) != 0);
@@ -267,7 +267,7 @@ static const double *place_of(const hull_builder *b, size_t tag) {
     return place != SIZE_MAX ? &b->raw->xyz[3 * place] : NULL;
 }
 
-/* Does the face, in the order of its topology, face away from its cell? */
+/* True if the face, in the order of its topology, faces away from its cell. */
 static bool faces_outwards(const hull_builder *b, const cell_face *f, const size_t *node, int size) {
     const sf_cell_topology *shape = sf_cell_topology_of(b->raw->cell_type[f->cell]);
     double out[3] = {0}, u[3], v[3];
@@ -405,8 +405,8 @@ done:
     return err->status;
 }
 
-/* Does the surface, from outside, cover the point of the sphere that leads along the direction? A recess, a
- * bowl that opens downwards and a ring do not. */
+/* True if the surface, from outside, covers the point of the sphere that leads along the direction. A
+ * recess, a bowl that opens downwards and a ring do not. */
 static bool covers_pole(const sf_surface *surface, const double centre[3], double radius,
                         const double direction[3]) {
     static const double SLACK = 1e-9;

@@ -9,8 +9,8 @@
 
 enum { ALL = 7, BATCH = 64 }; /* mask of x, y and z; rows or nodes of one call of a kernel */
 
-/* Does a node whose components in `mask` are held have a row in the range: 0 for all components in `shared`
- * together, 1 to 3 for one of the others? */
+/* True if a node whose components in `mask` are held has a row in the range: 0 for all components in
+ * `shared` together, 1 to 3 for one of the others. */
 static bool has_row(uint8_t mask, uint8_t shared, int range) {
     bool together = (mask & shared) == shared;
     if (range == 0)
@@ -19,7 +19,8 @@ static bool has_row(uint8_t mask, uint8_t shared, int range) {
     return (mask & bit) != 0 && !(together && (shared & bit) != 0);
 }
 
-/* What is held, then what is tied: number k of the model, with the components in `mask`. */
+/* Returns constraint number k of the model, the held ones first, then the tied ones, with the components
+ * in `mask`. */
 static sf_constraint_row row_of(const sf_model *m, int64_t k, uint8_t *mask) {
     int64_t t = k - m->fixed_count;
     *mask = t < 0 ? m->fixed_mask[k] : m->tie_mask[t];

@@ -11,7 +11,7 @@
 #include "model/model.h"
 #include "solver/constraint/ldl.h"
 
-/* What a row of G holds. */
+/* The kinds of row of G. */
 typedef struct sf_constraint_row {
     int32_t node;  /* held node */
     int32_t other; /* the node of another layer that it is tied to; -1: it is held at zero */

@@ -264,7 +264,8 @@ static void copy_columns(const builder *w, const int64_t *source, const int64_t 
     f->column[f->rows] = next;
 }
 
-/* Is the list of column j its next column and then that one's list? `list`: all of `place`, by column. */
+/* True if the list of column j is its next column and then that one's list. `list`: all of `place`, by
+ * column. */
 static bool ends_with_next(const sf_ldl *f, const int32_t *list, int64_t j) {
     int64_t first = f->column[j], next = f->column[j + 1], count = next - first - 1;
     return j + 1 < f->rows && count >= 0 && f->column[j + 2] - next == count && list[first] == j + 1 &&

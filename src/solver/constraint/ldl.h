@@ -41,7 +41,7 @@ typedef struct sf_ldl {
                         trunk; work of one solution at a time */
 } sf_ldl;
 
-/* Do two rows have no component in common? Then A has no entry there. */
+/* True if two rows have no component in common; A has no entry there. */
 bool sf_ldl_apart(const sf_ldl_entries *a, int64_t row, int64_t other);
 
 /* SF_ERR_MODEL if A is not positive definite, or nearly singular (reciprocal condition below 1e-13). */

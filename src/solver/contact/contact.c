@@ -10,7 +10,7 @@ static const double ENTRY_DEPTH =
     0.1; /* of the spacing: no free point gets deeper in one step through the surface */
 static const double SWEEP_TOLERANCE = 1e-10; /* largest change of a force, relative to the largest force */
 
-/* What touches the pad. */
+/* The partners of the pad in contact. */
 enum { MISSILE, ANVIL, PARTNERS };
 
 /* Constants of one solve, and the responses of missile and anvil. That of the anvil is a missile's of
@@ -123,8 +123,8 @@ static void book_work(const sf_model *m, sf_state *s, const contact_solve *w) {
     }
 }
 
-/* Is the point, free in the last step, deep inside already? Then it did not come through the touching surface
- * but round its rim, and pushing it out would throw it. */
+/* True if the point, free in the last step, is deep inside already: it then did not come through the
+ * touching surface but round its rim, and pushing it out would throw it. */
 static bool entered_from_behind(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t c) {
     double gap, normal[3];
     return sf_dot3(&s->contact_force[3 * c], &s->contact_force[3 * c]) == 0 &&

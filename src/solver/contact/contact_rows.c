@@ -70,7 +70,7 @@ static void join_free(joined *j) {
     free(j->next);
 }
 
-/* Do nodes of one place move as one: is each component tied, or held in both? */
+/* True if nodes of one place move as one: each component is tied, or held in both. */
 static bool move_as_one(const joined *j, int32_t a, int32_t b) {
     for (int r = 0; r < COMPONENTS; r++)
         if (!((j->held[a] & j->held[b]) >> r & 1) && leader(j->parent[r], a) != leader(j->parent[r], b))

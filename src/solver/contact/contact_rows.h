@@ -4,11 +4,11 @@
 #include "base/error.h"
 #include "model/model.h"
 
-/* How coefficients move the contact points, and forces there act on the coefficients: rows Phi_c over the
- * nodes, for the points of sf_model_points. That of a point of one cloud is phi of its node. Copies of a node
- * in several layers, tied in every component, are one point: each layer has the share m_i / sum m of it, m_i
- * = 1 / (phi_i M^-1 phi_i^T) being its inertia there. So a force accelerates all copies alike, and leaves
- * nothing to the tie at this point; the mobility is 1 / sum m. */
+/* The rows Phi_c over the nodes, by which coefficients move the contact points and forces there act on the
+ * coefficients, for the points of sf_model_points. The row of a point of one cloud is phi of its node.
+ * Copies of a node in several layers, tied in every component, are one point: each layer has the share m_i
+ * / sum m of it, m_i = 1 / (phi_i M^-1 phi_i^T) being its inertia there. So a force accelerates all copies
+ * alike, and leaves nothing to the tie at this point; the mobility is 1 / sum m. */
 
 typedef struct sf_contact_rows {
     int64_t *ptr;  /* [points + 1] */
@@ -19,9 +19,9 @@ typedef struct sf_contact_rows {
 sf_status sf_contact_rows_build(const sf_model *model, sf_contact_rows *rows, sf_error *err);
 void sf_contact_rows_free(sf_contact_rows *rows);
 
-/* How a contact force at one surface point accelerates the others: A = Phi M^-1 Phi^T over the contact
- * points, those of the missile and those of the anvil (sf_model_points), a sparse symmetric matrix; the same
- * for the three components because the mass is lumped. */
+/* The accelerations of surface points by a contact force at another: A = Phi M^-1 Phi^T over the contact
+ * points, those of the missile and those of the anvil (sf_model_points), a sparse symmetric matrix; the
+ * same for the three components because the mass is lumped. */
 
 typedef struct sf_contact_gram {
     int64_t *ptr;     /* [contacts + 1] */

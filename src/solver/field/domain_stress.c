@@ -188,7 +188,7 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
     }
 }
 
-/* What is told by layer at the end. */
+/* Stores the sums by layer for the report at the end. */
 static void store_layers(const sf_model *m, sf_state *s, int64_t first, int count, const sf_law_batch *b) {
     for (int l = 0; l < count; l++) {
         double shorter = sf_smaller(b->stretch[0][l], b->stretch[1][l]),

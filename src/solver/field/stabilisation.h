@@ -26,7 +26,7 @@ typedef struct sf_pair_sums {
 void sf_stabilisation_group(const sf_model *model, const sf_pairs *pairs, const double *d, const double *f,
                             const double *stiffness, int64_t g, sf_pair_sums *sums);
 
-/* Of a node of the group: the sum of 1/2 weight |e|^2, m3. */
+/* Returns the sum of 1/2 weight |e|^2 (m3) of a node of the group. */
 double sf_stabilisation_energy(const sf_pair_sums *sums, int64_t place);
 
 #endif

@@ -16,7 +16,7 @@
 #include "solver/missile.h"
 #include "solver/run/frame.h"
 
-/* Where the symmetry plane normal to an axis lies; NaN: there is none. */
+/* Returns the place of the symmetry plane normal to an axis; NaN: there is none. */
 static double find_plane(const sf_model *m, int axis) {
     double place;
     return sf_symmetry_plane(m, axis, &place) ? place : NAN;
@@ -155,7 +155,7 @@ static bool is_name(const char *name) {
     return known && (strcmp(name, whole) == 0 || sf_replace_is_partial(name, whole, NULL));
 }
 
-/* Of another process. */
+/* True if the name is that of a file which another process left. */
 static bool is_rest(const char *name) {
     return is_name(name) && strstr(name, ".h5.") != NULL;
 }

@@ -55,7 +55,7 @@ typedef struct sf_extremes {
     double contact_share;       /* -, likewise */
 } sf_extremes;
 
-/* From the history so far. */
+/* Computes the extremes from the history so far. */
 sf_extremes sf_recorder_extremes(const sf_recorder *recorder);
 
 /* An empty one; release with sf_recorder_free. */
@@ -69,16 +69,16 @@ double sf_recorder_measure(const sf_model *model, const sf_state *state);
 /* Adds the state after sf_step_evaluate: a row of history, the peak. */
 sf_status sf_recorder_add(sf_recorder *recorder, const sf_model *model, const sf_state *state, sf_error *err);
 
-/* Are the fields of the state just added due as those at the peak? One step past every maximum that exceeds
- * the one before by 0.1 %, which then counts as kept; and in the first step, so that a run always has them.
- */
+/* True if the fields of the state just added are due as those at the peak: one step past every maximum
+ * that exceeds the one before by 0.1 %, which then counts as kept; and in the first step, so that a run
+ * always has them. */
 bool sf_recorder_peak_due(sf_recorder *recorder, const sf_state *state);
 
 /* At the end of a run: is the curve still rising, or has the first step failed, so that the present state is
  * the peak? */
 bool sf_recorder_peak_ahead(const sf_recorder *recorder);
 
-/* Is a frame due? Then it is counted, and both schedules move past the present time. */
+/* True if a frame is due; it is then counted, and both schedules move past the present time. */
 bool sf_recorder_frame_due(sf_recorder *recorder, const sf_model *model, const sf_state *state);
 
 /* To and from a checkpoint; a recorder that is read must be new. SF_ERR_IO if the data read do not belong to

@@ -205,7 +205,7 @@ static sf_status take_step(drop *d, sf_error *err) {
     return publish_if_due(d, err);
 }
 
-/* How the run ends with the present step, or NULL. */
+/* Returns how the run ends with the present step; NULL: it goes on. */
 static const char *find_ending(const drop *d) {
     if (d->replay)
         return d->s->step == d->last_step ? "failed" : NULL;
@@ -335,7 +335,7 @@ static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     return SF_OK;
 }
 
-/* Where the run begins; `*taken`: with a step that has been taken. */
+/* Sets the state at which the run begins; `*taken`: this state includes a step that has been taken. */
 static sf_status begin(drop *d, const sf_checkpoint *from, bool *taken, sf_error *err) {
     int64_t lost;
     *taken = from != NULL;

@@ -26,8 +26,8 @@ sf_status sf_ending_fail_on_anvil(const sf_state *state, sf_error *err);
 /* The end time is reached. */
 bool sf_ending_finished(const sf_model *model, const sf_state *state);
 
-/* What the user of a run's figures should know of it, beside the checks of model/good_run.h: for the
- * terminal, and for /summary/notes in results.h5. */
+/* The notes of a run: facts for the user of its figures that no check of model/good_run.h covers, for the
+ * terminal and for /summary/notes in results.h5. */
 
 /* Tells the sink; `state` is that of the last step. */
 void sf_run_tell(const sf_model *model, const sf_state *state, const sf_extremes *extremes,

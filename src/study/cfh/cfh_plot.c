@@ -17,7 +17,7 @@ static void height_range(const sf_cfh_report *r, double range[2]) {
     range[1] = high + margin;
 }
 
-/* From 0 to a bit above the limit and the largest value. */
+/* Returns the end of the axis, a bit above the limit and the largest value. */
 static double value_top(const sf_cfh_report *r, sf_cfh_criterion c) {
     double top = r->plan->limit[c];
     for (int k = 0; k < r->points->count; k++)

@@ -20,7 +20,7 @@ static const sf_cfh_crossing *deciding(const sf_cfh_report *r) {
     return &r->result->crossing[r->result->deciding];
 }
 
-/* What the verdict says of the uncertainty: a sentence after a blank. */
+/* Writes the statement of the verdict about the uncertainty: a sentence after a blank. */
 static void uncertainty_text(const sf_cfh_report *r, char *text, size_t size) {
     char interval[64];
     if (!r->spread) {
@@ -89,7 +89,7 @@ void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
     snprintf(text + used, size - used, "%s", uncertainty);
 }
 
-/* Of SF_CFH_BELOW. */
+/* Returns the upper bound of the height for the verdict SF_CFH_BELOW. */
 static double upper_bound(const sf_cfh_result *v) {
     return isnan(v->lowest) ? v->anvil : v->lowest;
 }
@@ -418,7 +418,7 @@ static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
     sf_html_table_end(&table);
 }
 
-/* How well the quadratics fit: not how well the heights are known. */
+/* The residuals say how well the quadratics fit, not how well the heights are known. */
 static void put_fit_table(FILE *page, const sf_cfh_report *r) {
     bool rig = r->rig->pairs > 0;
     sf_html_heading(page, "Fit of the simulated points");
@@ -519,7 +519,7 @@ static void put_picture(FILE *page, const sf_staging *output, const sf_cfh_repor
     free(svg);
 }
 
-/* Where the data of each foam end. */
+/* Writes the end of the data of each foam. */
 static void describe_foams(const sf_cfh_foams *foams, char *text, size_t size) {
     size_t used = 0;
     for (int k = 0; k < foams->count && used < size; k++) {
@@ -593,7 +593,7 @@ static void put_checks(FILE *out, const sf_cfh_report *r) {
     }
 }
 
-/* What the interval comes from, where it is closed. */
+/* Puts the shares of the sources of uncertainty, where the interval is closed. */
 static void put_shares(FILE *out, const sf_cfh_report *r) {
     double share[SF_CFH_PARTS];
     for (int part = 0; part < SF_CFH_PARTS && r->spread; part++)

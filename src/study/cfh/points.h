@@ -36,8 +36,9 @@ sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err);
 double sf_cfh_speed(double free_fall_height);
 double sf_cfh_free_fall_height(double speed);
 
-/* Where a quantity that grows with the drop height reaches its limit: a quadratic of ln(value) in ln(height)
- * through the simulated points near the limit, its crossing, and the crossing's confidence interval. */
+/* The height at which a quantity that grows with the drop height reaches its limit: a quadratic of
+ * ln(value) in ln(height) through the simulated points near the limit, its crossing, and the crossing's
+ * confidence interval. */
 
 enum { SF_CFH_MIN_POINTS = 4 }; /* of a fit: a quadratic and one degree of freedom */
 

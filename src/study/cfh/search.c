@@ -25,7 +25,8 @@ typedef struct bracket {
     const sf_cfh_point *failed;        /* the lowest failure above `below` */
 } bracket;
 
-/* How far in ln(a_max) the limits are exceeded; HIC counts half, as it grows about twice as fast. */
+/* Returns by how much in ln(a_max) the limits are exceeded; HIC counts half, as it grows about twice as
+ * fast. */
 static double excess(const sf_cfh_plan *plan, const sf_cfh_point *p) {
     return fmax(log(p->value[SF_CFH_A_MAX] / plan->limit[SF_CFH_A_MAX]),
                 log(p->value[SF_CFH_HIC] / plan->limit[SF_CFH_HIC]) / 2);

@@ -139,9 +139,8 @@ static const double *values_of(const sf_cfh_spread *s, int draw, int criterion) 
     return &s->value[((size_t)draw * SF_CFH_CRITERIA + (size_t)criterion) * SF_CFH_GRID];
 }
 
-/* Where draw `d` first reaches ln(limit) less `raise`. Collapsed columns reach every limit, at the last
- * height before.
- */
+/* Returns the height at which draw `d` first reaches ln(limit) less `raise`. Collapsed columns reach every
+ * limit, at the last height before. */
 static double cross(const sf_cfh_spread *s, int d, int criterion, double raise) {
     const double *y = values_of(s, d, criterion);
     double target = log(s->limit[criterion]) - raise;
@@ -161,7 +160,7 @@ static double value_at(const sf_cfh_spread *s, int d, int criterion, double heig
     return interpolate(s->reach[d], s->height, values_of(s, d, criterion), height);
 }
 
-/* Has the draw a limit reached before its columns collapse? */
+/* True if the draw has a limit reached before its columns collapse. */
 static bool reaches_limit(const sf_cfh_spread *s, int d) {
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         for (int k = 0; k < s->reach[d]; k++)
@@ -192,8 +191,8 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Of sorted values, of which the first may be 0 and the last infinite: between those and a value there is
- * nothing. */
+/* Returns a quantile of sorted values, of which the first may be 0 and the last infinite: between those
+ * and a value nothing is interpolated. */
 static double quantile(const double *sorted, int count, double share) {
     double at = share * (count - 1);
     int k = (int)floor(at);
@@ -378,7 +377,7 @@ static sf_cfh_trend find_trend(const sf_cfh_spread *s, int criterion) {
 
 /* ---- the random errors ---- */
 
-/* Of one repeat of a draw. */
+/* The errors of one repeat of a draw. */
 typedef struct errors {
     double response[SF_CFH_CRITERIA];
     double mesh, fit[SF_CFH_CRITERIA];
@@ -403,7 +402,7 @@ static errors random_errors(const sf_cfh_spread *s, const sf_cfh_rig *rig, gsl_r
     return e;
 }
 
-/* Of the repeat `at`, from a generator of the draw. */
+/* Draws the errors of the repeat `at`, from a generator of the draw. */
 static void respond(const sf_cfh_spread *s, int at, gsl_rng *random, errors *e) {
     const sf_cfh_response *r = &s->response[at / SF_CFH_REPEATS];
     if (at % SF_CFH_REPEATS == 0)
@@ -423,7 +422,7 @@ static double raise_of(const errors *e, sf_cfh_part part, int criterion) {
     return raise;
 }
 
-/* What the checks do to the height of a criterion: a factor. */
+/* Returns the factor by which the checks change the height of a criterion. */
 static double factor_of(const sf_cfh_spread *s, int d, const errors *e, sf_cfh_part part, int criterion) {
     const sf_cfh_trend *t = &s->trend[criterion];
     double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];

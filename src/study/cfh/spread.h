@@ -29,7 +29,7 @@ enum {
 #define SF_CFH_MESH_SIZE 0.78
 #define SF_CFH_MESH_HIC 1.3
 
-/* What an interval holds, one after another. */
+/* The sources of uncertainty that an interval holds, one after another. */
 typedef enum sf_cfh_part {
     SF_CFH_PART_FOAM,
     SF_CFH_PART_RESPONSE,
@@ -63,8 +63,8 @@ typedef struct sf_cfh_check {
     char note[SF_CFH_NOTE_SIZE];
 } sf_cfh_check;
 
-/* How far the height of a criterion moves, by the checks: ln height += shift + slope (ln h - centre), where h
- * is the draw's critical height by the columns, constant beyond the checks, and a remainder. */
+/* The correction of a criterion's height by the checks: ln height += shift + slope (ln h - centre), where
+ * h is the draw's critical height by the columns, constant beyond the checks, and a remainder. */
 typedef struct sf_cfh_trend {
     int checks;                  /* that were used */
     double shift, slope, centre; /* 0 if they are no trend: fewer than SF_CFH_TREND, or all at one height */

@@ -21,7 +21,7 @@ const char *sf_cfh_interval_text(const sf_cfh_interval *i, char *text, size_t si
     return text;
 }
 
-/* Is the case's own material none that the draws describe? */
+/* True if the case's own material is none that the draws describe. */
 static bool is_aside(const sf_cfh_spread *s) {
     const sf_cfh_interval *foam = &s->part[SF_CFH_PART_FOAM][SF_CFH_FIRST];
     return s->own_height < 0.99 * foam->low || s->own_height > 1.01 * foam->high;
@@ -108,7 +108,7 @@ static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig)
                  "the trend of the simulated draws makes it narrower.");
 }
 
-/* What the checks say of a criterion's height. */
+/* Describes the correction of a criterion's height by the checks. */
 static const char *trend_text(const sf_cfh_trend *t, char *text, size_t size) {
     if (t->checks == 0)
         snprintf(text, size, "not known");

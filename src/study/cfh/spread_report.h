@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is written of the interval of a critical fall height: its parts, the draws, their checks. */
+/* Writes the interval of a critical fall height: its parts, the draws, their checks. */
 #ifndef SF_CFH_SPREAD_REPORT_H
 #define SF_CFH_SPREAD_REPORT_H
 
@@ -9,10 +9,10 @@
 
 /* "1.52 to 1.85 m", or a bound, of which the end of the heights looked at. Returns `text`. */
 const char *sf_cfh_interval_text(const sf_cfh_interval *interval, char *text, size_t size);
-/* What is worth a warning: draws that have no crossing of their own or one beyond the simulated heights,
- * checks that failed, a material of the case that is none of the draws'. Sentences, or "". */
+/* Writes the sentences of a warning, or "": draws that have no crossing of their own or one beyond the
+ * simulated heights, checks that failed, a material of the case that is none of the draws'. */
 void sf_cfh_draws_text(const sf_cfh_spread *spread, char *text, size_t size);
-/* That the draws state no errors of the responses: a sentence, or "". Static storage. */
+/* Returns a sentence if the draws state no errors of the responses, else "". Static storage. */
 const char *sf_cfh_response_text(const sf_cfh_spread *spread);
 
 /* The section of report.html. */

@@ -25,7 +25,7 @@ typedef struct sf_spline_data {
     int count;
 } sf_spline_data;
 
-/* How the widths of intervals go with the place. */
+/* The change of the widths of intervals with the place. */
 typedef enum sf_spline_grading {
     SF_GRADING_ENDS, /* widths at the ends a twelfth of those in the middle: for a branch of any shape */
     SF_GRADING_FOAM, /* in proportion to the distances from rest and from full compression, on which the
@@ -55,10 +55,10 @@ void sf_spline_integral(sf_spline *spline, double x, double *row);
 /* Abscissa of coefficient j: the spline with c_j = g(x_j) follows g. */
 double sf_spline_abscissa(const sf_spline *spline, int j);
 
-/* How far measured stresses scatter, found without the foam law: each branch of each test is smoothed by a
- * spline of its own, whose number of knots generalised cross-validation chooses, and the deviations give the
- * standard deviation sqrt(a^2 + (b stress)^2) by maximum likelihood. So the law cannot hide its own misfit in
- * the scatter. */
+/* The scatter of measured stresses, found without the foam law: each branch of each test is smoothed by a
+ * spline of its own, whose number of knots generalised cross-validation chooses, and the deviations give
+ * the standard deviation sqrt(a^2 + (b stress)^2) by maximum likelihood. So the law cannot hide its own
+ * misfit in the scatter. */
 
 /* One branch: places ascending or descending, measured values; out: the smoothed values and the standard
  * deviation of each. Borrowed. */

@@ -163,7 +163,7 @@ static int collect_information(const sf_mapping_problem *p, const double *jacobi
     return data;
 }
 
-/* Do the residuals contradict the stated standard deviations (chi-squared, 5 %)? */
+/* True if the residuals contradict the stated standard deviations (chi-squared, 5 %). */
 static bool is_misfit(const sf_mapping_result *r) {
     return r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
 }
@@ -273,7 +273,7 @@ static sf_status propose(const sf_mapping_problem *p, const sf_mapping_result *r
     return minimise(&m, next, err);
 }
 
-/* How much the corrected surrogate says that the objective falls from `best` to the trial; its y is
+/* Finds by how much the objective falls from `best` to the trial, by the corrected surrogate; its y is
  * overwritten. */
 static sf_status predict_gain(const sf_mapping_problem *p, const sf_mapping_result *r, const point *best,
                               point *trial, double *gain, sf_error *err) {

@@ -28,8 +28,9 @@ typedef struct sf_mapping_problem {
     /* [responses] y - s of a similar problem: the first simulation is then at the minimum of s with it; NULL:
      * at the start */
     const double *first_offset;
-    /* Of one with the same parameters and responses: [parameters] the point at which first_offset is its y -
-     * s (NULL: the start), and [responses][parameters] its M, with which this one begins (NULL: 0) */
+    /* The end of an earlier mapping with the same parameters and responses: [parameters] the point at
+     * which first_offset is its y - s (NULL: the start), and [responses][parameters] its M, with which
+     * this one begins (NULL: 0) */
     const double *first_point, *first_matrix;
     sf_status (*surrogate)(void *context, const double *u, double *y, sf_error *err);
     sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the report says of the runs, figure by figure of the plan. */
+/* The statements of the report about the runs, figure by figure of the plan. */
 #ifndef SF_SWEEP_ANALYSIS_H
 #define SF_SWEEP_ANALYSIS_H
 

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Does the open rows of a plan in pieces, and keeps runs.csv up to date, so that a campaign that was
- * interrupted or killed goes on where it was. */
+/* Runs the open rows of a plan in pieces, and keeps runs.csv up to date, so that a campaign that was
+ * interrupted or killed resumes. */
 #ifndef SF_SWEEP_CAMPAIGN_H
 #define SF_SWEEP_CAMPAIGN_H
 
 #include "study/sweep/runs.h"
 #include <stdio.h>
 
-/* Does `count` rows: each becomes done or failed in `runs`, or stays open. `fresh` receives the number of
- * those that had to be simulated. Errors: what ends the campaign; SF_INTERRUPTED. */
+/* Runs `count` rows: each becomes done or failed in `runs`, or stays open. `fresh` receives the number of
+ * those that had to be simulated. Errors: those that end the campaign; SF_INTERRUPTED. */
 typedef struct sf_sweep_engine {
     sf_status (*run)(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh, sf_error *err);
     void *context;
     int piece; /* rows at a time */
-    /* Does what is there of a row that is done still come from its inputs as they are now, those that only
-     * its geometry knows of, too? NULL: not looked at. */
+    /* True if the results of a row that is done still come from its inputs as they are now, those that
+     * only its geometry knows of, too. NULL: this is not checked. */
     bool (*is_current)(void *context, const sf_runs *runs, int64_t row);
 } sf_sweep_engine;
 
@@ -22,7 +22,8 @@ typedef struct sf_sweep_campaign {
     const sf_plan *plan;
     const char *folder; /* of the output; it exists */
     uint64_t inputs;    /* hash of the contents of all inputs */
-    /* That hash as it is now, before each writing of the table; NULL: the inputs stay as they are. */
+    /* Computes that hash of the present inputs, before each writing of the table; NULL: the inputs stay as
+     * they are. */
     sf_status (*look)(const sf_plan *plan, uint64_t *hash, sf_error *err);
     const char *drops; /* folder of the runs' folders: a row whose results have gone from there is open;
                           NULL: not looked at */
@@ -34,8 +35,8 @@ typedef struct sf_sweep_campaign {
     FILE *log;   /* NULL: silent */
 } sf_sweep_campaign;
 
-/* Is the folder that of a campaign, and of this plan? SF_ERR_INPUT if it is of another plan, without force.
- * `*known`: it is of this one. Nothing is written. */
+/* Checks that the folder is that of a campaign, and of this plan. SF_ERR_INPUT if it is of another plan,
+ * without force. `*known`: it is of this one. Writes nothing. */
 sf_status sf_sweep_campaign_check(const sf_sweep_campaign *c, bool *known, sf_error *err);
 
 /* Takes over what runs.csv holds, does the rest and writes runs.csv, also when it ends early. `runs` is

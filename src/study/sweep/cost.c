@@ -31,7 +31,7 @@ static double size_of(const char *folder, const char *name) {
     return (double)size;
 }
 
-/* From the median of wall_s x threads; 0: no run is done. */
+/* Measures the cost by the median of wall_s x threads; 0: no run is done. */
 static sf_status measure(const sf_runs *r, double *seconds, int64_t *done, sf_error *err) {
     double *value = sf_alloc(err, (unsigned long)r->count, sizeof *value, "run times");
     size_t wall = sf_runs_figure("wall_s"), threads = sf_runs_figure("threads"), n = 0;

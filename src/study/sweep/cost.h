@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the open runs of a plan will take: from the runs that are done, or else from the model of the first
+/* The cost of the open runs of a plan: from the runs that are done, or else from the model of the first
  * row. */
 #ifndef SF_SWEEP_COST_H
 #define SF_SWEEP_COST_H
@@ -15,8 +15,8 @@ typedef struct sf_sweep_cost {
     char basis[512];   /* where that comes from */
 } sf_sweep_cost;
 
-/* Of `open` rows, of which some may have a figure of earlier inputs. `folder`: of the results' folders
- * ("DIR/runs"). Without a finished run the model of the first row is built in memory. */
+/* Estimates the cost of `open` rows, of which some may have a figure of earlier inputs. `folder`: that of
+ * the results' folders ("DIR/runs"). Without a finished run the model of the first row is built in memory. */
 sf_status sf_sweep_cost_estimate(const sf_runs *runs, int64_t open, const char *folder, sf_sweep_cost *cost,
                                  sf_error *err);
 

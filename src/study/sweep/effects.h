@@ -31,19 +31,20 @@ typedef struct sf_groups {
 sf_status sf_groups_make(const sf_plan *plan, int factor, sf_groups *groups, sf_error *err);
 void sf_groups_free(sf_groups *groups);
 
-/* Is the range of the means mostly scatter of the other factors? So it is of draws of a posterior, or of more
- * than SF_EFFECT_LEVELS words, that a sample mixes with other factors: each of them has few runs. */
+/* True if the range of the means is mostly scatter of the other factors: as that of draws of a posterior,
+ * or of more than SF_EFFECT_LEVELS words, that a sample mixes with other factors, so that each of them has
+ * few runs. */
 bool sf_effect_is_scatter(const sf_plan *plan, int factor);
 
-/* Is the factor a number that a sample mixes with others: its effect is by the surface? */
+/* True if the factor is a number that a sample mixes with others: its effect is by the surface. */
 bool sf_effect_is_by_surface(const sf_plan *plan, int factor);
 
 /* By means; NaN of a factor of one of these two kinds. */
 sf_status sf_effect_measure(const sf_runs *runs, int factor, size_t figure, sf_effect *effect, sf_error *err);
 
-/* Of number `i` of the surface, between its least and its greatest value, averaged over the rows x [n][d +
- * offsets] that it was fitted to, which are as before when it returns. Nothing is changed where the surface
- * has a problem or a Q2 below SF_EFFECT_Q2. */
+/* Computes the effect of number `i` of the surface, between its least and its greatest value, averaged
+ * over the rows x [n][d + offsets] that it was fitted to, which are as before when it returns. Changes
+ * nothing where the surface has a problem or a Q2 below SF_EFFECT_Q2. */
 void sf_effect_of_surface(const sf_quadratic *surface, int i, int64_t n, double *x, sf_effect *effect);
 
 /* The probability that a figure stays below its limit, over what is uncertain in the plan, for each
@@ -51,10 +52,10 @@ void sf_effect_of_surface(const sf_quadratic *surface, int i, int64_t n, double 
 
 enum { SF_PROBABILITY_CELLS = 4096 };
 
-/* Of one combination and one figure. A run that ended because the missile reached the anvil is above every
- * limit. Runs that failed otherwise or are not to be used are unknown: mostly the hardest drops, so that a
- * share of the others alone would be too kind. The share and the low end of the interval count them as above,
- * its high end as below. */
+/* The probability of one combination and one figure. A run that ended because the missile reached the
+ * anvil is above every limit. Runs that failed otherwise or are not to be used are unknown: mostly the
+ * hardest drops, so that a share of the others alone would be too kind. The share and the low end of the
+ * interval count them as above, its high end as below. */
 typedef struct sf_probability {
     int64_t below, above, unknown;
     double share;     /* `below` of all three; NaN: no run */
@@ -68,7 +69,7 @@ typedef struct sf_probabilities {
     int64_t *row;         /* [cells] a row of that combination; owned */
 } sf_probabilities;
 
-/* Is every factor of the block a choice, not an unknown? */
+/* True if every factor of the block is a choice, not an unknown. */
 bool sf_block_is_chosen(const sf_plan *plan, int block);
 
 sf_status sf_probabilities_count(const sf_runs *runs, sf_probabilities *p, sf_error *err);

@@ -26,7 +26,7 @@ typedef struct reading {
 
 /* ---- numbers ---- */
 
-/* Is the text a number with a unit of some kind? */
+/* True if the text is a number with a unit of some kind. */
 static bool find_kind(const sf_units *units, const char *text, sf_quantity *kind, double *si) {
     for (int k = 0; k < SF_QUANTITY_COUNT; k++) {
         sf_error none = SF_ERROR_INIT;
@@ -109,7 +109,7 @@ static sf_status take_number(reading *r, const config_setting_t *s, double *out,
     return take_quantity(r, s, text, number, unit, out, err);
 }
 
-/* Is the value a number, or a text of a number with a unit? */
+/* True if the value is a number, or a text of a number with a unit. */
 static bool looks_numeric(const sf_config *config, const config_setting_t *s) {
     const char *text = config_setting_get_string(s);
     double number = 0, si = 0;

@@ -16,7 +16,7 @@ sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_er
     return sf_case_read(plan->case_path, count, list, NULL, c, err);
 }
 
-/* Does an entry of `set` alone give this sentence? */
+/* True if an entry of `set` alone gives this sentence. */
 static bool is_of_set(const sf_plan *p, const char *sentence) {
     bool found = false;
     for (int k = 0; k < p->set_count && !found; k++) {

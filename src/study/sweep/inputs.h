@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the rows of a plan lead to: cases that softfall-pre takes, or a sentence why not, before anything is
- * started. */
+/* The inputs of the rows of a plan: cases that softfall-pre takes, or a sentence why not, before anything
+ * is started. */
 #ifndef SF_SWEEP_INPUTS_H
 #define SF_SWEEP_INPUTS_H
 

@@ -13,7 +13,7 @@ enum { MOST_SAMPLES = 100000000 };
 
 /* ---- blocks ---- */
 
-/* Beside the factors. */
+/* True if the table has a column of this name beside the factors. */
 static bool is_column(const char *name) {
     static const char *const columns[] = {"id", "run_status", "grade", "message", "folder"};
     for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++)
@@ -122,7 +122,7 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
     return SF_OK;
 }
 
-/* From the unit cube to the values of the factors. */
+/* Maps the unit cube to the values of the factors. */
 static sf_status spread(const double *u, sf_plan *p, const sf_block *b, sf_error *err) {
     int d = p->factor_count - b->first;
     for (int i = 0; i < d; i++) {

@@ -59,7 +59,7 @@ void sf_plan_free(sf_plan *plan);
 /* The value of a factor in a row: a number in its unit, or the index of a word. */
 double sf_plan_value(const sf_plan *plan, int factor, int64_t row);
 
-/* Do the overrides of this factor replace a whole group? They come first. */
+/* True if the overrides of this factor replace a whole group; they come first. */
 bool sf_factor_is_group(const sf_factor *f);
 
 /* The overrides of a row in the order in which they apply, and their number; text [SF_RUNNER_OVERRIDES]. */

@@ -184,7 +184,7 @@ static void put_row(FILE *out, const sf_runs *r, int64_t row) {
     fputc('\n', out);
 }
 
-/* Of what has been written under the partial name, before anybody else knows the file. */
+/* Hashes the text that has been written under the partial name, before another program knows the file. */
 static sf_status hash_written(const sf_replacement *out, uint64_t *hash, sf_error *err) {
     if (fflush(out->file) != 0)
         return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", out->path);

@@ -351,7 +351,7 @@ static void note_missing(FILE *page, const sf_sweep_report *r, const char *what)
                      (long long)missing, (long long)r->plan->rows, what);
 }
 
-/* What a main effect stands on. */
+/* Puts the number of combinations behind a main effect. */
 static void put_ground(sf_html_table *t, const sf_plan *p, int factor, const sf_effect *e) {
     if (sf_effect_is_by_surface(p, factor))
         sf_html_cell(t, isnan(e->low) ? "no good response surface" : "the response surface");

@@ -9,7 +9,7 @@
 #include "study/fit/compression/table_fit.h"
 #include <stdbool.h>
 
-/* Whether that can be the directory of the output (sf_staging_check). */
+/* Checks that this can be the directory of the output (sf_staging_check). */
 sf_status sf_compression_output_check(const char *directory, bool force, sf_error *err);
 
 /* Writes into `directory` (sf_staging), and the summary to cube->log; warnings go to `sink`. `path`: FIT.cfg,

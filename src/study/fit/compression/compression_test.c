@@ -17,7 +17,7 @@ static const double SLACK = 0.005;      /* part of the largest stress that scatt
 static const double FALL = 0.1;         /* part of the stress that may be lost while loading */
 static const double ABOVE = 0.05;       /* part by which unloading may lie above loading */
 
-/* Of the toe correction. */
+/* Bounds of the toe correction. */
 static const double TOE_RANGE = 0.15;  /* strain up to which the steepest part is looked for */
 static const double TOE_WIDTH = 0.01;  /* strain of that part, with TOE_POINTS points at least */
 static const double TOE_LARGEST = 0.1; /* strain that it may take away */
@@ -34,7 +34,7 @@ void sf_compression_test_free(sf_compression_test *test) {
 
 /* ---- reading ---- */
 
-/* How the file names and scales the two quantities, for messages in its own terms. */
+/* The names and scales of the two quantities in the file, for messages in its own terms. */
 typedef struct table_terms {
     const char *name[2];
     double scale[2]; /* from the file's units to strain and Pa */

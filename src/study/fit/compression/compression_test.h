@@ -23,7 +23,7 @@ enum { SF_COMPRESSION_UNDERSTOOD = 768 };
 /* Which channels have the other sign. */
 typedef enum sf_inversion { SF_INVERT_NONE, SF_INVERT_STRAIN, SF_INVERT_STRESS, SF_INVERT_BOTH } sf_inversion;
 
-/* What the file does not say. */
+/* The facts about a test that its file does not state. */
 typedef struct sf_compression_source {
     const char *path; /* borrowed */
     double rate;      /* s-1 */

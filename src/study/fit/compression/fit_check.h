@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How good a fit is: against the data, and as a card in the solver's own law. */
+/* The quality of a fit: against the data, and as a card in the solver's own law. */
 #ifndef SF_FIT_COMPRESSION_CHECK_H
 #define SF_FIT_COMPRESSION_CHECK_H
 
 #include "study/fit/compression/cube.h"
 #include "study/fit/compression/table_fit.h"
 
-/* How the fit stands against the data, and the card in the solver's own law against the fit. */
+/* The deviations of the data from the fit, and of the card in the solver's own law from the fit. */
 typedef struct sf_compression_check {
     double rms[SF_COMPRESSION_TESTS]
               [2]; /* of deviation over sigma, loading and unloading; NaN: no such branch */

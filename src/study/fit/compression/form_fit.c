@@ -61,8 +61,9 @@ static void take_values(const problem *p, const gsl_vector *x, double *value) {
         value[p->request->unknown[k]] = parameter_of(p->request->unknown[k], gsl_vector_get(x, (size_t)k));
 }
 
-/* What the factor of the rate (theory, eq. O4) adds to the curve, over its stress, at point i of a test that
- * began at rest: the rate is behind the low pass (eq. 22), rises in loading and fades in unloading. */
+/* Returns the share that the factor of the rate (theory, eq. O4) adds to the curve, over its stress, at
+ * point i of a test that began at rest: the rate is behind the low pass (eq. 22), rises in loading and
+ * fades in unloading. */
 static double rate_excess(const sf_form_request *r, const double *value, const sf_compression_test *t,
                           int i) {
     double time = r->form.base.rate_filter_time, strain = fmax(0, t->strain[i]), filtered = t->rate;
@@ -91,7 +92,7 @@ static int deviate_test(const problem *p, const double *value, const sf_compress
     return t->loading;
 }
 
-/* How far the curve falls, over the largest stress: it must rise to its pole. */
+/* Returns by how much the curve falls, over the largest stress: it must rise to its pole. */
 static double fall(const problem *p, const double *value) {
     const sf_curve_form *form = p->request->form.curve;
     double strain[RISES], stress[RISES], sum = 0, end = RISE_END * form->pole(value),

@@ -41,15 +41,15 @@ typedef struct sf_form_fit {
 sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit, sf_error *err);
 void sf_form_fit_free(sf_form_fit *fit);
 
-/* Is the standard error of an unknown, by its number, below its own value? Not at a bound, where there is
- * none. */
+/* True if the standard error of an unknown, by its number, is below its own value. An unknown at a bound
+ * has none. */
 bool sf_form_fit_determines(const sf_form_fit *fit, int unknown);
 
-/* Is the test slower than the reference rate of the rate factor, below which the law has no effect of the
- * rate? */
+/* True if the test is slower than the reference rate of the rate factor, below which the law has no effect
+ * of the rate. */
 bool sf_form_fit_is_below_reference(const sf_form_fit *fit, const sf_compression_test *test);
 
-/* Is a deviation of the fitted tests above a tenth of the largest stress? */
+/* True if a deviation of the fitted tests exceeds a tenth of the largest stress. */
 bool sf_form_fit_is_poor(const sf_form_fit *fit);
 
 #endif

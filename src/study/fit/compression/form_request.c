@@ -98,7 +98,7 @@ static void add_unknown(sf_form_request *r, sf_foam_parameter p) {
     r->unknown[r->unknown_count++] = p;
 }
 
-/* Those of the curve; unloading and rate have keys of their own. */
+/* Reads the unknowns of the curve; unloading and rate have keys of their own. */
 static sf_status read_unknowns(const sf_config *file, const config_setting_t *root, sf_form_request *r,
                                sf_error *err) {
     const config_setting_t *list = config_setting_get_member(root, "unknown");

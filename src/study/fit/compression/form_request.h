@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the file of `softfall-fit compression` says where it names a form of the loading curve (fit/form):
- * the form, its start values, its unknown parameters, and how the stress depends on the rate. */
+/* The keys of the file of `softfall-fit compression` that names a form of the loading curve (fit/form):
+ * the form, its start values, its unknown parameters, and the rate dependence. */
 #ifndef SF_FIT_COMPRESSION_FORM_REQUEST_H
 #define SF_FIT_COMPRESSION_FORM_REQUEST_H
 
@@ -32,7 +32,8 @@ typedef struct sf_form_request {
 /* "none", "factor", "maxwell", "both" */
 const char *sf_form_rate_name(sf_form_rate rate);
 
-/* Does the file name a form other than "free"? SF_ERR_INPUT: it names one that does not exist, or "table". */
+/* True if the file names a form other than "free". SF_ERR_INPUT: it names one that does not exist, or
+ * "table". */
 sf_status sf_form_request_asked(const sf_config *file, const config_setting_t *root, bool *asked,
                                 sf_error *err);
 

@@ -188,7 +188,7 @@ static void put_terms(FILE *out, const input *in, const sf_hyperfoam_fit *fit) {
         put_unloading(out, fit);
 }
 
-/* What a poor fit misses. */
+/* Writes the deviations of a poor fit. */
 static void describe_misfit(const sf_hyperfoam_fit *fit, char text[MISFIT_SIZE]) {
     const struct {
         const char *name;

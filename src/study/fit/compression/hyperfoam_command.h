@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Does the file ask for the hyperfoam? */
+/* True if the file asks for the hyperfoam. */
 sf_status sf_hyperfoam_fit_asked(const char *path, bool *asked, sf_error *err);
 
 /* Reads the file and its test, fits, and writes material.cfg, fit.json and fit.csv into `directory`; prints

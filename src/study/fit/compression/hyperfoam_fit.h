@@ -29,7 +29,7 @@ typedef struct sf_hyperfoam_fit {
     double unloading_rms; /* -, of the stress of unloading, over the largest; NaN: none */
 } sf_hyperfoam_fit;
 
-/* Is a deviation above a tenth of the largest value: the law does not describe the test? */
+/* True if a deviation exceeds a tenth of the largest value: the law does not describe the test. */
 bool sf_hyperfoam_fit_is_poor(const sf_hyperfoam_fit *fit);
 
 /* Stress (Pa, compression positive), lateral strain and W (J m-3) of loading with free sides at an axial

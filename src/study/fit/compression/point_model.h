@@ -59,7 +59,7 @@ sf_status sf_compression_model_init(const sf_compression_data *data, sf_compress
                                     sf_compression_model *model, sf_error *err);
 void sf_compression_model_free(sf_compression_model *model);
 
-/* Where a search begins; `decay` (0 to 1) places BETA1 within its bounds. */
+/* Sets the start of a search; `decay` (0 to 1) places BETA1 within its bounds. */
 void sf_compression_guess(const sf_compression_model *model, double decay, gsl_vector *parameters);
 
 /* Stress (Pa) of every point; `jacobian` [count][parameter_count] or NULL. */

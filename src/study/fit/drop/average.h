@@ -30,8 +30,8 @@ sf_status sf_drop_average_build(int models, const sf_drop_inference *const *mode
 
 /* The model with the largest weight. */
 int sf_drop_average_best(const sf_drop_average *average);
-/* What the weights stand on reached its criteria: the chains of every model, and the densities of the
- * left-out drops or, with weights by it, the evidence. */
+/* True if the criteria of the weights were reached: by the chains of every model, and by the densities of
+ * the left-out drops or, with weights by it, the evidence. */
 bool sf_drop_average_reached(const sf_drop_average *average);
 
 /* Quantiles of a predicted number (index of the inference's quantities), in its unit, over all models by
@@ -53,8 +53,8 @@ typedef struct sf_posterior_draw {
     int model, state;
 } sf_posterior_draw;
 void sf_drop_average_draw(const sf_drop_average *average, sf_posterior_draw draw[SF_POSTERIOR_DRAWS]);
-/* What is drawn for draw `k` (from 0) beside its state: delta [SF_DISCREPANCY_PLACES] and the errors of the
- * responses; the same in every call. SF_ERR_NUMERIC: the foam of the columns collapses. */
+/* Draws the discrepancy for draw `k` (from 0) beside its state: delta [SF_DISCREPANCY_PLACES] and the
+ * errors of the responses; the same in every call. SF_ERR_NUMERIC: the foam of the columns collapses. */
 sf_status sf_drop_average_discrepancy(const sf_drop_average *average, int k, const sf_posterior_draw *draw,
                                       double *delta, sf_response_error *error, sf_error *err);
 

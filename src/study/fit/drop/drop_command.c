@@ -129,7 +129,7 @@ static sf_status fit_model(models *all, int m, sf_runner *runner, sf_fit_memory 
     return err->status;
 }
 
-/* Is it the model's own, so that the others may go on? */
+/* True if the failure concerns this model only, so that the others may go on. */
 static bool is_of_the_model(const sf_error *failure) {
     return failure->status == SF_ERR_NUMERIC || failure->status == SF_ERR_MODEL ||
            failure->status == SF_ERR_INPUT;
@@ -148,7 +148,7 @@ static sf_status check_any(const models *all, sf_error *err) {
     return err->status;
 }
 
-/* Of the models that have a posterior; the others are listed. */
+/* Averages the models that have a posterior; the others are listed. */
 static sf_status average_models(models *all, sf_error *err) {
     const sf_drop_inference *list[SF_FIT_MAX_MODELS];
     sf_drop_average *a = &all->average;

@@ -33,7 +33,8 @@ sf_status sf_drop_fit_card(const sf_fit_input *in, const double *u, sf_foam_card
     return sf_foam_form_card(&in->form, value, card, err);
 }
 
-/* What was measured must be defined. `by`: what does not give it, `remedy`: what to do. */
+/* Checks that every measured number is defined. `by`: the source that does not give it, `remedy`: the
+ * action of the user. */
 static sf_status check_values(const sf_fit_drop *drop, const double *y, const char *by, const char *remedy,
                               sf_error *err) {
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
@@ -160,7 +161,7 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
     return err->status;
 }
 
-/* Of the program, the start material with the form of its curve, and the samples. */
+/* Hashes the program, the start material with the form of its curve, and the samples. */
 static uint64_t hash_inputs(const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     sf_foam_card base = in->form.base;
@@ -241,7 +242,8 @@ static sf_status find_columns(const char *path, sf_columns *columns, sf_error *e
     return err->status;
 }
 
-/* What a coarse drop tells is used for the drop: it must be the same but for the mesh. */
+/* Checks that a coarse drop is the same as the drop but for the mesh, since its result is used for the
+ * drop. */
 static sf_status check_coarse(const sf_fit_drop *drop, const sf_columns *a, const sf_columns *b,
                               sf_error *err) {
     static const double SLACK = 0.01; /* a coarse surface of the missile begins a little elsewhere */
@@ -255,7 +257,7 @@ static sf_status check_coarse(const sf_fit_drop *drop, const sf_columns *a, cons
         drop->name, 1e3 * a->thickness, a->mass, a->speed, 1e3 * b->thickness, b->mass, b->speed);
 }
 
-/* Of the first simulation; after coarse ones once more. */
+/* Finds the columns of the first simulation; after coarse ones once more. */
 static sf_status find_own_columns(sf_drop_fit *fit, int d, const char *path, sf_error *err) {
     const sf_columns before = fit->columns[d];
     bool replaced = fit->borrowed[d] && !fit->coarse;
@@ -373,7 +375,7 @@ static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char
     return err->status;
 }
 
-/* What a case refuses is no foam to simulate: a step that leads there is too long. */
+/* Checks the card as a case would: a step that leads to a refused material is too long. */
 static sf_status check_card(const sf_fit_input *in, const double *u, const sf_foam_card *card,
                             sf_error *err) {
     static const double ROUNDING = 1e-12;
@@ -554,7 +556,7 @@ static sf_status respond_raised(const sf_drop_fit *fit, int b, double *y, sf_err
     return err->status;
 }
 
-/* How much do the measured responses change with the curve in each bin? */
+/* Finds the change of the measured responses with the curve in each bin. */
 static sf_status locate_information(sf_drop_fit *fit, sf_error *err) {
     size_t n = (size_t)fit->row[fit->measured_drops];
     double *y = sf_alloc(err, n, sizeof *y, "responses"), *base = sf_alloc(err, n, sizeof *base, "responses");

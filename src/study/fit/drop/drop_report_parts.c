@@ -286,7 +286,7 @@ void sf_report_drops_print(FILE *f, const sf_drop_fit *fit) {
     }
 }
 
-/* Does the rate of the test say nothing of the rate factor? */
+/* True if the test is too slow for the rate factor to have an effect. */
 static bool is_below_reference(const sf_drop_fit *fit, const sf_joint_test *test) {
     const double *start = fit->input->start;
     return start[SF_PARAMETER_RATE_FACTOR] > 0 && test->rate < start[SF_PARAMETER_RATE_REFERENCE];

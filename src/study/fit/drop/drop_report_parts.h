@@ -22,12 +22,13 @@ typedef struct sf_estimate_shown {
 /* Half width of a 95 % interval in standard deviations: of the normal distribution, or of Student's t where
  * the scale of the data's errors is itself estimated. */
 double sf_report_half_width(const sf_drop_fit *fit);
-/* Of unknown number k. */
+/* Returns the estimate of unknown number k. */
 sf_estimate_shown sf_report_estimate(const sf_drop_fit *fit, int k);
 /* A number of a drop, simulated, in its unit; the standard deviation of its logarithm by the parameters. */
 double sf_report_response(const sf_drop_fit *fit, int d, int which);
 double sf_report_response_sd(const sf_drop_fit *fit, int d, int which);
-/* Is the number of a drop in the reports? One that is not measured may be asked for by other drops. */
+/* True if the number of a drop is in the reports; one that is not measured may be asked for by other
+ * drops. */
 bool sf_report_shows(const sf_drop_fit *fit, int d, int kind);
 /* "a_max (g)" into `text`, which is returned. */
 const char *sf_report_heading(int kind, char *text, size_t size);

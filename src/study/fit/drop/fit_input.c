@@ -26,7 +26,7 @@ static sf_status read_drops(const sf_config *config, const config_setting_t *roo
     return SF_OK;
 }
 
-/* What the first iterations change: keys of the discretisation. */
+/* Reads the keys that the first iterations change: those of the discretisation. */
 static sf_status read_coarse(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                              sf_error *err) {
     static const char *const groups[] = {"geometry.", "pad.", "solver."};
@@ -50,8 +50,8 @@ static sf_status read_coarse(const sf_config *config, const config_setting_t *ro
 
 /* ---- material and parameters ---- */
 
-/* Where the material has no rate factor: the slowest compression test, as below the reference the law has no
- * effect of the rate. */
+/* Sets the reference of a material without a rate factor: the slowest compression test, as below the
+ * reference the law has no effect of the rate. */
 static void start_reference(sf_fit_input *in) {
     double *reference = &in->start[SF_PARAMETER_RATE_REFERENCE];
     for (int t = 0; t < in->joint.test_count && !(in->form.base.rate_factor > 0); t++)
@@ -141,7 +141,7 @@ static sf_status read_case(const sf_fit_drop *drop, const char *material, bool f
     return err->status;
 }
 
-/* As the runner will: the material, then the keys. */
+/* Checks the coarse drop as the runner will make it: the material, then the keys. */
 static sf_status check_coarse(const sf_fit_drop *drop, const char *material, const sf_fit_input *in,
                               sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
@@ -419,8 +419,8 @@ static sf_status check_rate_factor(const sf_config *config, const config_setting
     return SF_OK;
 }
 
-/* Of an entry of `forms`: those that the file lists for all models, and its own or those usual for the form,
- * with the rate terms that it names. */
+/* Reads the unknowns of an entry of `forms`: those that the file lists for all models, and its own or
+ * those usual for the form, with the rate terms that it names. */
 static sf_status read_unknowns(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
                                sf_error *err) {
     const config_setting_t *model = model_of(root, in);

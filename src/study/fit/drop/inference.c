@@ -144,7 +144,7 @@ static sf_status list_data(sf_drop_inference *in, sf_error *err) {
     return err->status;
 }
 
-/* Of a number of the measured drops: the mean. */
+/* Returns the mean offset of a number of the measured drops. */
 static double mean_offset(const sf_drop_fit *fit, int kind) {
     double sum = 0;
     int count = 0;
@@ -347,7 +347,7 @@ static double log_prior(const sf_drop_inference *in, const double *u) {
     return sum;
 }
 
-/* What the target responds: measured less corrected surrogate [data]. */
+/* Computes the responses of the target: measured less corrected surrogate [data]. */
 static bool respond_residual(const void *context, const double *u, double *residual) {
     return !sf_process_stopped() &&
            find_residual(context, u, residual); /* stopped: the chains rush to their end */

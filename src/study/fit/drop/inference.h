@@ -52,7 +52,7 @@ typedef struct sf_inference_options {
     bool leave_one_out;
 } sf_inference_options;
 
-/* As `softfall-fit drop` does. */
+/* Returns the options of `softfall-fit drop`. */
 sf_inference_options sf_inference_defaults(uint64_t seed);
 
 /* Samples the posterior of a finished fit, which outlives the inference. Release with sf_drop_inference_free,

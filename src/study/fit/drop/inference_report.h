@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the posterior adds to the output of `softfall-fit drop`: sections of report.html, "inference" of
+/* The part of the posterior in the output of `softfall-fit drop`: sections of report.html, "inference" of
  * fit.json, posterior.csv, lines of the material file and of the terminal. */
 #ifndef SF_FIT_DROP_INFERENCE_REPORT_H
 #define SF_FIT_DROP_INFERENCE_REPORT_H

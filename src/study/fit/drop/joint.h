@@ -54,7 +54,7 @@ sf_status sf_joint_read(const sf_config *config, const config_setting_t *root, s
 void sf_joint_data(const sf_joint *joint, double *measured, double *sd);
 /* Responses [rows] of a foam. SF_ERR_NUMERIC: it collapses. */
 sf_status sf_joint_respond(const sf_joint *joint, const sf_material_law *law, double *y, sf_error *err);
-/* Of all that the responses depend on. */
+/* Hashes everything that the responses depend on. */
 uint64_t sf_joint_hash(uint64_t hash, const sf_joint *joint);
 
 /* Root mean square of the deviations of a branch, over the largest stress; `first`: its first row. NaN

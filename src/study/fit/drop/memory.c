@@ -11,7 +11,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-/* Of the file, which each run reads as a whole. */
+/* Largest size of the file, which each run reads as a whole. */
 static const size_t LARGEST = (size_t)1 << 28;
 
 typedef struct head {

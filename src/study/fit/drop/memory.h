@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a fit has computed between its drops, in a file of its folder, so that a run that was killed does not
- * compute it again: numbers by a key of all that they depend on. Each record is written at once and has a
- * checksum; what was cut or has changed, and all behind it, is computed again.
- *
- * A record: key (u64), number of values (u64), values (f64), hash of these (u64, base/hash.h), in the
- * machine's byte order. */
+/* The cache of a fit between its drops, in a file of its folder, so that a run that was killed does not
+ * compute it again: numbers by a key of everything that they depend on. Each record is written at once and
+ * has a checksum; a record that was cut or has changed, and all behind it, is computed again. A record:
+ * key (u64), number of values (u64), values (f64), hash of these (u64, base/hash.h), in the machine's byte
+ * order. */
 #ifndef SF_FIT_DROP_MEMORY_H
 #define SF_FIT_DROP_MEMORY_H
 

@@ -11,7 +11,7 @@ static const sf_form_entry entries[] = {{SF_PARAMETER_AVALLE_A, 0.7, true},
                                         {SF_PARAMETER_AVALLE_B, 1, true},
                                         {SF_PARAMETER_AVALLE_N, 0.3, true}};
 
-/* Of a foam like that of the gas curve at its medians. */
+/* Starts with a foam like that of the gas curve at its medians. */
 static void start(double *value) {
     double size = sf_form_pressure(value[SF_PARAMETER_E]);
     value[SF_PARAMETER_AVALLE_A] = 0.4 * size;

@@ -112,16 +112,16 @@ enum {
     SF_CURVE_FORMS
 };
 
-/* Of the table, 0 <= index < SF_CURVE_FORMS. */
+/* Returns an entry of the table, 0 <= index < SF_CURVE_FORMS. */
 const sf_curve_form *sf_curve_form_get(int index);
 /* NULL if there is none of that name. */
 const sf_curve_form *sf_curve_form_find(const char *name);
 /* "gas|gas_solid|...", all names; static storage. */
 const char *sf_curve_form_words(void);
 
-/* Of the form's parameters; NULL: it has none of that kind. */
+/* Returns the entry of a parameter; NULL: the form has none of that kind. */
 const sf_form_entry *sf_curve_form_entry(const sf_curve_form *form, sf_foam_parameter parameter);
-/* Does the form use it: its own parameter, or one of every foam (E, unloading, viscosity)? */
+/* True if the form uses the parameter: its own, or one of every foam (E, unloading, viscosity). */
 bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter);
 
 /* Stress (Pa) at one strain. Not for the form `table`. */

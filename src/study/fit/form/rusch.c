@@ -13,7 +13,7 @@ static const sf_form_entry entries[] = {
     {SF_PARAMETER_RUSCH_B, 1, true},      {SF_PARAMETER_RUSCH_N, 0.3, true},
     {SF_PARAMETER_RUSCH_END, 0.1, false}, {SF_PARAMETER_SOLID_FRACTION, 0.1, false}};
 
-/* Of a foam like that of the gas curve at its medians. */
+/* Starts with a foam like that of the gas curve at its medians. */
 static void start(double *value) {
     double size = sf_form_pressure(value[SF_PARAMETER_E]);
     value[SF_PARAMETER_RUSCH_A] = 0.6 * size;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far several Markov chains agree (Gelman et al., Bayesian Data Analysis, 3rd ed., section 11.4-5).
+/* The agreement of several Markov chains (Gelman et al., Bayesian Data Analysis, 3rd ed., section 11.4-5).
  * `x` holds [chains][count] values; each chain is cut into halves. */
 #ifndef SF_FIT_POSTERIOR_CONVERGENCE_H
 #define SF_FIT_POSTERIOR_CONVERGENCE_H

@@ -14,7 +14,8 @@ typedef struct sf_evidence {
     bool trusted; /* `effective` is at least 100 and a fiftieth of the draws */
 } sf_evidence;
 
-/* From `draws` draws of a mixture that resembles the target. The same bits for any number of threads. */
+/* Estimates the evidence from `draws` draws of a mixture that resembles the target. The same bits for any
+ * number of threads. */
 sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixture, int draws, uint64_t seed,
                                sf_evidence *evidence, sf_error *err);
 

@@ -110,7 +110,7 @@ static sf_status weigh(const double *all, int groups, int g, int count, double *
     return err->status;
 }
 
-/* Where the chains without the group start: mean and widened covariance of those with it. */
+/* Finds the start of the chains without the group: mean and widened covariance of those with it. */
 static void find_start(const sf_chains *c, double *mean, double *covariance) {
     int n = c->parameters, count = c->chains * c->kept;
     memset(mean, 0, (size_t)n * sizeof *mean);

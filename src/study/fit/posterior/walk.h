@@ -6,7 +6,7 @@
 #include "study/fit/posterior/emulator.h"
 #include "study/fit/posterior/mixture.h"
 
-/* What the steps of all chains use; not changed while they walk. */
+/* The common data of the steps of all chains; constant while they walk. */
 typedef struct sf_walk {
     const sf_target *target;
     sf_mixture proposal, jump; /* of independence steps; its factor of random walks */
