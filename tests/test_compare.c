@@ -293,7 +293,7 @@ static void reference_units_are_taken_from_the_heading(void **state) {
 static void laboratory_forms_are_one_curve(void **state) {
     (void)state;
     static const struct {
-        const char *text, *understood;
+        const char *text, *interpretation;
     } forms[] = {
         {"\xef\xbb\xbfTime (ms);Acceleration (m/s\xc2\xb2)\r\n0,0;0\r\n0,5;98,0665\r\n1,0;0\r\n",
          "separator \";\", decimal comma, time in ms, acceleration in m/s\xc2\xb2, 3 samples at 2 kHz, 0 to 1 ms"},
@@ -317,8 +317,8 @@ static void laboratory_forms_are_one_curve(void **state) {
         assert_int_equal(reference.curve.count, 3);
         assert_close(reference.curve.time[1], 0.5e-3, 1e-15);
         assert_close(reference.curve.value[1], 10, 1e-12);
-        if (!strstr(reference.understood, forms[k].understood))
-            fail_msg("%zu: %s", k, reference.understood);
+        if (!strstr(reference.interpretation, forms[k].interpretation))
+            fail_msg("%zu: %s", k, reference.interpretation);
         sf_reference_free(&reference);
     }
 }
@@ -386,7 +386,7 @@ static void coarse_or_inverted_measurement_is_refused(void **state) {
     options.invert = true;
     assert_int_equal(sf_reference_read(&options, &reference, &err), SF_OK);
     assert_close(sf_series_at(&reference.curve, 0.0125), 40, 1);
-    assert_non_null(strstr(reference.understood, "inverted"));
+    assert_non_null(strstr(reference.interpretation, "inverted"));
     sf_reference_free(&reference);
     unlink(path);
     write_noisy(path, 0.02, 1); /* already the right way round */

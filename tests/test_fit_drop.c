@@ -596,7 +596,8 @@ static void measured_curves_are_read_and_filtered(void **state) {
         if (!sentence && !(fabs(input.drop[0].sample_scale - cases[k].peak) < cases[k].slack))
             fail_msg("%s: peak %g g", cases[k].text, input.drop[0].sample_scale);
         if (!sentence)
-            assert_non_null(strstr(input.drop[0].understood, "separator \";\", decimal comma, time in ms"));
+            assert_non_null(
+                strstr(input.drop[0].interpretation, "separator \";\", decimal comma, time in ms"));
         sf_fit_input_free(&input);
     }
     program_tear_down(&place);

@@ -184,7 +184,7 @@ static void a_sliding_ball_rolls_in_the_end(void **state) {
     int64_t sliding = 0, rolling = 0;
     while (s->time < 20e-3) {
         fixture_step(&f);
-        sf_missile_view view = sf_missile_look(&f.model, &s->missile);
+        sf_missile_view view = sf_missile_read(&f.model, &s->missile);
         double rim = view.angular_velocity[1] * 0.1, v = view.velocity[0];
         pressed += 0.5 * (s->dt_old + s->dt) * s->missile.force[2];
         assert_close(v + 0.4 * rim, v0, 0.005 * v0); /* about the line of contact nothing turns it */

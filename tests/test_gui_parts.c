@@ -209,7 +209,7 @@ static void a_file_that_changes_is_noticed_once(void **state) {
     sf_watch *watch = calloc(1, sizeof *watch);
     const char *path = program_write_text(p, "watched", "one");
     snprintf(watch->file[0].path, sizeof watch->file[0].path, "%s", path);
-    watch->file[0].stamp = sf_watch_look(path);
+    watch->file[0].stamp = sf_watch_stamp_of(path);
     watch->count = 1;
     assert_null(sf_watch_changed(watch));
     program_write_text(p, "watched", "longer");

@@ -216,7 +216,7 @@ static void jitter_of_the_strain_is_sorted(void **state) {
                                      : test.strain[i] <= test.strain[i - 1]);
         assert_close(test.stress[i], 1e5 * test.strain[i] * (i < test.loading ? 1 : 0.8), 0.02);
     }
-    assert_non_null(strstr(test.understood, "jitter of"));
+    assert_non_null(strstr(test.interpretation, "jitter of"));
     sf_compression_test_free(&test);
 }
 
@@ -268,7 +268,7 @@ static void displacement_and_force_become_strain_and_stress(void **state) {
             assert_close(t->strain[i], s.strain[i], 1e-7);
             assert_close(t->stress[i], 1e3 * s.stress[i], 1e-6 * 1e3 * s.stress[i] + 1e-3);
         }
-        assert_non_null(strstr(t->understood,
+        assert_non_null(strstr(t->interpretation,
                                "separator \";\", decimal comma, displacement in mm, force in N, "
                                "heading in line 2, over 2827.4 mm2 and 40 mm"));
         sf_compression_config_free(&config);
@@ -337,7 +337,7 @@ static void toe_is_removed_on_request(void **state) {
     assert_in_range(test.loading, 290, 298);
     for (int i = 0; i < test.count; i++)
         assert_close(test.stress[i], 1e3 * law_with_plateau(test.strain[i]), 0.1);
-    assert_non_null(strstr(test.understood, "toe of 2 % taken away"));
+    assert_non_null(strstr(test.interpretation, "toe of 2 % taken away"));
     sf_compression_test_free(&test);
 }
 

@@ -60,7 +60,7 @@ static void content_comes_whole_and_is_registered(void **state) {
     }
     assert_true(hash == sf_plain_get(before).hash);
     assert_string_equal(sf_plain_name(info.st_dev, info.st_ino), path);
-    sf_plain_forget();
+    sf_plain_clear();
     assert_int_equal(sf_plain_count(), 0);
     assert_null(sf_plain_name(info.st_dev, info.st_ino));
 }

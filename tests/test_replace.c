@@ -137,7 +137,7 @@ static void what_was_read_is_no_output(void **state) {
     assert_int_equal(unlink(path), 0);
     err = (sf_error)SF_ERROR_INIT;
     assert_int_equal(sf_replace_check(program_path(p, "other-name"), &err), SF_OK);
-    sf_plain_forget();
+    sf_plain_clear();
 }
 
 /* Of processes that have ended, and HDF5 or empty; nothing else. */

@@ -667,7 +667,7 @@ static void an_estimate_counts_the_rows_that_are_done_again(void **state) {
         sf_error err = SF_ERROR_INIT;
         int64_t open = -1;
         if (sf_runs_create(&plan, &runs, &err) != SF_OK ||
-            sf_sweep_campaign_look(&c, &runs, &open, &err) != SF_OK)
+            sf_sweep_campaign_status(&c, &runs, &open, &err) != SF_OK)
             fail_msg("%s", err.text);
         assert_int_equal(open, cases[k].open);
         assert_int_equal(sf_runs_count(&runs, SF_SWEEP_DONE), 59); /* they tell the time of a run */

@@ -97,7 +97,7 @@ static const sf_table_layout measured = {.what = "thing",
 
 static void laboratory_tables_are_read_and_told(void **state) {
     static const struct {
-        const char *text, *understood;
+        const char *text, *interpretation;
     } cases[] = {
         {"Time (ms);Force (kN)\n1,5;0,25\n", "separator \";\", decimal comma, time in ms, force in kN"},
         {"\xEF\xBB\xBFTime [ms]\tForce [N]\r\n1.5\t250\r\n",
@@ -113,8 +113,8 @@ static void laboratory_tables_are_read_and_told(void **state) {
         sf_table table;
         sf_error err;
         read_text(*state, cases[k].text, &measured, &table, &err);
-        if (err.status != SF_OK || !strstr(table.understood, cases[k].understood))
-            fail_msg("%zu: %s%s", k, err.text, table.understood);
+        if (err.status != SF_OK || !strstr(table.interpretation, cases[k].interpretation))
+            fail_msg("%zu: %s%s", k, err.text, table.interpretation);
         assert_int_equal(table.count, 1);
         assert_true(fabs(table.value[0][0] - 1.5e-3) < 1e-15 && fabs(table.value[1][0] - 250) < 1e-9);
         sf_table_free(&table);

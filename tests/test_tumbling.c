@@ -260,7 +260,7 @@ static void instruments_read_the_centre_and_the_rotation(void **state) {
     sf_missile missile;
     sf_missile_begin(&m, &missile);
     take_step(&m, &missile, 0, dt, force);
-    sf_missile_view first = sf_missile_look(&m, &missile);
+    sf_missile_view first = sf_missile_read(&m, &missile);
     double arm[3], torque[3];
     for (int k = 0; k < 3; k++) {
         assert_close(first.specific_force[k], force[k] / 4.6, 1e-12);

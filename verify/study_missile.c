@@ -207,7 +207,7 @@ static void roll(sf_study *study) {
     start(&d, &f);
     while (f.state.time < 20e-3) {
         fixture_step(&f);
-        sf_missile_view view = sf_missile_look(&f.model, &f.state.missile);
+        sf_missile_view view = sf_missile_read(&f.model, &f.state.missile);
         v = view.velocity[0];
         rim = view.angular_velocity[1] * d.radius;
         pressed += 0.5 * (f.state.dt_old + f.state.dt) * f.state.missile.force[2];

@@ -87,7 +87,7 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
     else
         take_points(&table, curve, err);
     if (!table.plain)
-        memcpy(curve->understood, table.understood, sizeof curve->understood);
+        memcpy(curve->interpretation, table.interpretation, sizeof curve->interpretation);
     sf_table_free(&table);
     if (err->status != SF_OK)
         sf_case_curve_free(curve);
@@ -171,8 +171,8 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     if (status != SF_OK) {
         SF_FAIL(err, status, "%s (named at %s)", inner.text, sf_case_where(reader, setting, where));
     } else {
-        if (curve.understood[0])
-            sf_sink_tell(reader->sink, SF_NOTE, "curve %s: %s", path, curve.understood);
+        if (curve.interpretation[0])
+            sf_sink_tell(reader->sink, SF_NOTE, "curve %s: %s", path, curve.interpretation);
         if (curve.extended)
             sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
                          path, curve.strain[1]);

@@ -17,10 +17,10 @@ enum { SF_CURVE_MIN_POINTS = 4 };
 
 typedef struct sf_case_curve {
     int64_t count;
-    double *strain;                       /* [count] -, strictly increasing from 0, below 1; owned */
-    double *stress;                       /* [count] Pa, from 0, non-decreasing, finite; owned */
-    char understood[SF_TABLE_UNDERSTOOD]; /* how the file was read; empty: plainly */
-    bool extended;                        /* the file began above zero strain and (0, 0) was put before it */
+    double *strain;                               /* [count] -, strictly increasing from 0, below 1; owned */
+    double *stress;                               /* [count] Pa, from 0, non-decreasing, finite; owned */
+    char interpretation[SF_TABLE_INTERPRETATION]; /* how the file was read; empty: plainly */
+    bool extended; /* the file began above zero strain and (0, 0) was put before it */
 } sf_case_curve;
 
 /* Returns the layout of a curve file, also of tests with unloading; `what` names the file in sentences. */

@@ -123,7 +123,7 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     if (sf_table_read(path, &layout, &table, &inner) == SF_OK)
         check_table(path, &table, &inner);
     if (inner.status == SF_OK && !table.plain)
-        sf_sink_tell(reader->sink, SF_NOTE, "motion %s: %s", path, table.understood);
+        sf_sink_tell(reader->sink, SF_NOTE, "motion %s: %s", path, table.interpretation);
     free(path);
     c->motion_count = table.count;
     c->motion_time = table.value[0];

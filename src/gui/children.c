@@ -9,7 +9,7 @@
 #include "io/plain_file.h"
 #include "io/process.h"
 
-sf_watch_stamp sf_watch_look(const char *path) {
+sf_watch_stamp sf_watch_stamp_of(const char *path) {
     struct stat info;
     if (stat(path, &info) != 0)
         return (sf_watch_stamp){0};
@@ -34,14 +34,14 @@ void sf_watch_register(sf_watch *w, size_t first) {
         if (w->count == SF_WATCHED || is_watched(w, path))
             continue;
         snprintf(w->file[w->count].path, sizeof w->file[w->count].path, "%s", path);
-        w->file[w->count].stamp = sf_watch_look(path);
+        w->file[w->count].stamp = sf_watch_stamp_of(path);
         w->count++;
     }
 }
 
 const char *sf_watch_changed(sf_watch *w) {
     for (int k = 0; k < w->count; k++) {
-        sf_watch_stamp now = sf_watch_look(w->file[k].path);
+        sf_watch_stamp now = sf_watch_stamp_of(w->file[k].path);
         if (now.inode != 0 && !sf_watch_same(&now, &w->file[k].stamp)) { /* an editor may be replacing it */
             w->file[k].stamp = now;
             return w->file[k].path;

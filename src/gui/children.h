@@ -27,7 +27,7 @@ typedef struct sf_watch {
     } file[SF_WATCHED];
 } sf_watch;
 
-sf_watch_stamp sf_watch_look(const char *path);
+sf_watch_stamp sf_watch_stamp_of(const char *path);
 bool sf_watch_same(const sf_watch_stamp *a, const sf_watch_stamp *b);
 
 /* Watches what this process has read from entry `first` of the register on (io/plain_file.h), as it is now.

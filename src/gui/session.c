@@ -202,7 +202,7 @@ static void begin_anew(sf_session *s, bool reread) {
     s->activity = sf_activity_next(s->activity, SF_EDIT);
     s->at.path[0] = '\0';
     sf_checks_clear();
-    sf_plain_forget();
+    sf_plain_clear();
     if (reread) {
         sf_fields_mark(&s->fields, NULL); /* in the tree, before the fields are others */
         s->watch.count = 0;
@@ -284,7 +284,7 @@ static sf_status open_log(sf_session *s, sf_error *err) {
 static void read_log(const sf_session *s, char **text) {
     sf_error none = SF_ERROR_INIT;
     *text = NULL;
-    sf_plain_forget();
+    sf_plain_clear();
     sf_plain_read(s->at.log, NULL, SF_PLAIN_TEXT, text, NULL, &none);
 }
 
@@ -336,7 +336,7 @@ static sf_status start_solve(sf_session *s, bool resume, sf_error *err) {
 }
 
 static bool is_there(const char *path) {
-    return sf_watch_look(path).inode != 0;
+    return sf_watch_stamp_of(path).inode != 0;
 }
 
 /* Starts the program of the activity that begins. */
@@ -444,10 +444,10 @@ static void show_results(sf_session *s, bool whole) {
     sf_error err = SF_ERROR_INIT;
     sf_results r;
     char line[SF_VERDICT_LINE_SIZE] = "";
-    sf_watch_stamp now = sf_watch_look(s->at.results);
+    sf_watch_stamp now = sf_watch_stamp_of(s->at.results);
     if (!*s->at.path || now.inode == 0 || (!whole && sf_watch_same(&now, &s->seen)))
         return;
-    sf_plain_forget();
+    sf_plain_clear();
     if (sf_results_open(s->at.results, &r, &err) != SF_OK)
         return;
     if (s->shape.pad.node_count == 0 || s->frames > r.frame_count) {
@@ -583,7 +583,7 @@ static double now(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void sf_session_look(sf_session *s) {
+void sf_session_refresh(sf_session *s) {
     static const double INTERVAL = 0.25; /* s */
     int code;
     if (now() < s->next_look)
@@ -663,7 +663,7 @@ static bool is_shown(sf_session *s) {
     sf_error none = SF_ERROR_INIT;
     char shown[PATH_MAX];
     snprintf(shown, sizeof shown, "%s", s->at.path);
-    sf_plain_forget();
+    sf_plain_clear();
     bool same = name_run(s, &o, &none) == SF_OK && strcmp(s->at.path, shown) == 0 &&
                 sf_run_folder_is_finished(&s->at);
     sf_overrides_free(&o);
@@ -676,7 +676,7 @@ static void press(sf_session *s, sf_event event) {
     if (run && s->activity == SF_DONE && !is_shown(s))
         begin_anew(s, true);
     else if (run && s->activity != SF_DONE) {
-        sf_plain_forget();
+        sf_plain_clear();
         show_finished(s); /* Mesh, Save case or Stop of the report came after it */
     }
     sf_activity before = s->activity;

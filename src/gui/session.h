@@ -53,6 +53,6 @@ void sf_session_end(sf_session *session);
 /* A button ("mesh", "run", "stop", "report", "paraview", "save") or "check". */
 void sf_session_act(sf_session *session, const char *action);
 /* Looks after the program that runs, its results and the files that were read. */
-void sf_session_look(sf_session *session);
+void sf_session_refresh(sf_session *session);
 
 #endif

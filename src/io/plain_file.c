@@ -94,7 +94,7 @@ typedef struct kept_hash {
 enum { KEPT = 256 };
 static kept_hash kept[KEPT];
 
-void sf_plain_forget(void) {
+void sf_plain_clear(void) {
     pthread_mutex_lock(&list.lock);
     for (int k = 0; k < KEPT; k++) {
         free(kept[k].path);

@@ -56,12 +56,12 @@ typedef struct sf_plain_record {
 /* The number of entries, in the order of reading; a file that is read twice has two. The entries from a count
  * taken earlier on are those of the reading since. */
 size_t sf_plain_count(void);
-/* Entry `index` < sf_plain_count(). Its path is valid until sf_plain_forget. */
+/* Entry `index` < sf_plain_count(). Its path is valid until sf_plain_clear. */
 sf_plain_record sf_plain_get(size_t index);
 /* The name under which the file of this device and inode was read and still is; NULL: it was not. */
 const char *sf_plain_name(uint64_t device, uint64_t inode);
 /* Empties the register. */
-void sf_plain_forget(void);
+void sf_plain_clear(void);
 
 /* Paths as texts: nothing is looked up but the working directory, and links are not followed. */
 

@@ -345,8 +345,8 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
 static void describe(const csv *file) {
     const sf_table_heading *h = &file->heading;
     const char *separator = file->separator == '\t' ? "tab" : file->separator == ' ' ? "blanks" : NULL;
-    char *out = file->table->understood;
-    size_t size = SF_TABLE_UNDERSTOOD;
+    char *out = file->table->interpretation;
+    size_t size = SF_TABLE_INTERPRETATION;
     int used = separator ? snprintf(out, size, "separator %s", separator)
                          : snprintf(out, size, "separator \"%c\"", file->separator);
     used += snprintf(out + used, size - (size_t)used, ", decimal %s", file->comma ? "comma" : "point");
@@ -382,9 +382,9 @@ static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, 
         file->separator == ',' && h->exact[0] && h->exact[1] && !file->passed && !h->unit_line;
     if (h->columns > 0)
         describe(file);
-    size_t used = strlen(file->table->understood);
+    size_t used = strlen(file->table->interpretation);
     if (file->passed)
-        snprintf(file->table->understood + used, SF_TABLE_UNDERSTOOD - used, ", heading in line %d",
+        snprintf(file->table->interpretation + used, SF_TABLE_INTERPRETATION - used, ", heading in line %d",
                  heading_line);
     return SF_OK;
 }

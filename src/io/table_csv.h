@@ -14,16 +14,17 @@
 
 #include "io/table_heading.h"
 
-enum { SF_TABLE_UNDERSTOOD = 384 };
+enum { SF_TABLE_INTERPRETATION = 384 };
 
 typedef struct sf_table {
     int64_t count;
     int64_t capacity;
-    double *value[2];                     /* [count] SI, or the layout's units; owned */
-    int *line;                            /* [count] in the file; owned */
-    double scale[2];                      /* from the file's units to those of the values */
-    bool plain;                           /* commas, decimal points and exact names: nothing to tell */
-    char understood[SF_TABLE_UNDERSTOOD]; /* 'separator ";", decimal comma, time in ms, force in kN' */
+    double *value[2]; /* [count] SI, or the layout's units; owned */
+    int *line;        /* [count] in the file; owned */
+    double scale[2];  /* from the file's units to those of the values */
+    bool plain;       /* commas, decimal points and exact names: nothing to tell */
+    char
+        interpretation[SF_TABLE_INTERPRETATION]; /* 'separator ";", decimal comma, time in ms, force in kN' */
 } sf_table;
 
 /* Reads a table; SF_ERR_INPUT names file, line and value. On failure `*table` is zeroed. */

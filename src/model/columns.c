@@ -47,7 +47,7 @@ int64_t sf_history_row_of_largest(const sf_history *h, const double *column) {
     return row;
 }
 
-double sf_history_lasting(const double *column, int64_t row) {
+double sf_history_sustained(const double *column, int64_t row) {
     return row < 2 ? 0 : fmin(column[row], fmin(column[row - 1], column[row - 2]));
 }
 
@@ -56,10 +56,10 @@ double sf_history_resultant(const sf_history *h, int64_t row) {
     return sqrt(x * x + y * y + z * z);
 }
 
-int64_t sf_history_row_of_lasting(const sf_history *h, const double *column) {
+int64_t sf_history_row_of_sustained(const sf_history *h, const double *column) {
     int64_t row = 0;
     for (int64_t i = 1; i < h->rows; i++)
-        if (sf_history_lasting(column, i) > sf_history_lasting(column, row))
+        if (sf_history_sustained(column, i) > sf_history_sustained(column, row))
             row = i;
     return row;
 }

@@ -111,7 +111,7 @@ static sf_status check_facing(const sf_case *c, const sf_mesh *mesh, const sf_du
                               const sf_node_set *contact, sf_error *err) {
     static const double LEAST = 1e-3, MOST_AWAY = 1e-2; /* of the area */
     sf_surface_sides sides;
-    if (sf_surface_look(mesh, dual, contact, c->missile_card.direction, &sides, err) != SF_OK)
+    if (sf_surface_find_sides(mesh, dual, contact, c->missile_card.direction, &sides, err) != SF_OK)
         return err->status;
     if (!(sides.facing > LEAST * sides.area))
         return SF_FAIL(

@@ -69,7 +69,7 @@ static sf_status check_keys(int count, const sf_manifest_run *run, const uint64_
 
 /* A failure that comes again whenever the drop is simulated, a crash of a program, too; with others, as a
  * program that was killed, the group is not done. */
-static bool is_lasting(const sf_error *failure) {
+static bool is_permanent(const sf_error *failure) {
     return failure->status == SF_ERR_NUMERIC || failure->status == SF_ERR_MODEL ||
            failure->status == SF_ERR_INPUT ||
            (failure->status == SF_ERR_LIBRARY && !strstr(failure->text, SF_PROCESS_KILLED));
@@ -80,7 +80,7 @@ static sf_status finish_group(const char *outcome, int count, const sf_manifest_
     int failed = 0;
     for (int k = 0; k < count; k++) {
         failed += failure[k].status != SF_OK;
-        if (failure[k].status != SF_OK && !is_lasting(&failure[k]))
+        if (failure[k].status != SF_OK && !is_permanent(&failure[k]))
             return SF_FAIL(err, failure[k].status, "%s", failure[k].text);
         if (failure[k].status != SF_OK)
             printf("%s failed: %s\n", run[k].drop.label, failure[k].text);
@@ -119,7 +119,7 @@ static sf_status list_runs(const sf_manifest *m, sf_error *err) {
     for (int k = 0; k < m->count; k++) {
         sf_runner_state state = SF_DROP_OPEN;
         sf_error failure = SF_ERROR_INIT;
-        if (sf_runner_look(&runner, &m->run[k].drop, &state, &failure, err) != SF_OK)
+        if (sf_runner_find_status(&runner, &m->run[k].drop, &state, &failure, err) != SF_OK)
             return err->status;
         number[state]++;
         printf("%016llx\t%s\t%s\t%s\t%s\n", (unsigned long long)m->run[k].key, m->run[k].group,

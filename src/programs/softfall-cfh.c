@@ -207,8 +207,8 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
         sf_staging_check(o->directory, output_names, o->force, err) != SF_OK ||
         (o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
         return err->status;
-    if (rig.understood[0])
-        printf("rig %s: %s, %d pairs\n", o->rig_path, rig.understood, rig.pairs);
+    if (rig.interpretation[0])
+        printf("rig %s: %s, %d pairs\n", o->rig_path, rig.interpretation, rig.pairs);
     const sf_cfh_plan plan = make_plan(o, &rig, s);
     sf_cfh_report report = {.case_path = o->case_path,
                             .material = o->material,

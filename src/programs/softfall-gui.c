@@ -54,7 +54,7 @@ static void live(sf_session *session, sf_script *script, sf_error *err) {
     while (!stop_requested && !script->ended && err->status == SF_OK && sf_window_wait(0.05)) {
         if (sf_window_take_action(action, sizeof action))
             sf_session_act(session, action);
-        sf_session_look(session);
+        sf_session_refresh(session);
         sf_script_step(script, session, stdout, err);
     }
 }

@@ -191,7 +191,7 @@ static sf_status estimate(const options *o, job *j, sf_error *err) {
     const bool elsewhere = o->engine.profile != NULL;
     int64_t open = 0;
     if (sf_runs_create(&j->plan, &j->runs, err) != SF_OK ||
-        sf_sweep_campaign_look(&j->campaign, &j->runs, &open, err) != SF_OK ||
+        sf_sweep_campaign_status(&j->campaign, &j->runs, &open, err) != SF_OK ||
         sf_sweep_cost_estimate(&j->runs, open, j->folder, &cost, err) != SF_OK)
         return err->status;
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);

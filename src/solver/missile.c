@@ -517,7 +517,7 @@ static void look_at_rotation(const sf_model *m, const sf_missile *missile, sf_mi
     sf_rigid_angular_velocity(inertia, missile->quaternion, net, view->angular_acceleration);
 }
 
-sf_missile_view sf_missile_look(const sf_model *m, const sf_missile *missile) {
+sf_missile_view sf_missile_read(const sf_model *m, const sf_missile *missile) {
     sf_missile_view view = {.translation = {0}};
     bool turns = sf_missile_turns(m);
     double reading = sf_missile_reading(m, missile);

@@ -69,7 +69,7 @@ typedef struct sf_missile_view {
     double angular_velocity[3];     /* rad s-1 */
     double angular_acceleration[3]; /* rad s-2 */
 } sf_missile_view;
-sf_missile_view sf_missile_look(const sf_model *model, const sf_missile *missile);
+sf_missile_view sf_missile_read(const sf_model *model, const sf_missile *missile);
 /* Velocity (m s-1), at the present time, of the missile's material point at x. */
 void sf_missile_velocity_at(const sf_model *model, const sf_missile *missile, const double x[3],
                             double out[3]);

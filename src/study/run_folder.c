@@ -190,7 +190,7 @@ bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
     return failed;
 }
 
-void sf_run_folder_forget_failure(const sf_run_folder *at) {
+void sf_run_folder_clear_failure(const sf_run_folder *at) {
     sf_folder_remove_file(at->failed);
 }
 

@@ -65,7 +65,7 @@ bool sf_run_folder_is_finished(const sf_run_folder *folder);
  * its geometry would have read is not known. */
 bool sf_run_folder_has_failed(const sf_run_folder *folder, sf_error *failure);
 /* Forgets that. */
-void sf_run_folder_forget_failure(const sf_run_folder *folder);
+void sf_run_folder_clear_failure(const sf_run_folder *folder);
 
 /* True if softfall-solve is at work in the folder. */
 bool sf_run_folder_is_running(const sf_run_folder *folder);

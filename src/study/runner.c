@@ -181,8 +181,8 @@ static sf_status locate(const sf_runner *runner, const sf_runner_drop *drop, loc
                               err);
 }
 
-sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
-                         sf_error *failure, sf_error *err) {
+sf_status sf_runner_find_status(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
+                                sf_error *failure, sf_error *err) {
     located l;
     if (locate(runner, drop, &l, err) != SF_OK)
         return err->status;
@@ -264,7 +264,7 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
     if (r->reused)
         sf_run_folder_clean(&l.at);
     else if (runner->engine.retry)
-        sf_run_folder_forget_failure(&l.at);
+        sf_run_folder_clear_failure(&l.at);
     else
         sf_run_folder_has_failed(&l.at, failure);
 }

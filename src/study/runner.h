@@ -86,8 +86,8 @@ sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uin
 typedef enum sf_runner_state { SF_DROP_OPEN, SF_DROP_RUNNING, SF_DROP_DONE, SF_DROP_FAILED } sf_runner_state;
 
 /* Finds the status of a drop; `*failure` of one that failed. Changes nothing. Errors: those of its inputs. */
-sf_status sf_runner_look(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
-                         sf_error *failure, sf_error *err);
+sf_status sf_runner_find_status(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
+                                sf_error *failure, sf_error *err);
 /* open, running, done, failed */
 const char *sf_runner_state_name(sf_runner_state state);
 

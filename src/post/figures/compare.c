@@ -121,9 +121,9 @@ static void describe(const sf_reference_options *o, const sf_table *table, sf_re
         snprintf(spacing, sizeof spacing, "at %.4g kHz", 1e-3 / mean);
     if (o->cfc > 0)
         snprintf(class, sizeof class, "filtered with CFC %g", o->cfc);
-    snprintf(r->understood, sizeof r->understood, "%.383s, %lld samples %s, %.6g to %.6g ms, %s%s",
-             table->understood, (long long)s->count, spacing, s->time[0] * 1e3, s->time[s->count - 1] * 1e3,
-             class, o->invert ? ", inverted as asked for" : "");
+    snprintf(r->interpretation, sizeof r->interpretation, "%.383s, %lld samples %s, %.6g to %.6g ms, %s%s",
+             table->interpretation, (long long)s->count, spacing, s->time[0] * 1e3,
+             s->time[s->count - 1] * 1e3, class, o->invert ? ", inverted as asked for" : "");
 }
 
 static sf_status take_table(const sf_reference_options *o, sf_table *table, sf_reference *r, sf_error *err) {
@@ -387,7 +387,7 @@ static sf_status read_measured(const sf_compare_options *options, sf_comparison 
     c->raw = reference.raw;
     c->cfc = options->reference.cfc;
     c->inverted = options->reference.invert;
-    memcpy(c->understood, reference.understood, sizeof c->understood);
+    memcpy(c->interpretation, reference.interpretation, sizeof c->interpretation);
     return sf_injury_evaluate(&c->measured, &c->injury, err);
 }
 

@@ -13,7 +13,7 @@
  * class.
  */
 
-enum { SF_REFERENCE_UNDERSTOOD = 640 };
+enum { SF_REFERENCE_INTERPRETATION = 640 };
 
 /* The texts tell the user, in sentences, how to choose otherwise ("--reference-filter none"). All borrowed.
  */
@@ -28,7 +28,7 @@ typedef struct sf_reference_options {
 typedef struct sf_reference {
     sf_series raw;   /* the points of the file, s and g, inverted if asked for; owned */
     sf_series curve; /* sampled and filtered; without a filter the same as raw; owned */
-    char understood[SF_REFERENCE_UNDERSTOOD]; /* how the file was read, for the report */
+    char interpretation[SF_REFERENCE_INTERPRETATION]; /* how the file was read, for the report */
 } sf_reference;
 
 /* SF_ERR_INPUT names the file, the line and what was expected: also if the samples are further apart than a
@@ -78,15 +78,15 @@ typedef struct sf_compare_options {
 } sf_compare_options;
 
 typedef struct sf_comparison {
-    sf_series measured;                       /* s on its own clock, g, filtered like the model; owned */
-    sf_series raw;                            /* the points of the file; owned */
-    char understood[SF_REFERENCE_UNDERSTOOD]; /* how the file was read */
-    double cfc;                               /* of the measured curve; 0: not filtered here */
-    bool inverted;                            /* on the user's word */
-    sf_injury injury;                         /* of the measured curve */
-    double shift;                             /* s, as used */
-    int shift_given;                          /* 1 if the caller gave it */
-    double peak_error;                        /* model a_max / measured a_max - 1 */
+    sf_series measured; /* s on its own clock, g, filtered like the model; owned */
+    sf_series raw;      /* the points of the file; owned */
+    char interpretation[SF_REFERENCE_INTERPRETATION]; /* how the file was read */
+    double cfc;                                       /* of the measured curve; 0: not filtered here */
+    bool inverted;                                    /* on the user's word */
+    sf_injury injury;                                 /* of the measured curve */
+    double shift;                                     /* s, as used */
+    int shift_given;                                  /* 1 if the caller gave it */
+    double peak_error;                                /* model a_max / measured a_max - 1 */
     int64_t fit_count;
     sf_fit *fits; /* [fit_count]: for the window, then each region: at 0.25 and at 0.50 ms; owned */
 } sf_comparison;

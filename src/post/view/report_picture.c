@@ -27,7 +27,7 @@ static const char *const moments[SF_INSTANTS] = {"a third of the way", "peak", "
 static bool find_instants(const sf_results *r, const sf_series *raw, instant list[SF_INSTANTS]) {
     const sf_history *h = &r->history;
     const double *load = r->driven ? h->contact_force : raw->value;
-    int64_t peak = sf_history_row_of_lasting(h, load), first = 0, half = peak;
+    int64_t peak = sf_history_row_of_sustained(h, load), first = 0, half = peak;
     while (first < peak && !(h->contact_nodes[first] > 0))
         first++;
     while (half + 1 < h->rows && load[half] > 0.5 * load[peak])

@@ -52,7 +52,7 @@ static sf_value origin_of_shift(const void *record) {
 }
 
 static const sf_row comparison_rows[] = {
-    {.key = "understood", SF_ROW_OF(TEXT, sf_comparison, understood)},
+    {.key = "understood", SF_ROW_OF(TEXT, sf_comparison, interpretation)},
     {.key = "cfc", .value = class_of_measured},
     {.key = "inverted", SF_ROW_OF(FLAG, sf_comparison, inverted)},
     {.key = "shift_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_comparison, shift)},
@@ -163,7 +163,7 @@ static void print_figures(FILE *out, const sf_summary *s, const char *const *key
 }
 
 static void print_comparison(FILE *out, const char *path, const sf_comparison *c) {
-    fprintf(out, "Compared with\nreference %s: %s\n", path, c->understood);
+    fprintf(out, "Compared with\nreference %s: %s\n", path, c->interpretation);
     fprintf(out, "  measured a_max %.2f g (model %+.1f %%), HIC %.1f\n", c->injury.a_max_g,
             c->peak_error * 100, c->injury.hic.value);
     fprintf(out, "  model time = measured time %+.4f ms (%s)\n", c->shift * 1e3,

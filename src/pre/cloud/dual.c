@@ -321,8 +321,8 @@ static void face_area(const sf_mesh *mesh, const sf_boundary_face *face, double 
         out[c] *= 0.5;
 }
 
-sf_status sf_surface_look(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
-                          const double direction[3], sf_surface_sides *sides, sf_error *err) {
+sf_status sf_surface_find_sides(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
+                                const double direction[3], sf_surface_sides *sides, sf_error *err) {
     uint8_t *member = mark_members(mesh, set, err);
     *sides = (sf_surface_sides){0};
     for (int64_t f = 0; member && f < dual->face_count; f++) {

@@ -83,6 +83,6 @@ typedef struct sf_surface_sides {
 } sf_surface_sides;
 
 /* Finds the orientation of the group against a body that comes along `direction` (unit vector). */
-sf_status sf_surface_look(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
-                          const double direction[3], sf_surface_sides *sides, sf_error *err);
+sf_status sf_surface_find_sides(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
+                                const double direction[3], sf_surface_sides *sides, sf_error *err);
 #endif

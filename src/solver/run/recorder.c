@@ -31,7 +31,7 @@ double sf_recorder_measure(const sf_model *m, const sf_state *s) {
     return sqrt(sf_dot3(force, force)) / m->missile.mass;
 }
 
-/* The least of the last three rows, as sf_history_lasting. */
+/* The least of the last three rows, as sf_history_sustained. */
 static double lasting_resultant(const sf_history *h) {
     double least = INFINITY;
     for (int64_t i = h->rows - 3; i < h->rows; i++)
@@ -42,7 +42,7 @@ static double lasting_resultant(const sf_history *h) {
 static double lasting_value(const sf_model *m, const sf_history *h) {
     if (sf_missile_turns(m))
         return lasting_resultant(h);
-    return sf_history_lasting(sf_missile_is_driven(m) ? h->contact_force : h->acceleration, h->rows - 1);
+    return sf_history_sustained(sf_missile_is_driven(m) ? h->contact_force : h->acceleration, h->rows - 1);
 }
 
 sf_extremes sf_recorder_extremes(const sf_recorder *r) {
@@ -176,25 +176,25 @@ VALUE(energy_weight, whole * s->ledger.weight)
 VALUE(energy_anvil, whole * s->ledger.anvil)
 VALUE(energy_error, s->ledger.error)
 VALUE(momentum_error, s->ledger.momentum_error)
-VALUE(translation_x, sf_missile_look(m, &s->missile).translation[0])
-VALUE(translation_y, sf_missile_look(m, &s->missile).translation[1])
-VALUE(translation_z, sf_missile_look(m, &s->missile).translation[2])
+VALUE(translation_x, sf_missile_read(m, &s->missile).translation[0])
+VALUE(translation_y, sf_missile_read(m, &s->missile).translation[1])
+VALUE(translation_z, sf_missile_read(m, &s->missile).translation[2])
 VALUE(quaternion_w, s->missile.quaternion[0])
 VALUE(quaternion_x, s->missile.quaternion[1])
 VALUE(quaternion_y, s->missile.quaternion[2])
 VALUE(quaternion_z, s->missile.quaternion[3])
-VALUE(velocity_x, sf_missile_look(m, &s->missile).velocity[0])
-VALUE(velocity_y, sf_missile_look(m, &s->missile).velocity[1])
-VALUE(velocity_z, sf_missile_look(m, &s->missile).velocity[2])
-VALUE(specific_force_x, sf_missile_look(m, &s->missile).specific_force[0])
-VALUE(specific_force_y, sf_missile_look(m, &s->missile).specific_force[1])
-VALUE(specific_force_z, sf_missile_look(m, &s->missile).specific_force[2])
-VALUE(angular_velocity_x, sf_missile_look(m, &s->missile).angular_velocity[0])
-VALUE(angular_velocity_y, sf_missile_look(m, &s->missile).angular_velocity[1])
-VALUE(angular_velocity_z, sf_missile_look(m, &s->missile).angular_velocity[2])
-VALUE(angular_acceleration_x, sf_missile_look(m, &s->missile).angular_acceleration[0])
-VALUE(angular_acceleration_y, sf_missile_look(m, &s->missile).angular_acceleration[1])
-VALUE(angular_acceleration_z, sf_missile_look(m, &s->missile).angular_acceleration[2])
+VALUE(velocity_x, sf_missile_read(m, &s->missile).velocity[0])
+VALUE(velocity_y, sf_missile_read(m, &s->missile).velocity[1])
+VALUE(velocity_z, sf_missile_read(m, &s->missile).velocity[2])
+VALUE(specific_force_x, sf_missile_read(m, &s->missile).specific_force[0])
+VALUE(specific_force_y, sf_missile_read(m, &s->missile).specific_force[1])
+VALUE(specific_force_z, sf_missile_read(m, &s->missile).specific_force[2])
+VALUE(angular_velocity_x, sf_missile_read(m, &s->missile).angular_velocity[0])
+VALUE(angular_velocity_y, sf_missile_read(m, &s->missile).angular_velocity[1])
+VALUE(angular_velocity_z, sf_missile_read(m, &s->missile).angular_velocity[2])
+VALUE(angular_acceleration_x, sf_missile_read(m, &s->missile).angular_acceleration[0])
+VALUE(angular_acceleration_y, sf_missile_read(m, &s->missile).angular_acceleration[1])
+VALUE(angular_acceleration_z, sf_missile_read(m, &s->missile).angular_acceleration[2])
 VALUE(momentum_error_space, s->ledger.vector_error)
 VALUE(angular_momentum_error, s->ledger.angular_error)
 VALUE(largest_compression, s->largest_compression)

@@ -83,7 +83,7 @@ sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err) {
     if (sf_table_read(path, &layout, &table, err) != SF_OK)
         return err->status;
     sf_cfh_rig_fit(path, (int)table.count, table.value[0], table.value[1], rig, err);
-    memcpy(rig->understood, table.understood, sizeof rig->understood);
+    memcpy(rig->interpretation, table.interpretation, sizeof rig->interpretation);
     sf_table_free(&table);
     return err->status;
 }

@@ -13,11 +13,11 @@
 enum { SF_CFH_MAX_PAIRS = 64 };
 
 typedef struct sf_cfh_rig {
-    int pairs;                            /* 0: free fall */
-    double gravity;                       /* m s-2, g_eff, or g */
-    double standard_error;                /* m s-2 */
-    double margin;                        /* -, half-width of the 95 % interval of ln(g_eff) */
-    char understood[SF_TABLE_UNDERSTOOD]; /* how its file was read; empty: there is none */
+    int pairs;                                    /* 0: free fall */
+    double gravity;                               /* m s-2, g_eff, or g */
+    double standard_error;                        /* m s-2 */
+    double margin;                                /* -, half-width of the 95 % interval of ln(g_eff) */
+    char interpretation[SF_TABLE_INTERPRETATION]; /* how its file was read; empty: there is none */
 } sf_cfh_rig;
 
 /* Free fall. */

@@ -147,7 +147,7 @@ static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *cha
     return err->status;
 }
 
-sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err) {
+sf_status sf_sweep_campaign_status(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err) {
     bool changed = false;
     if (read_table(c, runs, &changed, err) != SF_OK)
         return err->status;

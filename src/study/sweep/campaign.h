@@ -46,6 +46,6 @@ sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engin
 
 /* Reads the rows that are done, for a look without a run. `*open`: rows that a campaign looks at, which are
  * all of them if the inputs have changed since, and those that failed if they are done again. */
-sf_status sf_sweep_campaign_look(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err);
+sf_status sf_sweep_campaign_status(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err);
 
 #endif

@@ -116,7 +116,7 @@ static bool is_current(void *context, const sf_runs *runs, int64_t row) {
     sf_runner_state state = SF_DROP_OPEN;
     sf_error failure = SF_ERROR_INIT, err = SF_ERROR_INIT;
     if (begin_piece(&p, runs->plan, 1, &row, &err) == SF_OK)
-        sf_runner_look(context, &p.drop[0], &state, &failure, &err);
+        sf_runner_find_status(context, &p.drop[0], &state, &failure, &err);
     end_piece(&p);
     return state == SF_DROP_DONE;
 }

@@ -83,7 +83,7 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
 
 static void print_tests(const sf_compression_config *config) {
     for (int k = 0; k < config->test_count; k++)
-        printf("test %s: %s\n", config->test[k].path, config->test[k].understood);
+        printf("test %s: %s\n", config->test[k].path, config->test[k].interpretation);
     fflush(stdout);
 }
 

@@ -11,7 +11,7 @@ static void put_tests(sf_json *json, const sf_compression_fit *fit, const sf_com
         const sf_compression_test *t = &fit->data.config->test[k];
         sf_json_open(json, NULL, '{');
         sf_json_text(json, "file", t->path);
-        sf_json_text(json, "understood", t->understood);
+        sf_json_text(json, "understood", t->interpretation);
         sf_json_number(json, "toe_strain", t->toe);
         sf_json_number(json, "rate_1_s", t->rate);
         sf_json_integer(json, "points_loading", t->loading);

@@ -56,7 +56,7 @@ static void put_tests(FILE *out, const sf_compression_fit *fit, const sf_compres
         out, "Deviation: root mean square of data less fit, over the scatter (1: nothing but scatter) and in "
              "percent of the stress (counted as a hundredth of the largest at least).");
     for (int k = 0; k < c->test_count; k++)
-        sf_html_note(out, "Read from %s: %s", c->test[k].path, c->test[k].understood);
+        sf_html_note(out, "Read from %s: %s", c->test[k].path, c->test[k].interpretation);
 }
 
 static void put_parameters(FILE *out, const sf_compression_fit *fit) {

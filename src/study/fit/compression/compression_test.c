@@ -389,8 +389,8 @@ static void describe(const sf_compression_source *source, bool machine, const sf
                  1e3 * source->thickness);
     if (source->toe)
         snprintf(toe, sizeof toe, ", toe of %.3g %% taken away", 100 * t->toe);
-    snprintf(t->understood, sizeof t->understood,
-             "%.383s%s, %d points of loading and %d of unloading%s%s%s, %.4g 1/s", table->understood,
+    snprintf(t->interpretation, sizeof t->interpretation,
+             "%.383s%s, %d points of loading and %d of unloading%s%s%s, %.4g 1/s", table->interpretation,
              specimen, t->loading, t->count - t->loading, inverted[source->invert], sorted, toe, t->rate);
 }
 

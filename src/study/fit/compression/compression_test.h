@@ -18,7 +18,7 @@
 enum { SF_COMPRESSION_LOADING_POINTS = 20, SF_COMPRESSION_UNLOADING_POINTS = 8 }; /* the least of them */
 enum { SF_COMPRESSION_BRANCH_POINTS = 500 };
 
-enum { SF_COMPRESSION_UNDERSTOOD = 768 };
+enum { SF_COMPRESSION_INTERPRETATION = 768 };
 
 /* Which channels have the other sign. */
 typedef enum sf_inversion { SF_INVERT_NONE, SF_INVERT_STRAIN, SF_INVERT_STRESS, SF_INVERT_BOTH } sf_inversion;
@@ -45,7 +45,7 @@ typedef struct sf_compression_test {
     double largest_stress; /* Pa */
     int sorted;            /* points that jitter of the strain had put out of order */
     double toe;            /* -, strain that the correction took away */
-    char understood[SF_COMPRESSION_UNDERSTOOD]; /* how the file was read, for the report */
+    char interpretation[SF_COMPRESSION_INTERPRETATION]; /* how the file was read, for the report */
 } sf_compression_test;
 
 /* Reads and checks a test. SF_ERR_INPUT names file, line and value: negative strain or stress, strain of 1 or

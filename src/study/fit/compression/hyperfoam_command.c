@@ -331,8 +331,8 @@ sf_status sf_hyperfoam_fit_file(const char *path, const char *directory, bool fo
     }
     if (err->status == SF_OK) {
         in.card.informed_strain = in.data.test.largest_strain;
-        fprintf(log, "test %s: %s, %d points of lateral strain\n", in.data.test.path, in.data.test.understood,
-                in.data.lateral_count);
+        fprintf(log, "test %s: %s, %d points of lateral strain\n", in.data.test.path,
+                in.data.test.interpretation, in.data.lateral_count);
         if (sf_hyperfoam_fit_run(&in.data, &in.card, in.terms, in.nu, &fit, err) == SF_OK &&
             write_all(&in, &fit, directory, force, err) == SF_OK) {
             fprintf(log, "%s: hyperfoam of %d term%s\n", in.name, in.terms, in.terms > 1 ? "s" : "");

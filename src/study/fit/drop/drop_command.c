@@ -93,12 +93,12 @@ static sf_status make_runs(const char *directory, char *runs, sf_error *err) {
 static void print_curves(const sf_fit_input *in) {
     for (int k = 0; k < in->drop_count; k++)
         if (in->drop[k].curve_path)
-            printf("reference %s: %s\n", in->drop[k].curve_path, in->drop[k].understood);
+            printf("reference %s: %s\n", in->drop[k].curve_path, in->drop[k].interpretation);
     for (int t = 0; t < in->joint.test_count; t++)
-        printf("test %s\n", in->joint.test[t].understood);
+        printf("test %s\n", in->joint.test[t].interpretation);
     for (int c = 0; c < in->joint.cushion_count; c++)
-        if (*in->joint.cushion[c].understood)
-            printf("cushion %s\n", in->joint.cushion[c].understood);
+        if (*in->joint.cushion[c].interpretation)
+            printf("cushion %s\n", in->joint.cushion[c].interpretation);
     fflush(stdout);
 }
 

@@ -30,7 +30,7 @@ static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *
     if (sf_reference_read(options, &reference, err) != SF_OK)
         return err->status;
     const sf_series *curve = &reference.curve;
-    snprintf(drop->understood, sizeof drop->understood, "%s", reference.understood);
+    snprintf(drop->interpretation, sizeof drop->interpretation, "%s", reference.interpretation);
     if (sf_contact_instant(curve, options->path, &contact, err) != SF_OK)
         goto done;
     drop->sample_time = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");

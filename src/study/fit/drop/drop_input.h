@@ -25,13 +25,13 @@ typedef struct sf_fit_drop {
     double sd[SF_FIT_SAMPLES];    /* relative standard deviations */
     double speed_sd;              /* relative standard deviation of the case's speed; 0: it is known */
     char *curve_path;             /* of the measured curve; NULL: none; owned */
-    char understood[SF_REFERENCE_UNDERSTOOD]; /* how it was read */
-    int samples;                              /* of it; 0: none */
-    double *sample_time;                      /* [samples] s after contact; owned */
-    double *sample_value;                     /* [samples] g; owned */
-    double sample_sd;                         /* of a sample, relative to the measured peak */
-    double sample_scale;                      /* g, that peak */
-    double sample_class;                      /* of the filter that both curves have; 0: the file's own */
+    char interpretation[SF_REFERENCE_INTERPRETATION]; /* how it was read */
+    int samples;                                      /* of it; 0: none */
+    double *sample_time;                              /* [samples] s after contact; owned */
+    double *sample_value;                             /* [samples] g; owned */
+    double sample_sd;                                 /* of a sample, relative to the measured peak */
+    double sample_scale;                              /* g, that peak */
+    double sample_class; /* of the filter that both curves have; 0: the file's own */
 } sf_fit_drop;
 
 /* Reads it into drop[count], after `count` others: refused is one that is there already. Release with

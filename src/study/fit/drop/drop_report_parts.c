@@ -342,7 +342,7 @@ void sf_report_joint_json(sf_json *j, const sf_drop_fit *fit) {
         const sf_joint_test *test = &joint->test[t];
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "name", test->name);
-        sf_json_text(j, "understood", test->understood);
+        sf_json_text(j, "understood", test->interpretation);
         sf_json_number(j, "rate_1_s", test->rate);
         sf_json_bool(j, "below_rate_reference", is_below_reference(fit, test));
         sf_json_integer(j, "points", test->count);

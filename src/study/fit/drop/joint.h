@@ -12,19 +12,19 @@
 #include "study/config.h"
 #include "material/laws.h"
 
-enum { SF_JOINT_MOST = 8, SF_JOINT_POINTS = 48, SF_JOINT_NAME = 64, SF_JOINT_UNDERSTOOD = 768 };
+enum { SF_JOINT_MOST = 8, SF_JOINT_POINTS = 48, SF_JOINT_NAME = 64, SF_JOINT_INTERPRETATION = 768 };
 
 typedef struct sf_joint_test {
     char name[SF_JOINT_NAME];
-    uint64_t file;                        /* hash of its text */
-    double rate;                          /* s-1, nominal */
-    double turn;                          /* -, largest strain */
-    int count, loading;                   /* points; the first of them are loading */
-    double strain[SF_JOINT_POINTS];       /* in the order of the test */
-    double stress[SF_JOINT_POINTS];       /* Pa */
-    double scale;                         /* Pa, the largest measured stress */
-    double sd;                            /* relative; at low stress of 2 % of the scale */
-    char understood[SF_JOINT_UNDERSTOOD]; /* how the file was read; "": no file */
+    uint64_t file;                                /* hash of its text */
+    double rate;                                  /* s-1, nominal */
+    double turn;                                  /* -, largest strain */
+    int count, loading;                           /* points; the first of them are loading */
+    double strain[SF_JOINT_POINTS];               /* in the order of the test */
+    double stress[SF_JOINT_POINTS];               /* Pa */
+    double scale;                                 /* Pa, the largest measured stress */
+    double sd;                                    /* relative; at low stress of 2 % of the scale */
+    char interpretation[SF_JOINT_INTERPRETATION]; /* how the file was read; "": no file */
 } sf_joint_test;
 
 typedef struct sf_joint_cushion {
@@ -35,7 +35,7 @@ typedef struct sf_joint_cushion {
     double static_stress[SF_JOINT_POINTS]; /* Pa, weight over area */
     double peak_g[SF_JOINT_POINTS];
     double sd; /* relative */
-    char understood[SF_JOINT_UNDERSTOOD];
+    char interpretation[SF_JOINT_INTERPRETATION];
 } sf_joint_cushion;
 
 typedef struct sf_joint {

@@ -98,7 +98,8 @@ static sf_status take_test(const sf_config *config, const config_setting_t *entr
         return SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
                        config_setting_source_line(entry));
     take_points(&read, test);
-    snprintf(test->understood, sizeof test->understood, "%s: %.500s", source->path, read.understood);
+    snprintf(test->interpretation, sizeof test->interpretation, "%s: %.500s", source->path,
+             read.interpretation);
     if (test->loading < LEAST_POINTS)
         sf_config_refuse(config, config_setting_get_member(entry, "file"), err,
                          "%s: loading from a strain of %.3g to %.3g holds %d of the points %g apart that are "
@@ -161,8 +162,8 @@ static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *e
         out->static_stress[out->count] = table.value[0][k];
         out->peak_g[out->count++] = table.value[1][k];
     }
-    snprintf(out->understood, sizeof out->understood, "%s: %.383s, %d points", path, table.understood,
-             out->count);
+    snprintf(out->interpretation, sizeof out->interpretation, "%s: %.383s, %d points", path,
+             table.interpretation, out->count);
     sf_table_free(&table);
     return err->status;
 }
