@@ -755,8 +755,9 @@ static void the_points_of_a_picture_are_of_every_level(void **state) {
         p, "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 20000; }, { key = \"a.y\"; values = [1, 2]; }",
         &plan, &runs, &a);
     draw(p, &a);
-    int of_one = atoi(program_shell(p, "grep -c '^1,' drawn/factors.gp").out),
-        of_two = atoi(program_shell(p, "grep -c '^2,' drawn/factors.gp").out);
+    /* The second panel is the first figure against a.y. */
+    int of_one = atoi(program_shell(p, "sed -n '/^$d1_/,/^EOD/p' drawn/factors.gp | grep -c '^1,'").out),
+        of_two = atoi(program_shell(p, "sed -n '/^$d1_/,/^EOD/p' drawn/factors.gp | grep -c '^2,'").out);
     if (of_one + of_two < 2900 || of_one + of_two > 3100 || abs(of_one - of_two) > 300)
         fail_msg("%d and %d points", of_one, of_two);
     free_evaluated(&plan, &runs, &a);

@@ -351,7 +351,7 @@ static void softfall_post_shows_the_verdict_first_and_in_summary_json(void **sta
                   "[('a_max_g', 50, False), ('hic', 1700, True)]");
     assert_int_equal(
         program_shell(p, "grep -q 'valid with remarks' out/acceleration.gp && grep -q 'limit 50: failed' "
-                         "out/acceleration.gp && grep -q 'first 50 to' out/acceleration.gp")
+                         "out/acceleration.gp && grep -q '^plot 50 with lines' out/acceleration.gp")
             .code,
         0);
 }

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_LEVELS = 1000000, MOST_DRAWS = 1000, DRAW_PATH = PATH_MAX + 32 };
+enum { MOST_LEVELS = 1000000, MOST_DRAWS = 1000, DRAW_PATH = PATH_MAX + 32, NAMES_SIZE = 256 };
 
 /* A factor while it is read: the kind of quantity of its unit is found by its first value. */
 typedef struct reading {
@@ -203,10 +203,20 @@ static sf_status take_file(reading *r, const config_setting_t *s, const char *la
 
 /* ---- the kinds of lists ---- */
 
+static sf_status check_list(const reading *r, const config_setting_t *list, sf_error *err) {
+    if (!config_setting_is_array(list) && !config_setting_is_list(list))
+        return sf_config_refuse(r->config, list, err, "%s must be a list, [ ... ] or ( ... )",
+                                config_setting_name(list));
+    if (config_setting_length(list) == 0)
+        return sf_config_refuse(r->config, list, err, "%s: the list of %s is empty: there is no run to do",
+                                config_setting_name(list), r->factor->key);
+    return SF_OK;
+}
+
 static sf_status read_files(reading *r, const config_setting_t *list, sf_error *err) {
+    SF_TRY(check_list(r, list, err));
     int count = config_setting_length(list);
-    if (make_levels(r->factor, count, true, err) != SF_OK)
-        return err->status;
+    SF_TRY(make_levels(r->factor, count, true, err));
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
         const char *label = config_setting_get_string(s);
@@ -217,17 +227,18 @@ static sf_status read_files(reading *r, const config_setting_t *list, sf_error *
     return err->status;
 }
 
-/* The case would look for it beside itself, not beside the plan; a group takes a file and nothing else. */
+/* True if the case would look for the value beside itself, not beside the plan; a group takes a file and
+ * nothing else. */
 static bool is_file(const sf_factor *f, const config_setting_t *s) {
     const char *text = config_setting_get_string(s);
     return is_group(f->key) || (text && *text && *text != '/' && sf_case_key_is_file(f->key));
 }
 
 static sf_status read_values(reading *r, const config_setting_t *list, sf_error *err) {
+    SF_TRY(check_list(r, list, err));
     int count = config_setting_length(list);
     bool words = !looks_numeric(r->config, config_setting_get_elem(list, 0));
-    if (make_levels(r->factor, count, words, err) != SF_OK)
-        return err->status;
+    SF_TRY(make_levels(r->factor, count, words, err));
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
         if (is_file(r->factor, s))
@@ -243,23 +254,11 @@ static sf_status read_values(reading *r, const config_setting_t *list, sf_error 
     return err->status;
 }
 
-/* The list `values` or `files`. */
-static sf_status read_list(reading *r, const config_setting_t *list, bool files, sf_error *err) {
-    if (!config_setting_is_array(list) && !config_setting_is_list(list))
-        return sf_config_refuse(r->config, list, err, "%s must be a list, [ ... ] or ( ... )",
-                                config_setting_name(list));
-    if (config_setting_length(list) == 0)
-        return sf_config_refuse(r->config, list, err, "%s: the list of %s is empty: there is no run to do",
-                                config_setting_name(list), r->factor->key);
-    return files ? read_files(r, list, err) : read_values(r, list, err);
-}
-
-static sf_status read_range(reading *r, sf_error *err) {
+static sf_status read_range(reading *r, const config_setting_t *first, sf_error *err) {
     sf_factor *f = r->factor;
     double from = 0, to = 0, count = 0;
     int logarithmic = 0;
-    const config_setting_t *first = config_setting_get_member(r->group, "from"),
-                           *last = config_setting_get_member(r->group, "to");
+    const config_setting_t *last = config_setting_get_member(r->group, "to");
     if (!last)
         return sf_config_refuse(r->config, r->group, err, "%s: from needs to and count", f->key);
     if (take_number(r, first, &from, err) != SF_OK || take_number(r, last, &to, err) != SF_OK ||
@@ -329,46 +328,117 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
     return err->status;
 }
 
-/* ---- distributions ---- */
+/* ---- distributions: one entry for each ---- */
 
-static const char *const parameters[][2] = {[SF_DISTRIBUTION_UNIFORM] = {"low", "high"},
-                                            [SF_DISTRIBUTION_NORMAL] = {"mean", "deviation"},
-                                            [SF_DISTRIBUTION_LOGNORMAL] = {"median", "deviation_ln"}};
-
-static sf_status check_distribution(const reading *r, sf_error *err) {
-    const sf_factor *f = r->factor;
-    if (f->distribution == SF_DISTRIBUTION_UNIFORM && !(f->a < f->b))
-        return sf_config_refuse(r->config, r->group, err, "%s: low must be below high", f->key);
-    if (f->distribution != SF_DISTRIBUTION_UNIFORM && !(f->b > 0))
-        return sf_config_refuse(r->config, r->group, err, "%s: the deviation must be above zero", f->key);
-    if (f->distribution == SF_DISTRIBUTION_LOGNORMAL && !(f->a > 0))
-        return sf_config_refuse(r->config, r->group, err, "%s: the median must be above zero", f->key);
-    return SF_OK;
+static double uniform_at(const sf_factor *f, double u) {
+    return f->a + u * (f->b - f->a);
 }
 
-static sf_status read_distribution(reading *r, sf_error *err) {
+static double normal_at(const sf_factor *f, double u) {
+    return f->a + f->b * gsl_cdf_ugaussian_Pinv(u);
+}
+
+static double lognormal_at(const sf_factor *f, double u) {
+    return f->a * exp(f->b * gsl_cdf_ugaussian_Pinv(u));
+}
+
+static const char *uniform_fault(const sf_factor *f) {
+    return f->a < f->b ? NULL : "low must be below high";
+}
+
+static const char *normal_fault(const sf_factor *f) {
+    return f->b > 0 ? NULL : "the deviation must be above zero";
+}
+
+static const char *lognormal_fault(const sf_factor *f) {
+    return !(f->b > 0) ? normal_fault(f) : f->a > 0 ? NULL : "the median must be above zero";
+}
+
+struct sf_distribution {
+    const char *name, *first, *second; /* keys of the two numbers */
+    bool pure;                         /* the second number has no unit */
+    const char *(*fault)(const sf_factor *f);
+    double (*at)(const sf_factor *f, double u);
+    const char *phrase; /* format of both numbers and the unit, for a report */
+};
+
+static const sf_distribution distributions[] = {
+    {"uniform", "low", "high", false, uniform_fault, uniform_at, "uniform, %.6g to %.6g %s"},
+    {"normal", "mean", "deviation", false, normal_fault, normal_at,
+     "normal, mean %.6g, standard deviation %.6g %s"},
+    {"lognormal", "median", "deviation_ln", true, lognormal_fault, lognormal_at,
+     "lognormal, median %.6g, deviation of the logarithm %.6g (%s)"}};
+enum { DISTRIBUTIONS = sizeof distributions / sizeof distributions[0] };
+
+/* Appends "|word" to a list of words. */
+static void add_word(char *list, size_t size, const char *word) {
+    size_t used = strlen(list);
+    if (*word)
+        snprintf(list + used, size - used, "%s%s", used ? "|" : "", word);
+}
+
+static sf_status read_distribution(reading *r, const config_setting_t *setting, sf_error *err) {
+    sf_factor *f = r->factor;
+    char words[NAMES_SIZE] = "", own[NAMES_SIZE] = "key|name|distribution";
     int which = 0;
-    if (sf_config_choice(r->config, r->group, "distribution", "uniform|normal|lognormal", &which, err) !=
-        SF_OK)
-        return err->status;
-    r->factor->distribution = (sf_distribution)(which + 1);
-    const char *const *names = parameters[which + 1];
-    char own[64];
-    snprintf(own, sizeof own, "key|name|distribution|%s|%s", names[0], names[1]);
-    if (sf_config_names(r->config, r->group, own, err) != SF_OK)
-        return err->status;
-    const config_setting_t *first = config_setting_get_member(r->group, names[0]),
-                           *second = config_setting_get_member(r->group, names[1]);
+    (void)setting;
+    for (int k = 0; k < DISTRIBUTIONS; k++)
+        add_word(words, sizeof words, distributions[k].name);
+    SF_TRY(sf_config_choice(r->config, r->group, "distribution", words, &which, err));
+    const sf_distribution *d = f->distribution = &distributions[which];
+    add_word(own, sizeof own, d->first);
+    add_word(own, sizeof own, d->second);
+    SF_TRY(sf_config_names(r->config, r->group, own, err));
+    const config_setting_t *first = config_setting_get_member(r->group, d->first),
+                           *second = config_setting_get_member(r->group, d->second);
     if (!first || !second)
         return sf_config_refuse(r->config, r->group, err, "%s: give %s and %s, or values, files or posterior",
-                                r->factor->key, names[0], names[1]);
-    if (take_number(r, first, &r->factor->a, err) != SF_OK)
-        return err->status;
-    if (which == 2 ? sf_config_number(r->config, r->group, names[1], true, 0, 10, &r->factor->b, err) != SF_OK
-                   : take_number(r, second, &r->factor->b, err) != SF_OK)
-        return err->status;
-    r->factor->uncertain = true;
-    return check_distribution(r, err);
+                                f->key, d->first, d->second);
+    SF_TRY(take_number(r, first, &f->a, err));
+    SF_TRY(d->pure ? sf_config_number(r->config, r->group, d->second, true, 0, 10, &f->b, err)
+                   : take_number(r, second, &f->b, err));
+    f->uncertain = true;
+    const char *fault = d->fault(f);
+    return fault ? sf_config_refuse(r->config, r->group, err, "%s: %s", f->key, fault) : SF_OK;
+}
+
+/* ---- the kinds of factor: one entry for each ---- */
+
+/* A group has the key of one kind; a sampled group without such a key has a distribution. */
+typedef struct factor_kind {
+    const char *key;      /* by which the kind is recognised */
+    const char *more;     /* keys that belong to it, "a|b" */
+    const char *phrase;   /* in a sentence that says what may be given */
+    bool listed, sampled; /* where the kind may stand */
+    sf_status (*read)(reading *r, const config_setting_t *setting, sf_error *err);
+} factor_kind;
+
+static const factor_kind kinds[] = {
+    {"values", "", "values", true, true, read_values},
+    {"files", "", "files", true, true, read_files},
+    {"posterior", "draws", "posterior", true, true, read_posterior},
+    {"from", "to|count|spacing", "or from, to and count", true, false, read_range},
+};
+enum { KINDS = sizeof kinds / sizeof kinds[0] };
+
+/* The keys that a group may have: of one kind, or (NULL) of all. */
+static void list_keys(const factor_kind *kind, bool sampled, char *names, size_t size) {
+    snprintf(names, size, "key|name");
+    for (int k = 0; k < KINDS; k++) {
+        if (kind ? kind != &kinds[k] : sampled ? !kinds[k].sampled : !kinds[k].listed)
+            continue;
+        add_word(names, size, kinds[k].key);
+        add_word(names, size, kinds[k].more);
+    }
+    if (!sampled)
+        add_word(names, size, "uncertain");
+    if (!sampled || kind)
+        return;
+    add_word(names, size, "distribution");
+    for (int k = 0; k < DISTRIBUTIONS; k++) {
+        add_word(names, size, distributions[k].first);
+        add_word(names, size, distributions[k].second);
+    }
 }
 
 /* ---- the whole ---- */
@@ -389,46 +459,45 @@ static sf_status read_head(reading *r, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status read_levels(reading *r, bool sampled, sf_error *err) {
-    static const char *const kinds[] = {"values", "files", "posterior", "from", NULL},
-                             *const names[] = {"key|name|values|uncertain", "key|name|files|uncertain",
-                                               "key|name|posterior|draws|uncertain",
-                                               "key|name|from|to|count|spacing|uncertain"},
-                             *const drawn[] = {"key|name|values", "key|name|files",
-                                               "key|name|posterior|draws"}; /* no `from` there */
-    const config_setting_t *found = NULL;
-    int which = -1;
-    for (int k = 0; kinds[k]; k++) {
-        const config_setting_t *s = config_setting_get_member(r->group, kinds[k]);
-        if (s && found)
-            return sf_config_refuse(r->config, s, err, "%s: %s and %s exclude each other", r->factor->key,
-                                    kinds[which], kinds[k]);
-        found = s ? s : found;
-        which = s ? k : which;
+static sf_status refuse_without_kind(const reading *r, sf_error *err) {
+    char phrases[NAMES_SIZE] = "";
+    for (int k = 0; k < KINDS; k++) {
+        size_t used = strlen(phrases);
+        snprintf(phrases + used, sizeof phrases - used, "%s%s", used ? ", " : "", kinds[k].phrase);
     }
-    if (which < 0 && sampled)
-        return read_distribution(r, err);
-    if (which < 0)
-        return sf_config_refuse(r->config, r->group, err,
-                                "%s: give values, files, posterior, or from, to and count; a distribution "
-                                "belongs into a group with sample",
-                                r->factor->key);
-    SF_TRY(sf_config_names(r->config, r->group, sampled ? drawn[which] : names[which], err));
-    return which == 2   ? read_posterior(r, found, err)
-           : which == 3 ? read_range(r, err)
-                        : read_list(r, found, which == 1, err);
+    return sf_config_refuse(r->config, r->group, err,
+                            "%s: give %s; a distribution belongs into a group with sample", r->factor->key,
+                            phrases);
+}
+
+static sf_status read_kind(reading *r, bool sampled, sf_error *err) {
+    const factor_kind *kind = NULL;
+    const config_setting_t *found = NULL;
+    char names[NAMES_SIZE];
+    for (int k = 0; k < KINDS; k++) {
+        const config_setting_t *s = config_setting_get_member(r->group, kinds[k].key);
+        if (s && kind)
+            return sf_config_refuse(r->config, s, err, "%s: %s and %s exclude each other", r->factor->key,
+                                    kind->key, kinds[k].key);
+        found = s ? s : found;
+        kind = s ? &kinds[k] : kind;
+    }
+    if (!kind)
+        return sampled ? read_distribution(r, NULL, err) : refuse_without_kind(r, err);
+    list_keys(kind, sampled, names, sizeof names);
+    SF_TRY(sf_config_names(r->config, r->group, names, err));
+    return kind->read(r, found, err);
 }
 
 sf_status sf_factor_read(const sf_config *config, const config_setting_t *group, bool sampled, sf_factor *f,
                          sf_error *err) {
-    static const char list[] = "key|name|values|files|posterior|draws|from|to|count|spacing|uncertain",
-                      drawn[] = "key|name|values|files|posterior|draws|distribution|low|high|mean|deviation|"
-                                "median|deviation_ln";
     reading r = {.config = config, .group = group, .factor = f};
+    char names[NAMES_SIZE];
     *f = (sf_factor){0};
-    if (sf_config_names(config, group, sampled ? drawn : list, err) != SF_OK || read_head(&r, err) != SF_OK ||
-        read_levels(&r, sampled, err) != SF_OK)
-        return err->status;
+    list_keys(NULL, sampled, names, sizeof names);
+    SF_TRY(sf_config_names(config, group, names, err));
+    SF_TRY(read_head(&r, err));
+    SF_TRY(read_kind(&r, sampled, err));
     f->uncertain |= sampled;
     return sf_config_flag(config, group, "uncertain", &f->uncertain, err);
 }
@@ -449,16 +518,8 @@ void sf_factor_free(sf_factor *f) {
 
 double sf_factor_quantile(const sf_factor *f, double u) {
     int64_t level = (int64_t)(u * (double)f->count);
-    switch (f->distribution) {
-    case SF_DISTRIBUTION_UNIFORM:
-        return f->a + u * (f->b - f->a);
-    case SF_DISTRIBUTION_NORMAL:
-        return f->a + f->b * gsl_cdf_ugaussian_Pinv(u);
-    case SF_DISTRIBUTION_LOGNORMAL:
-        return f->a * exp(f->b * gsl_cdf_ugaussian_Pinv(u));
-    case SF_DISTRIBUTION_NONE:
-        break;
-    }
+    if (f->distribution)
+        return f->distribution->at(f, u);
     level = level < f->count ? level : f->count - 1;
     return f->words ? (double)level : f->number[level];
 }
@@ -485,3 +546,10 @@ void sf_factor_heading(const sf_factor *f, char *text, size_t size) {
     else
         snprintf(text, size, "%s", f->name);
 }
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral" /* formats are those of the table */
+void sf_factor_distribution_text(const sf_factor *f, char *text, size_t size) {
+    snprintf(text, size, f->distribution->phrase, f->a, f->b, f->unit);
+}
+#pragma GCC diagnostic pop

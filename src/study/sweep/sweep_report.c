@@ -20,17 +20,6 @@ static const char *const sampling_words[] = {[SF_SAMPLING_RANDOM] = "random",
 
 /* ---- factors in words ---- */
 
-static void distribution_text(const sf_factor *f, char *text, size_t size) {
-    static const char *const form[] = {
-        [SF_DISTRIBUTION_UNIFORM] = "uniform, %.6g to %.6g %s",
-        [SF_DISTRIBUTION_NORMAL] = "normal, mean %.6g, standard deviation %.6g %s",
-        [SF_DISTRIBUTION_LOGNORMAL] = "lognormal, median %.6g, deviation of the logarithm %.6g (%s)"};
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-    snprintf(text, size, form[f->distribution], f->a, f->b, f->unit);
-#pragma GCC diagnostic pop
-}
-
 static void list_text(const sf_factor *f, char *text, size_t size) {
     double low = INFINITY, high = -INFINITY;
     if (f->words) {
@@ -47,10 +36,10 @@ static void list_text(const sf_factor *f, char *text, size_t size) {
 void sf_sweep_factor_text(const sf_plan *p, int factor, char *text, size_t size) {
     const sf_factor *f = &p->factor[factor];
     const sf_block *b = &p->block[p->block_of[factor]];
-    if (f->distribution == SF_DISTRIBUTION_NONE)
-        list_text(f, text, size);
+    if (f->distribution)
+        sf_factor_distribution_text(f, text, size);
     else
-        distribution_text(f, text, size);
+        list_text(f, text, size);
     size_t used = strlen(text);
     if (b->kind == SF_BLOCK_ZIP && used < size)
         snprintf(text + used, size - used, ", with %s",
