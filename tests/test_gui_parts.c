@@ -204,6 +204,37 @@ static void the_sentence_of_a_program_is_its_last(void **state) {
     assert_string_equal(text, "t 3.5 / 40 ms step 12");
 }
 
+/* Every entry of the branch Checks is the line of the printed table with the same name. */
+static void the_checks_are_those_that_softfall_pre_printed(void **state) {
+    const program_place *p = *state;
+    static const char *const names[SF_CHECK_ENTRIES] = {"nodes",
+                                                        "cells",
+                                                        "missile",
+                                                        "equivalent drop height",
+                                                        "impact point",
+                                                        "spacing under missile",
+                                                        "expected mesh error",
+                                                        "first time step, at least",
+                                                        "memory of the solver",
+                                                        "typical run time"};
+    sf_check_entries checks;
+    sf_error err = SF_ERROR_INIT;
+    const char *example = getenv("SF_SOURCE_DIR");
+    program_result r = program_succeed(p, "pre", "%s/examples/eva50-v4.5/case.cfg -o checks.h5 %s", example,
+                                       program_coarse(12));
+    assert_int_equal(sf_checks_read(program_path(p, "checks.h5"), &checks, &err), SF_OK);
+    assert_int_equal(checks.count, SF_CHECK_ENTRIES);
+    for (int k = 0; k < checks.count; k++) {
+        char line[400], entry[SF_CHECK_NAME];
+        snprintf(line, sizeof line, "%-26s%s\n", names[k], checks.entry[k].value);
+        snprintf(entry, sizeof entry, "3Checks/%02d%s", k, names[k]);
+        assert_string_equal(checks.entry[k].name, entry);
+        assert_non_null(strstr(r.out, line));
+        assert_true(strlen(checks.entry[k].value) > 2);
+    }
+    assert_int_equal(sf_checks_read(program_path(p, "none.h5"), &checks, &err), SF_ERR_IO);
+}
+
 static void a_file_that_changes_is_noticed_once(void **state) {
     const program_place *p = *state;
     sf_watch *watch = calloc(1, sizeof *watch);
@@ -315,6 +346,7 @@ int main(void) {
         cmocka_unit_test(the_end_reaches_what_a_child_has_started),
         cmocka_unit_test(a_child_ends_with_its_parent),
         cmocka_unit_test(the_sentence_of_a_program_is_its_last),
+        cmocka_unit_test(the_checks_are_those_that_softfall_pre_printed),
         cmocka_unit_test(a_file_that_changes_is_noticed_once),
         cmocka_unit_test(every_value_of_a_case_is_told_as_it_can_be_set),
         cmocka_unit_test(without_a_place_for_runs_there_is_no_path),

@@ -9,55 +9,48 @@
 #include "base/units.h"
 #include "gui/gmsh/view.h"
 #include "gui/gmsh/window.h"
+#include "io/h5.h"
+#include "pre/model_report.h"
 #include "post/figures/figures.h"
 #include "post/figures/verdict.h"
 
-/* Lines of the table of softfall-pre (pre/model_report.c), in the order of the tree. */
-static const char *const lines[] = {
-    "nodes",
-    "cells",
-    "missile",
-    "equivalent drop height",
-    "impact point",
-    "spacing under missile",
-    "expected mesh error",
-    "first time step, at least",
-    "memory of the solver",
-    "typical run time",
+/* Keys of the report of softfall-pre (pre/model_report.c) that the tree shows, in its order. */
+static const char *const keys[SF_CHECK_ENTRIES] = {
+    "nodes",      "cells",      "missile", "drop_height", "impact_point", "spacing_under_missile",
+    "mesh_error", "first_step", "memory",  "run_time",
 };
-enum { LINES = sizeof lines / sizeof lines[0], COLUMN = 26 };
 
-static void name_entry(int k, char *name, size_t size) {
-    snprintf(name, size, "3Checks/%02d%s", k, lines[k]);
+sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err) {
+    sf_h5 *file = NULL;
+    char *text = NULL;
+    out->count = 0;
+    if (sf_h5_open(model, &file, err) == SF_OK)
+        sf_h5_read_text(file, "/provenance/report", &text, err);
+    for (int k = 0; text && k < SF_CHECK_ENTRIES; k++) {
+        sf_check_entry *e = &out->entry[out->count];
+        char name[SF_CHECK_NAME - 16];
+        if (!sf_model_report_find(text, keys[k], name, sizeof name, e->value, sizeof e->value))
+            continue; /* a prescribed motion has no drop height */
+        snprintf(e->name, sizeof e->name, "3Checks/%02d%s", k, name);
+        out->count++;
+    }
+    free(text);
+    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
+    sf_h5_close(&file, &ignored);
+    return err->status;
 }
 
-/* The value in a line that begins with the label and blanks up to the column. */
-static const char *find_value(const char *text, const char *label) {
-    size_t length = strlen(label);
-    for (const char *line = text; line && *line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL)
-        if (strncmp(line, label, length) == 0 && strspn(line + length, " ") == COLUMN - length)
-            return line + COLUMN;
-    return NULL;
-}
-
-void sf_checks_show(const char *text) {
-    for (int k = 0; k < LINES; k++) {
-        const char *value = find_value(text, lines[k]);
-        char name[80], shown[160];
-        name_entry(k, name, sizeof name);
-        if (!value)
-            continue;
-        snprintf(shown, sizeof shown, "%.*s", (int)strcspn(value, "\n"), value);
-        sf_window_put(&(sf_entry){.name = name, .kind = SF_ENTRY_SHOWN, .text = shown, .help = shown});
+void sf_checks_show(const sf_check_entries *checks) {
+    for (int k = 0; k < checks->count; k++) {
+        const sf_check_entry *e = &checks->entry[k];
+        sf_window_put(
+            &(sf_entry){.name = e->name, .kind = SF_ENTRY_SHOWN, .text = e->value, .help = e->value});
     }
 }
 
-void sf_checks_clear(void) {
-    for (int k = 0; k < LINES; k++) {
-        char name[80];
-        name_entry(k, name, sizeof name);
-        sf_window_remove(name);
-    }
+void sf_checks_clear(const sf_check_entries *checks) {
+    for (int k = 0; k < checks->count; k++)
+        sf_window_remove(checks->entry[k].name);
 }
 
 void sf_checks_sentence(const char *text, char *out, size_t size) {

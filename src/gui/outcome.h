@@ -7,10 +7,23 @@
 
 /* Shows the checks of softfall-pre, and the sentences of programs, from their output. */
 
-/* Puts the checks that the text of softfall-pre holds into the branch Checks of the tree. */
-void sf_checks_show(const char *text);
-/* Empties the branch. */
-void sf_checks_clear(void);
+enum { SF_CHECK_ENTRIES = 10, SF_CHECK_NAME = 80, SF_CHECK_VALUE = 200 };
+
+typedef struct sf_check_entry {
+    char name[SF_CHECK_NAME]; /* in the tree: "3Checks/00nodes" */
+    char value[SF_CHECK_VALUE];
+} sf_check_entry;
+
+typedef struct sf_check_entries {
+    int count;
+    sf_check_entry entry[SF_CHECK_ENTRIES];
+} sf_check_entries;
+
+/* Reads the checks that softfall-pre left in model.h5 (/provenance/report). */
+sf_status sf_checks_read(const char *model, sf_check_entries *checks, sf_error *err);
+/* Puts them into the branch Checks of the tree, and removes them from it. */
+void sf_checks_show(const sf_check_entries *checks);
+void sf_checks_clear(const sf_check_entries *checks);
 
 /* The last sentence of a program's output, without the program's name. */
 void sf_checks_sentence(const char *text, char *out, size_t size);

@@ -201,7 +201,7 @@ static void begin_anew(sf_session *s, bool reread) {
     sf_error err = SF_ERROR_INIT, geometry = SF_ERROR_INIT;
     s->activity = sf_activity_next(s->activity, SF_EDIT);
     s->at.path[0] = '\0';
-    sf_checks_clear();
+    sf_checks_clear(&s->checks);
     sf_plain_clear();
     if (reread) {
         sf_fields_mark(&s->fields, NULL); /* in the tree, before the fields are others */
@@ -517,10 +517,19 @@ static void fail(sf_session *s, const char *log, int code) {
     tell(s, true, sentence);
 }
 
+static void show_checks(sf_session *s) {
+    sf_error err = SF_ERROR_INIT;
+    sf_checks_clear(&s->checks);
+    if (sf_checks_read(s->at.model, &s->checks, &err) == SF_OK)
+        sf_checks_show(&s->checks);
+    else
+        tell_error(s, &err);
+}
+
 /* Shows the results of the program that has ended. */
-static void take_end(sf_session *s, sf_activity before, const char *log) {
-    if ((before == SF_MESHING || before == SF_PREPARING) && log && s->activity != SF_FAILED) {
-        sf_checks_show(log);
+static void take_end(sf_session *s, sf_activity before) {
+    if ((before == SF_MESHING || before == SF_PREPARING) && s->activity != SF_FAILED) {
+        show_checks(s);
         show_model(s);
     }
     if (before == SF_RUNNING || before == SF_STOPPING || before == SF_REPORTING)
@@ -552,7 +561,7 @@ static void end_program(sf_session *s, int code) {
     if (event == SF_CHILD_DONE && (before == SF_RUNNING || before == SF_STOPPING))
         sf_folder_remove_file(s->at.checkpoint); /* a run that has ended does not go on */
     s->activity = sf_activity_next(before, event);
-    take_end(s, before, log);
+    take_end(s, before);
     if (s->activity == SF_FAILED)
         fail(s, log, code);
     else if (sf_activity_is_busy(s->activity))

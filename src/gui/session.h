@@ -8,6 +8,7 @@
 #include "gui/gmsh/window.h"
 #include "gui/shape.h"
 #include "gui/activity.h"
+#include "gui/outcome.h"
 #include "gui/children.h"
 #include "io/process.h"
 
@@ -25,9 +26,10 @@ typedef struct sf_session {
     sf_fields fields;
     sf_watch watch; /* what was read of the case and its geometries */
     sf_activity activity;
-    char sentence[1100]; /* the last one told */
-    bool failed;         /* it is an error */
-    bool with_missile;   /* the missile has a geometry of its own */
+    sf_check_entries checks; /* in the tree */
+    char sentence[1100];     /* the last one told */
+    bool failed;             /* it is an error */
+    bool with_missile;       /* the missile has a geometry of its own */
     sf_session_place place;
     double next_look; /* s, at the program that runs and the files */
 

@@ -33,6 +33,7 @@ sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenan
         {"/provenance/case_text", p->case_text, "case file as used"},
         {"/provenance/parameters", p->parameters, "every parameter as used"},
         {"/provenance/mesh_hash", p->mesh_hash, "FNV-1a of positions and cells"},
+        {"/provenance/report", p->report, "report of softfall-pre: key, name and value of each line"},
         {"/provenance/geometry_files", p->geometry_files,
          "files that the geometry read, with the FNV-1a of their contents"},
         {"/provenance/model_path", p->model_path, "model file that was solved"},

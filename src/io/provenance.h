@@ -20,6 +20,7 @@ typedef struct sf_provenance {
     const char *case_text;
     const char *parameters;
     const char *mesh_hash;
+    const char *report;         /* of softfall-pre, a line each: key, name, value (docs/formats.md) */
     const char *geometry_files; /* a line each: hash, path (docs/formats.md) */
     const char *model_path;     /* of the solver */
     const char *model_hash;     /* sf_model_hash, 16 hex digits */

@@ -6,55 +6,83 @@
 #include "base/units.h"
 #include "pre/impact.h"
 #include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
  * that rebounds half-way to the end time, over those that the guaranteed steps would need to the end. */
 static const double RATE = 3.5e6, TYPICAL = 0.32;
 
-static void print_range(FILE *out, const char *name, const double *value, int64_t count, double scale,
-                        const char *unit) {
-    double low = INFINITY, high = -INFINITY, sum = 0;
-    for (int64_t i = 0; i < count; i++) {
-        low = fmin(low, value[i]);
-        high = fmax(high, value[i]);
-        sum += value[i];
-    }
-    fprintf(out, "%-26s%.3f to %.3f %s, mean %.3f\n", name, scale * low, scale * high, unit,
-            scale * sum / (double)count);
+/* Adds a line; what does not fit is cut. */
+static void __attribute__((format(printf, 4, 5)))
+add(sf_model_report *out, const char *key, const char *name, const char *format, ...) {
+    va_list arguments;
+    if (out->count == SF_MODEL_REPORT_LINES)
+        return;
+    sf_report_line *line = &out->line[out->count++];
+    line->key = key;
+    line->name = name;
+    va_start(arguments, format);
+    vsnprintf(line->value, sizeof line->value, format, arguments);
+    va_end(arguments);
 }
 
-static void print_neighbours(FILE *out, const sf_model *m) {
+/* Appends to the value of the last line. */
+static void __attribute__((format(printf, 2, 3))) append(sf_model_report *out, const char *format, ...) {
+    va_list arguments;
+    sf_report_line *line = &out->line[out->count - 1];
+    size_t used = strlen(line->value);
+    va_start(arguments, format);
+    vsnprintf(line->value + used, sizeof line->value - used, format, arguments);
+    va_end(arguments);
+}
+
+static void add_spacing(sf_model_report *out, const sf_model *m) {
+    double low = INFINITY, high = -INFINITY, sum = 0;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        low = fmin(low, m->spacing[i]);
+        high = fmax(high, m->spacing[i]);
+        sum += m->spacing[i];
+    }
+    add(out, "nodal_spacing", "nodal spacing", "%.3f to %.3f mm, mean %.3f", 1e3 * low, 1e3 * high,
+        1e3 * sum / (double)m->node_count);
+}
+
+static void add_neighbours(sf_model_report *out, const sf_model *m) {
     int64_t low = INT64_MAX, high = 0;
     for (int64_t i = 0; i < m->node_count; i++) {
         int64_t count = m->domain_ptr[i + 1] - m->domain_ptr[i] - 1;
         low = count < low ? count : low;
         high = count > high ? count : high;
     }
-    fprintf(out, "%-26s%lld to %lld, mean %.1f\n", "neighbours of a domain", (long long)low, (long long)high,
-            (double)m->domain_nnz / (double)m->node_count - 1);
+    add(out, "neighbours", "neighbours of a domain", "%lld to %lld, mean %.1f", (long long)low,
+        (long long)high, (double)m->domain_nnz / (double)m->node_count - 1);
 }
 
-static void print_impact(FILE *out, const sf_model *m) {
+static void add_impact(sf_model_report *out, const sf_model *m) {
     double speed = m->missile.speed, energy = 0.5 * m->missile.mass * speed * speed;
-    fprintf(out, "%-26s%.4g kg at %.4g m/s: kinetic energy %.4g J, momentum %.4g kg m/s\n", "missile",
-            m->missile.mass, speed, energy, m->missile.mass * speed);
-    fprintf(out, "%-26s%.4g m in free fall\n", "equivalent drop height",
-            speed * speed / (2 * SF_STANDARD_GRAVITY));
+    add(out, "missile", "missile", "%.4g kg at %.4g m/s: kinetic energy %.4g J, momentum %.4g kg m/s",
+        m->missile.mass, speed, energy, m->missile.mass * speed);
+    add(out, "drop_height", "equivalent drop height", "%.4g m in free fall",
+        speed * speed / (2 * SF_STANDARD_GRAVITY));
 }
 
-static void print_freedom(FILE *out, const sf_model *m) {
+static void add_freedom(sf_model_report *out, const sf_model *m) {
     const sf_missile_card *card = &m->missile;
     double p[3];
     sf_missile_inertia_is_possible(card->inertia, p);
-    fprintf(out, "%-26scentre of mass (%.5g, %.5g, %.5g) mm, principal moments %.5g, %.5g, %.5g kg cm2\n",
-            "missile, free", 1e3 * card->centre[0], 1e3 * card->centre[1], 1e3 * card->centre[2], 1e4 * p[0],
-            1e4 * p[1], 1e4 * p[2]);
+    add(out, "missile_free", "missile, free",
+        "centre of mass (%.5g, %.5g, %.5g) mm, principal moments %.5g, %.5g, %.5g kg cm2",
+        1e3 * card->centre[0], 1e3 * card->centre[1], 1e3 * card->centre[2], 1e4 * p[0], 1e4 * p[1],
+        1e4 * p[2]);
 }
 
-static void print_motion(FILE *out, const sf_model *m) {
+static void add_motion(sf_model_report *out, const sf_model *m) {
     const sf_motion_range range = sf_motion_measure(m);
-    fprintf(out, "%-26sprescribed motion of %lld points to %.4g ms, to %.4g mm, at most %.4g m/s\n",
-            "missile", (long long)range.points, 1e3 * range.end_time, 1e3 * range.displacement, range.speed);
+    add(out, "missile", "missile",
+        "prescribed motion of %lld points to %.4g ms, to %.4g mm, at most %.4g m/s", (long long)range.points,
+        1e3 * range.end_time, 1e3 * range.displacement, range.speed);
 }
 
 /* m3, of the nodes of material k; of a model with one material that of the mesh itself. */
@@ -68,7 +96,7 @@ static double volume_of(const sf_model *m, const sf_build_report *r, int64_t k) 
 }
 
 /* Prints the mass properties of a missile that is drawn whole and closed. */
-static void print_body(FILE *out, const sf_model *m) {
+static void add_body(sf_model_report *out, const sf_model *m) {
     sf_solid solid;
     sf_error open = SF_ERROR_INIT;
     double lowest[3];
@@ -80,47 +108,48 @@ static void print_body(FILE *out, const sf_model *m) {
                          m->surface_triangle, &solid, &open) != SF_OK)
         return;
     sf_impact_lowest(&missile, &m->missile, lowest);
-    fprintf(out, "%-26s%.4g cm3, its centroid %.4g mm above its lowest point", "missile body",
-            1e6 * solid.volume, 1e3 * (solid.centroid[2] - lowest[2]));
+    add(out, "missile_body", "missile body", "%.4g cm3, its centroid %.4g mm above its lowest point",
+        1e6 * solid.volume, 1e3 * (solid.centroid[2] - lowest[2]));
     if (m->missile.mass > 0)
-        fprintf(out, "; if uniform %.4g kg/m3", m->missile.mass / solid.volume);
-    fputc('\n', out);
+        append(out, "; if uniform %.4g kg/m3", m->missile.mass / solid.volume);
 }
 
-static void print_masses(FILE *out, const sf_model *m, const sf_build_report *r) {
+static void add_masses(sf_model_report *out, const sf_model *m, const sf_build_report *r) {
     double mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
     for (int64_t i = 0; i < m->node_count; i++)
         mass += m->mass[i];
     for (int64_t k = 0; k < m->material_count; k++)
         parts += sf_material_density(&m->material[k]) * volume_of(m, r, k);
-    fprintf(out, "%-26s%.6f kg modelled; density x volume = %.6f kg (difference %.1e)\n", "pad mass", mass,
-            parts, mass / parts - 1);
-    fprintf(out, "%-26s%.1f x %.6g cm3, thickness %.4g mm\n", "pad volume", whole, 1e6 * volume,
-            1e3 * m->thickness);
+    add(out, "pad_mass", "pad mass", "%.6f kg modelled; density x volume = %.6f kg (difference %.1e)", mass,
+        parts, mass / parts - 1);
+    add(out, "pad_volume", "pad volume", "%.1f x %.6g cm3, thickness %.4g mm", whole, 1e6 * volume,
+        1e3 * m->thickness);
     if (sf_missile_is_driven(m))
-        print_motion(out, m);
+        add_motion(out, m);
     else
-        print_impact(out, m);
+        add_impact(out, m);
     if (sf_missile_turns(m))
-        print_freedom(out, m);
+        add_freedom(out, m);
     if (m->missile.shape == SF_SHAPE_SPHERE)
-        fprintf(out, "%-26sexact sphere cap, radius %.5g mm\n", "missile contact",
-                1e3 * m->missile.sphere_radius);
+        add(out, "missile_contact", "missile contact", "exact sphere cap, radius %.5g mm",
+            1e3 * m->missile.sphere_radius);
     else
-        fprintf(out, "%-26s%lld triangles\n", "missile contact", (long long)m->surface_triangle_count);
-    print_body(out, m);
-    fprintf(out, "%-26s(%.4g, %.4g) mm: there the missile's lowest point arrives\n", "impact point",
-            1e3 * m->missile.impact[0] + 0.0, 1e3 * m->missile.impact[1] + 0.0);
+        add(out, "missile_contact", "missile contact", "%lld triangles",
+            (long long)m->surface_triangle_count);
+    add_body(out, m);
+    add(out, "impact_point", "impact point", "(%.4g, %.4g) mm: there the missile's lowest point arrives",
+        1e3 * m->missile.impact[0] + 0.0, 1e3 * m->missile.impact[1] + 0.0);
 }
 
-static void print_mesh_error(FILE *out, const sf_model *m, const sf_contact_zone *zone) {
-    fprintf(out, "%-26s%.4g mm; contact zone %.4g cm2, half width %.4g mm\n", "spacing under missile",
-            1e3 * zone->spacing, 1e4 * zone->area, 1e3 * zone->half_width);
+static void add_mesh_error(sf_model_report *out, const sf_model *m, const sf_contact_zone *zone) {
+    add(out, "spacing_under_missile", "spacing under missile",
+        "%.4g mm; contact zone %.4g cm2, half width %.4g mm", 1e3 * zone->spacing, 1e4 * zone->area,
+        1e3 * zone->half_width);
     if (m->expected_mesh_error > 0)
-        fprintf(out, "%-26sabout %.2g %% of a_max, from the spacing\n", "expected mesh error",
-                100 * m->expected_mesh_error);
+        add(out, "mesh_error", "expected mesh error", "about %.2g %% of a_max, from the spacing",
+            100 * m->expected_mesh_error);
     else
-        fprintf(out, "%-26snot estimated\n", "expected mesh error");
+        add(out, "mesh_error", "expected mesh error", "not estimated");
 }
 
 static double first_step(const sf_model *m, const sf_build_report *r) {
@@ -135,45 +164,79 @@ double sf_report_seconds(const sf_model *m, const sf_build_report *r) {
     return expected_steps(m, r) * (double)m->node_count / RATE;
 }
 
-static void print_cost(FILE *out, const sf_model *m, const sf_build_report *r) {
+static void add_cost(sf_model_report *out, const sf_model *m, const sf_build_report *r) {
     double step = first_step(m, r), steps = expected_steps(m, r), n = (double)m->node_count;
     double bytes = 26 * (double)m->domain_nnz + 12 * (double)m->phi_nnz + 7 * (double)m->edge_nnz + 541 * n +
                    720 * (double)(m->fixed_count + sf_model_points(m));
-    fprintf(out, "%-26s%.2f us (bound %.2f us)\n", "first time step, at least", 1e6 * step,
-            1e6 * r->first_step);
-    fprintf(out, "%-26s%.0f MB (%.2f kB per node)\n", "memory of the solver", bytes / 1e6, bytes / n / 1e3);
-    fprintf(out, "%-26s%.0f s on two cores, for about %.0f steps (to a factor of 2)\n", "typical run time",
-            sf_report_seconds(m, r), steps);
+    add(out, "first_step", "first time step, at least", "%.2f us (bound %.2f us)", 1e6 * step,
+        1e6 * r->first_step);
+    add(out, "memory", "memory of the solver", "%.0f MB (%.2f kB per node)", bytes / 1e6, bytes / n / 1e3);
+    add(out, "run_time", "typical run time", "%.0f s on two cores, for about %.0f steps (to a factor of 2)",
+        sf_report_seconds(m, r), steps);
 }
 
-void sf_report_print(FILE *out, const sf_model *m, const sf_build_report *r) {
-    fprintf(out, "%-26s%lld, 1/%lld of the pad\n", "nodes", (long long)m->node_count,
-            (long long)m->symmetry_factor);
-    fprintf(out, "%-26s%lld hexahedra, %lld pyramids, %lld prisms, %lld tetrahedra\n", "cells",
-            (long long)r->cells[SF_CELL_HEXAHEDRON], (long long)r->cells[SF_CELL_PYRAMID],
-            (long long)r->cells[SF_CELL_PRISM], (long long)r->cells[SF_CELL_TETRAHEDRON]);
+void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_report *out) {
+    out->count = 0;
+    add(out, "nodes", "nodes", "%lld, 1/%lld of the pad", (long long)m->node_count,
+        (long long)m->symmetry_factor);
+    add(out, "cells", "cells", "%lld hexahedra, %lld pyramids, %lld prisms, %lld tetrahedra",
+        (long long)r->cells[SF_CELL_HEXAHEDRON], (long long)r->cells[SF_CELL_PYRAMID],
+        (long long)r->cells[SF_CELL_PRISM], (long long)r->cells[SF_CELL_TETRAHEDRON]);
     if (r->orphan_count > 0)
-        fprintf(out, "%-26s%lld nodes that no cell uses\n", "left out", (long long)r->orphan_count);
-    print_range(out, "nodal spacing", m->spacing, m->node_count, 1e3, "mm");
-    print_neighbours(out, m);
-    fprintf(out, "%-26s%.3g at (%.4g, %.4g, %.4g) mm\n", "worst conditioning", r->worst_condition,
-            1e3 * r->worst_position[0], 1e3 * r->worst_position[1], 1e3 * r->worst_position[2]);
+        add(out, "left_out", "left out", "%lld nodes that no cell uses", (long long)r->orphan_count);
+    add_spacing(out, m);
+    add_neighbours(out, m);
+    add(out, "conditioning", "worst conditioning", "%.3g at (%.4g, %.4g, %.4g) mm", r->worst_condition,
+        1e3 * r->worst_position[0], 1e3 * r->worst_position[1], 1e3 * r->worst_position[2]);
     if (r->enlarged_count > 0)
-        fprintf(out, "%-26sat %lld nodes, by up to %.2f\n", "support enlarged", (long long)r->enlarged_count,
-                r->largest_enlargement);
+        add(out, "support_enlarged", "support enlarged", "at %lld nodes, by up to %.2f",
+            (long long)r->enlarged_count, r->largest_enlargement);
     if (r->hidden_count > 0)
-        fprintf(out, "%-26s%lld nodes, the nearest %.3g mm apart\n", "across slits and gaps",
-                (long long)r->hidden_count, 1e3 * r->hidden_distance);
-    fprintf(out, "%-26ssum B %.1e, sum X B %.1e, volume %.1e, telescoping %.1e, phi %.1e\n", "invariants",
-            r->invariants.unity, r->invariants.linear, r->invariants.volume, r->invariants.telescope,
-            r->invariants.shape);
-    fprintf(out, "%-26s%lld held, %lld may be touched", "boundary nodes", (long long)m->fixed_count,
-            (long long)m->contact_count);
+        add(out, "hidden_nodes", "across slits and gaps", "%lld nodes, the nearest %.3g mm apart",
+            (long long)r->hidden_count, 1e3 * r->hidden_distance);
+    add(out, "invariants", "invariants", "sum B %.1e, sum X B %.1e, volume %.1e, telescoping %.1e, phi %.1e",
+        r->invariants.unity, r->invariants.linear, r->invariants.volume, r->invariants.telescope,
+        r->invariants.shape);
+    add(out, "boundary_nodes", "boundary nodes", "%lld held, %lld may be touched", (long long)m->fixed_count,
+        (long long)m->contact_count);
     if (m->rest_count > 0)
-        fprintf(out, ", %lld rest on the anvil", (long long)m->rest_count);
-    fputc('\n', out);
-    print_masses(out, m, r);
-    print_mesh_error(out, m, &r->zone);
-    print_cost(out, m, r);
-    fprintf(out, "%-26s%s\n", "mesh hash", r->mesh_hash);
+        append(out, ", %lld rest on the anvil", (long long)m->rest_count);
+    add_masses(out, m, r);
+    add_mesh_error(out, m, &r->zone);
+    add_cost(out, m, r);
+    add(out, "mesh_hash", "mesh hash", "%s", r->mesh_hash);
+}
+
+void sf_model_report_print(FILE *out, const sf_model_report *report) {
+    for (int k = 0; k < report->count; k++)
+        fprintf(out, "%-26s%s\n", report->line[k].name, report->line[k].value);
+}
+
+char *sf_model_report_text(const sf_model_report *report, sf_error *err) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    for (int k = 0; out && k < report->count; k++)
+        fprintf(out, "%s\t%s\t%s\n", report->line[k].key, report->line[k].name, report->line[k].value);
+    if (!out || fclose(out) != 0) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the report of the model");
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+bool sf_model_report_find(const char *text, const char *key, char *name, size_t name_size, char *value,
+                          size_t value_size) {
+    size_t length = strlen(key);
+    for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n') {
+        if (strncmp(line, key, length) != 0 || line[length] != '\t')
+            continue;
+        const char *own = line + length + 1, *shown = own + strcspn(own, "\t\n");
+        shown += *shown == '\t';
+        snprintf(name, name_size, "%.*s", (int)strcspn(own, "\t\n"), own);
+        snprintf(value, value_size, "%.*s", (int)strcspn(shown, "\n"), shown);
+        return true;
+    }
+    return false;
 }

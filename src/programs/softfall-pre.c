@@ -62,6 +62,8 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
     sf_case c = {0};
     sf_model model = {0};
     sf_build_report report;
+    sf_model_report table;
+    char *text = NULL;
     char libraries[SF_LIBRARIES_SIZE];
     const sf_sink sink = sf_program_sink("softfall-pre");
     SF_TRY(sf_replace_check(o->output, err));
@@ -75,17 +77,21 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
         sf_replace_check(o->output, err) != SF_OK) /* nor of what a geometry names */
         goto done;
     sf_replace_clean(o->output);
-    sf_report_print(stdout, &model, &report);
+    sf_model_report_make(&model, &report, &table);
+    sf_model_report_print(stdout, &table);
+    text = sf_model_report_text(&table, err);
     sf_provenance provenance = {.program = "softfall-pre",
                                 .command_line = command,
                                 .libraries = libraries,
                                 .case_text = c.text,
                                 .parameters = c.parameters,
                                 .mesh_hash = report.mesh_hash,
+                                .report = text,
                                 .geometry_files = c.geometry_files};
-    if (sf_model_write(o->output, &model, &provenance, err) == SF_OK)
+    if (text && sf_model_write(o->output, &model, &provenance, err) == SF_OK)
         printf("%-26s%s\n", "written", o->output);
 done:
+    free(text);
     sf_model_free(&model);
     sf_case_free(&c);
     return err->status;
