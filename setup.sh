@@ -153,7 +153,8 @@ demo)
     demo
     ;;
 test)
-    install_packages build run show test
+    # Where no test may be skipped, Snakemake is needed too.
+    install_packages build run show test ${SF_NO_SKIP:+cluster}
     build
     # One test per core and one thread per test; tests of threading set their own number.
     OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(processors)"

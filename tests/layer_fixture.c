@@ -2,7 +2,12 @@
 #include "layer_fixture.h"
 
 #include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdlib.h>
+#include <cmocka.h>
 
 void layers_assign(const fixture_block *block, layering layer, sf_mesh *mesh) {
     double h = block->spacing, flat = block->flatness > 0 ? block->flatness : 1;
@@ -29,6 +34,32 @@ void layers_make(sf_case *c, int count) {
         sf_case_free(&again);
         c->layer[k].name[0] = (char)('A' + k);
     }
+}
+
+void layers_case(sf_case *c, const char *const *overrides, const char *const *held, int count) {
+    fixture_case(c, overrides);
+    fixture_hold(c, held);
+    layers_make(c, count);
+}
+
+void layers_under_plate(sf_case *c, const fixture_block *block, layering layer, fixture *out) {
+    sf_mesh mesh;
+    sf_surface surface;
+    fixture_block_mesh(block, &mesh);
+    layers_assign(block, layer, &mesh);
+    fixture_plate(1, 0, 0, &surface);
+    fixture_build(c, &mesh, &surface, out);
+}
+
+double layers_stress(const sf_material *material, double strain) {
+    sf_error err = SF_ERROR_INIT;
+    sf_material_law law;
+    sf_uniaxial point = {0};
+    if (sf_material_law_build(material, &law, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    double stress = law.law->uniaxial(law.numbers, 1, strain, &point);
+    sf_material_law_free(&law);
+    return stress;
 }
 
 static void drop_losses(sf_foam_card *card) {

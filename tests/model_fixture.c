@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model_fixture.h"
 
+#include "extreme.h"
+
 #include "pre/mesh/gmsh_session.h"
 #include "solver/field/domain_stress.h"
 #include "solver/field/stabilisation.h"
@@ -100,6 +102,19 @@ void fixture_hold(sf_case *c, const char *const *names) {
     c->fixed_count = 0;
     for (; names[c->fixed_count]; c->fixed_count++)
         snprintf(c->fixed_group[c->fixed_count], SF_CASE_NAME_SIZE, "%s", names[c->fixed_count]);
+}
+
+void fixture_mirror(sf_case *c, int count) {
+    for (c->symmetry_count = 0; c->symmetry_count < count; c->symmetry_count++)
+        snprintf(c->symmetry_group[c->symmetry_count], SF_CASE_NAME_SIZE, "plane_%c",
+                 'x' + c->symmetry_count);
+}
+
+void fixture_slant(sf_case *c, double slant) {
+    double *direction = c->missile_card.direction;
+    direction[0] = sin(slant);
+    direction[1] = 0;
+    direction[2] = -cos(slant);
 }
 
 void fixture_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface) {
@@ -286,6 +301,24 @@ void fixture_pad(const char *const *overrides, fixture *out) {
     fixture_build(&c, &mesh, &surface, out);
 }
 
+void fixture_under_plate(sf_case *c, const fixture_block *block, double side, double x, double y,
+                         fixture *out) {
+    sf_mesh mesh;
+    sf_surface surface;
+    fixture_block_mesh(block, &mesh);
+    fixture_plate(side, x, y, &surface);
+    fixture_build(c, &mesh, &surface, out);
+}
+
+void fixture_under_dome(sf_case *c, const fixture_block *block, double radius, int rings, double x, double y,
+                        fixture *out) {
+    sf_mesh mesh;
+    sf_surface surface;
+    fixture_block_mesh(block, &mesh);
+    fixture_dome(radius, rings, x, y, &surface);
+    fixture_build(c, &mesh, &surface, out);
+}
+
 void fixture_hold_mesh(sf_mesh *mesh, fixture *out) {
     sf_case c;
     sf_surface surface;
@@ -358,4 +391,24 @@ void fixture_set_affine(fixture *f, const double gradient[9], const double shift
 void fixture_step(fixture *f) {
     sf_error err = SF_ERROR_INIT;
     require(sf_step_evaluate(&f->model, &f->operators, &f->state, &err), &err);
+}
+
+void fixture_advance(fixture *f) {
+    fixture_step(f);
+    sf_step_advance(&f->model, &f->state);
+}
+
+double fixture_held_acceleration(fixture *f, const sf_constraint *constraint) {
+    const sf_model *m = &f->model;
+    sf_state *s = &f->state;
+    sf_constraint_step step = {.force = s->force, .v = s->v, .dt = 1e-5, .reaction = s->reaction};
+    double free_motion = 0, held_motion = 0;
+    sf_constraint_project(constraint, &step);
+    for (int64_t k = 0; k < 3 * m->node_count; k++) {
+        free_motion = larger(free_motion, fabs(s->force[k]) / m->mass[k / 3]);
+        held_motion = larger(held_motion, fabs(s->force[k] - s->reaction[k]) / m->mass[k / 3]);
+    }
+    if (!(free_motion > 0))
+        fail_msg("no forces act");
+    return held_motion / free_motion;
 }

@@ -47,6 +47,10 @@ void fixture_make_linear(sf_case *c);
 void fixture_make_elastic(sf_case *c);
 /* Holds exactly these node sets, up to NULL; no symmetry planes. */
 void fixture_hold(sf_case *c, const char *const *names);
+/* Makes the first `count` of plane_x and plane_y symmetry planes. */
+void fixture_mirror(sf_case *c, int count);
+/* Directs the missile down, turned by `slant` (rad) towards +x. */
+void fixture_slant(sf_case *c, double slant);
 
 /* Pad and missile surface of the case's geometry. */
 void fixture_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface);
@@ -63,6 +67,11 @@ void fixture_dome(double radius, int rings, double x, double y, sf_surface *surf
 /* Builds the model; case, mesh and surface are released. The solver's parts stay empty until fixture_start.
  */
 void fixture_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, fixture *out);
+/* Builds a block under a plate or a dome as above; the case is released. */
+void fixture_under_plate(sf_case *c, const fixture_block *block, double side, double x, double y,
+                         fixture *out);
+void fixture_under_dome(sf_case *c, const fixture_block *block, double radius, int rings, double x, double y,
+                        fixture *out);
 /* The real pad with `overrides` of the example case. */
 void fixture_pad(const char *const *overrides, fixture *out);
 /* A block under a plate, all its surface held. */
@@ -83,7 +92,12 @@ double fixture_pair_weight(const sf_model *m, int64_t i, int64_t j);
 double fixture_pairs(const fixture *f, const double *stiffness, int64_t i, double force[3], double couple[9]);
 /* d = gradient X + shift. */
 void fixture_set_affine(fixture *f, const double gradient[9], const double shift[3]);
-/* One evaluated step; fails the test with the solver's sentence. */
+/* Evaluates one step; fails the test with the solver's sentence. */
 void fixture_step(fixture *f);
+/* Evaluates one step and moves on to the next time. */
+void fixture_advance(fixture *f);
+/* Largest acceleration behind the projection to the constraints, over the largest that the forces alone give.
+ */
+double fixture_held_acceleration(fixture *f, const sf_constraint *constraint);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Batches of drops: the manifest, its groups, drops that failed, and the engines. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include "study/engine.h"
@@ -367,10 +368,7 @@ static void snakemake_finishes_what_was_begun_here(void **state) {
     sf_error failure[DROPS];
     char here[600], there[600];
     const sf_runner_engine local = {0}, snakemake = {.name = "snakemake", .per_job = 2};
-    if (program_shell(p, "command -v snakemake").code != 0) {
-        print_message("snakemake is not installed\n");
-        skip();
-    }
+    check_programs("snakemake");
     snprintf(here, sizeof here, "%s/here", p->folder);
     snprintf(there, sizeof there, "%s/there", p->folder);
     list_drops(drop);
@@ -440,10 +438,7 @@ static void snakemake_holds_the_folder_until_it_ends(void **state) {
     sf_error failure[DROPS], err = SF_ERROR_INIT;
     char folder[600];
     int lock = -1, status;
-    if (program_shell(p, "command -v snakemake").code != 0) {
-        print_message("snakemake is not installed\n");
-        skip();
-    }
+    check_programs("snakemake");
     snprintf(folder, sizeof folder, "%s/interrupted", p->folder);
     pid_t child = begin_elsewhere(p, folder);
     kill(child, SIGTERM);

@@ -2,6 +2,7 @@
 /* Charts: gnuplot draws every kind of series and mark, the script runs alone from another folder, a series
  * without a number is left out, no text reaches gnuplot as a command, and without gnuplot there is a warning.
  */
+#include "check.h"
 #include "program_fixture.h"
 
 #include "report/chart.h"
@@ -63,8 +64,7 @@ static void every_kind_is_drawn(void **state) {
     sf_error err;
     sf_staging output;
     char warning[320];
-    if (program_shell(p, "command -v gnuplot").code != 0)
-        skip();
+    check_programs("gnuplot");
     begin(p, &output, &err);
     sf_chart *chart = make_chart(&err);
     assert_int_equal(sf_chart_write(chart, &output, warning, sizeof warning, &err), SF_OK);
@@ -95,8 +95,7 @@ static void a_chart_for_a_page_leaves_no_file(void **state) {
     sf_error err;
     sf_staging output;
     char warning[320];
-    if (program_shell(p, "command -v gnuplot").code != 0)
-        skip();
+    check_programs("gnuplot");
     begin(p, &output, &err);
     sf_chart *chart = make_chart(&err);
     char *svg = sf_chart_page(chart, &output, "softfall-test", warning, sizeof warning, &err);

@@ -41,20 +41,14 @@ static void start_cube(fixture *f, double friction, int count, const double *tim
                        const double *displacement) {
     const fixture_block block = {.cells = {3, 3, 5}, .spacing = 0.01};
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     fixture_case(&c, NULL);
     fixture_hold(&c, (const char *const[]){"base", NULL});
-    c.symmetry_count = 2;
+    fixture_mirror(&c, 2);
     c.symmetry_given = true;
-    strcpy(c.symmetry_group[0], "plane_x");
-    strcpy(c.symmetry_group[1], "plane_y");
     sf_foam_card_of(&c.material)->maxwell_modulus = 0;
     c.missile_card.friction = friction;
     drive(&c, count, time, displacement);
-    fixture_block_mesh(&block, &mesh);
-    fixture_plate(0.2, 0, 0, &surface);
-    fixture_build(&c, &mesh, &surface, f);
+    fixture_under_plate(&c, &block, 0.2, 0, 0, f);
     fixture_start(f);
 }
 

@@ -230,16 +230,12 @@ static void wide_kernels_hold_or_are_refused(void **state) {
     for (size_t k = 0; k < sizeof ratio / sizeof ratio[0]; k++) {
         const fixture_block block = {.cells = {6, 6, 5}, .spacing = 0.01, .jitter = 0.1};
         sf_case c;
-        sf_mesh mesh;
-        sf_surface surface;
         sf_error err = SF_ERROR_INIT;
         int64_t rows;
         fixture f;
         fixture_case(&c, (const char *const[]){ratio[k], NULL});
         fixture_hold(&c, (const char *const[]){"base", NULL});
-        fixture_block_mesh(&block, &mesh);
-        fixture_plate(1, 0, 0, &surface);
-        fixture_build(&c, &mesh, &surface, &f);
+        fixture_under_plate(&c, &block, 1, 0, 0, &f);
         if (sf_operators_build(&f.model, &f.operators, &err) == SF_OK) {
             projection p = project(&f, 8);
             advance(&f, &p);

@@ -22,18 +22,12 @@
 static void start_press(fixture *f, double slant, double friction) {
     const fixture_block block = {.cells = {5, 5, 6}, .spacing = 0.01, .jitter = 0.1, .surface_jitter = 0.05};
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     fixture_case(&c, NULL);
     fixture_hold(&c, (const char *const[]){"base", NULL});
     c.missile_card.mass = 0.5;
     c.missile_card.friction = friction;
-    c.missile_card.direction[0] = sin(slant);
-    c.missile_card.direction[1] = 0;
-    c.missile_card.direction[2] = -cos(slant);
-    fixture_block_mesh(&block, &mesh);
-    fixture_plate(0.5, 0.025, 0.025, &surface);
-    fixture_build(&c, &mesh, &surface, f);
+    fixture_slant(&c, slant);
+    fixture_under_plate(&c, &block, 0.5, 0.025, 0.025, f);
     fixture_start(f);
 }
 
@@ -92,8 +86,7 @@ static void pad_and_missile_exchange_equal_and_opposite_momentum(void **state) {
         const sf_model *m = &f.model;
         sf_state *s = &f.state;
         while (s->time < 0.6e-3) {
-            fixture_step(&f);
-            sf_step_advance(m, s);
+            fixture_advance(&f);
         }
         fixture_forces(&f);
         size_t bytes = 3 * (size_t)m->node_count * sizeof *s->force;
@@ -126,8 +119,7 @@ static void pressure_of_a_frame_adds_up_to_the_normal_force(void **state) {
     const sf_model *m = &f.model;
     sf_state *s = &f.state;
     while (s->time < 0.6e-3) {
-        fixture_step(&f);
-        sf_step_advance(m, s);
+        fixture_advance(&f);
     }
     fixture_step(&f);
     double *pressure = malloc((size_t)m->node_count * sizeof *pressure), sum = 0;
@@ -226,8 +218,7 @@ static void sliding_friction_loses_energy(void **state) {
     fixture f;
     start_press(&f, 0.5, 0.05);
     while (f.state.time < 1.2e-3) {
-        fixture_step(&f);
-        sf_step_advance(&f.model, &f.state);
+        fixture_advance(&f);
     }
     assert_true(f.state.ledger.friction > 1e-3 * f.state.ledger.reference);
     assert_close(f.state.ledger.contact / f.state.ledger.reference, 0, 0.01);

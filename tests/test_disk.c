@@ -5,6 +5,7 @@
  *
  * The full disk is a small tmpfs in a mount namespace of the command's own (unshare), which only root can
  * have; anyone else sees those tests skipped. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include "io/folder.h"
@@ -33,22 +34,21 @@ static void assert_says(const program_result *r, const char *program, const char
         fail_msg("no sentence of %s with \"%s\": %s", begin, part, r->err);
 }
 
-/* HDF5 does not release a file that it could not close: leaks are not looked for here. Runs the words with a
- * tmpfs of `kilobytes` on full/, after `before`; then `after` looks at it. True unless there is no such mount
- * here. */
-static bool run_on_small_disk(const program_place *p, int kilobytes, const char *before, const char *program,
+/* Runs the program's words with a tmpfs of `kilobytes` on full/ after the command `before`, and then the
+ * command `after`, whose output goes to `seen`. Skips the test where no tmpfs can be mounted. HDF5 does not
+ * release a file that it cannot close: the sanitizer looks for no leaks here. */
+static void run_on_small_disk(const program_place *p, int kilobytes, const char *before, const char *program,
                               const char *words, const char *after, program_result *result,
                               program_result *seen) {
     program_result root = program_shell(p, "mkdir -p full && unshare -m true");
     if (geteuid() != 0 || root.code != 0)
-        return false;
+        check_skip_refused("a tmpfs of one's own needs root and the right to mount");
     *result = program_shell(
         p,
         "unshare -m sh -c \"mount -t tmpfs -o size=%dk none full && %s && "
         "{ ASAN_OPTIONS=detect_leaks=0 '%s/softfall-%s' %s; code=\\$?; (%s) > seen 2>&1; exit \\$code; }\"",
         kilobytes, before, getenv("SF_BIN_DIR"), program, words, after);
     *seen = program_shell(p, "cat seen");
-    return true;
 }
 
 static void full_disk_is_told_and_spares_the_earlier_files(void **state) {
@@ -68,11 +68,8 @@ static void full_disk_is_told_and_spares_the_earlier_files(void **state) {
     };
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         program_result result, seen;
-        if (!run_on_small_disk(p, rows[k].kilobytes, rows[k].before, rows[k].program, rows[k].words,
-                               rows[k].after, &result, &seen)) {
-            print_message("skipped: a tmpfs of one's own needs root\n");
-            skip();
-        }
+        run_on_small_disk(p, rows[k].kilobytes, rows[k].before, rows[k].program, rows[k].words, rows[k].after,
+                          &result, &seen);
         assert_says(&result, rows[k].program, rows[k].part);
         if (strcmp(rows[k].program, "solve") == 0)
             continue;
@@ -92,11 +89,8 @@ static void folder_that_may_not_be_written_is_told(void **state) {
         const char *program, *words;
     } rows[] = {{"pre", pre}, {"solve", "model.h5 -o full/results.h5"}, {"post", "results.h5 -o full"}};
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
-        if (!run_on_small_disk(p, 100, "mount -o remount,ro full", rows[k].program, rows[k].words, "ls full",
-                               &result, &seen)) {
-            print_message("skipped: a tmpfs of one's own needs root\n");
-            skip();
-        }
+        run_on_small_disk(p, 100, "mount -o remount,ro full", rows[k].program, rows[k].words, "ls full",
+                          &result, &seen);
         assert_says(&result, rows[k].program, "Read-only file system");
         assert_string_equal(seen.out, "");
     }
@@ -118,12 +112,9 @@ static void peak_that_cannot_be_written_is_told(void **state) {
     } rows[] = {{120, "base.h5\n"}, {330, "base.h5\nframe-000000.h5\npeak.h5\n"}};
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         program_result result, seen;
-        if (!run_on_small_disk(p, rows[k].kilobytes, "true", "solve",
-                               "model.h5 -o full/results.h5 --threads 1 --no-checkpoint",
-                               "ls full/results.h5.run", &result, &seen)) {
-            print_message("skipped: a tmpfs of one's own needs root\n");
-            skip();
-        }
+        run_on_small_disk(p, rows[k].kilobytes, "true", "solve",
+                          "model.h5 -o full/results.h5 --threads 1 --no-checkpoint", "ls full/results.h5.run",
+                          &result, &seen);
         assert_file_fails(&result, "softfall-solve: full/results.h5.run/peak.h5.partial-");
         assert_string_equal(seen.out, rows[k].left);
     }

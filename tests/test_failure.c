@@ -23,8 +23,7 @@ static int set_up(void **state) {
     fixture_pad(coarse, &f);
     fixture_start(&f);
     for (int k = 0; k < STEPS; k++) {
-        fixture_step(&f);
-        sf_step_advance(&f.model, &f.state);
+        fixture_advance(&f);
     }
     *state = &f;
     return 0;

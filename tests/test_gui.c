@@ -2,6 +2,7 @@
 /* softfall-gui on a display of its own (Xvfb), by its script and by clicks and keys (xdotool). Without these
  * two programs the tests are skipped. SF_PICTURES=FOLDER: the pictures of docs/window.md are written there,
  * by import (ImageMagick). */
+#include "check.h"
 #include "program_fixture.h"
 
 #include <setjmp.h>
@@ -75,7 +76,7 @@ static int tear_down(void **state) {
 
 static void need_display(void) {
     if (!has_display)
-        skip();
+        check_skip_missing("there is no display: Xvfb or xdotool is missing");
 }
 
 /* Runs a shell command with the tools, fails the test with its words unless it exits with 0. */

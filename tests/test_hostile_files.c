@@ -2,6 +2,7 @@
 /* Every option and key of every program that names a file to be read, given what is no plain file: each ends
  * soon, in one sentence, with a code that is not 0, and has written nothing. That there is no other reader:
  * tools/gate.py. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include <setjmp.h>
@@ -173,10 +174,8 @@ static void no_reader_takes_what_it_may_not_read(void **state) {
     if (geteuid() == 0 &&
         program_shell(*state, "setpriv --reuid=65534 --clear-groups '%s/softfall-pre' --version",
                       getenv("SF_BIN_DIR"))
-                .code != 0) {
-        print_message("nobody cannot run the programs here\n");
-        skip();
-    }
+                .code != 0)
+        check_skip_refused("the user nobody may not enter the folder of the programs");
     no_reader_takes(state, "closed");
 }
 

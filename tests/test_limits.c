@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Limits of the system and OpenMP's environment: each program says one sentence of its own, is not ended by a
  * signal and leaves no pieces of files. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include <setjmp.h>
@@ -85,7 +86,7 @@ static void values_for_openmp_that_are_left_out_are_told(void **state) {
 
 static void threads_that_cannot_be_started_are_refused(void **state) {
     if (SANITIZED)
-        skip();
+        check_skip_refused("sanitizers take address space and stack of their own");
     program_result r =
         program_shell(*state, "ulimit -v 400000; \"$SF_BIN_DIR\"/softfall-solve model.h5 -o NEW -t 1000");
     assert_sentence(&r, "softfall-solve: 1000 threads cannot be started, only ");
@@ -94,7 +95,7 @@ static void threads_that_cannot_be_started_are_refused(void **state) {
 
 static void small_stacks_are_raised_or_refused(void **state) {
     if (SANITIZED)
-        skip();
+        check_skip_refused("sanitizers take address space and stack of their own");
     for (int k = 0; k < RUNS; k++) {
         program_result r = run_after(*state, "ulimit -s 100;", k);
         assert_sentence(&r, "the stack is limited to 100 kB; at least 1024 kB are needed");

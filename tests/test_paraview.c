@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state for ParaView that softfall-post writes, pad_paraview.py: what it knows of a drop, what it shows,
  * the film, and tools/draw_pad.py, which draws with it. What needs ParaView is skipped without it. */
+#include "check.h"
 #include "base/error.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
@@ -170,17 +171,10 @@ static void a_film_without_its_programs_names_the_package(void **state) {
 
 /* ---- with ParaView ---- */
 
-static void need(const program_place *p, const char *programs) {
-    if (program_shell(p, "for k in %s; do command -v $k || exit 1; done", programs).code != 0) {
-        print_message("skipped: not all of %s are installed\n", programs);
-        skip();
-    }
-}
-
 /* One missile, where it is; the peak's frame; nothing cut off. */
 static void the_state_shows_a_missile_beside_the_middle_once(void **state) {
     const program_place *p = *state;
-    need(p, "pvbatch xvfb-run");
+    check_programs("pvbatch xvfb-run");
     program_result peak = program_shell(p, "sed -n 's/ *\"peak\": \\(.*\\),/1e3*\\1/p' full/pad_paraview.py");
     program_result r = program_shell(
         p,
@@ -193,7 +187,7 @@ static void the_state_shows_a_missile_beside_the_middle_once(void **state) {
 
 static void a_state_file_has_the_view_and_its_camera(void **state) {
     const program_place *p = *state;
-    need(p, "pvbatch xvfb-run");
+    check_programs("pvbatch xvfb-run");
     program_result r = program_shell(
         p,
         "xvfb-run -a -n $((1000 + $$ %% 30000)) -s -noreset pvbatch full/pad_paraview.py --state full.pvsm 2>&1 && "
@@ -205,7 +199,7 @@ static void a_state_file_has_the_view_and_its_camera(void **state) {
 
 static void draw_pad_draws_a_prescribed_motion(void **state) {
     const program_place *p = *state;
-    need(p, "pvbatch xvfb-run");
+    check_programs("pvbatch xvfb-run");
     program_result r = program_shell(
         p,
         "xvfb-run -a -n $((1000 + $$ %% 30000)) -s '-noreset -screen 0 1280x1024x24' pvbatch --force-offscreen-rendering '%s' pressed/pad.xdmf pressed.png 2>&1",
@@ -217,7 +211,7 @@ static void draw_pad_draws_a_prescribed_motion(void **state) {
 
 static void a_film_and_its_picture_stand_beside_the_report(void **state) {
     const program_place *p = *state;
-    need(p, "pvbatch xvfb-run ffmpeg");
+    check_programs("pvbatch xvfb-run ffmpeg");
     setenv("DISPLAY", ":77", 1); /* there is none */
     program_succeed(p, "post", "results.h5 -o filmed --film=gif");
     unsetenv("DISPLAY");

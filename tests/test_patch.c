@@ -55,13 +55,6 @@ static int tear_down(void **state) {
     return 0;
 }
 
-static double largest(const double *a, int64_t count) {
-    double value = 0;
-    for (int64_t k = 0; k < count; k++)
-        value = larger(value, fabs(a[k]));
-    return value;
-}
-
 static double smallest_spacing(const sf_model *m) {
     double value = INFINITY;
     for (int64_t i = 0; i < m->node_count; i++)
@@ -109,21 +102,6 @@ static void affine_field_gives_its_value_at_every_node(void **state) {
     }
 }
 
-/* Largest acceleration after the projection, of the largest that the unconstrained forces would give. */
-static double relative_acceleration(fixture *f, const sf_constraint *constraint) {
-    const sf_model *m = &f->model;
-    sf_state *s = &f->state;
-    sf_constraint_step step = {.force = s->force, .v = s->v, .dt = 1e-5, .reaction = s->reaction};
-    double free_motion = 0, held_motion = 0;
-    sf_constraint_project(constraint, &step);
-    for (int64_t k = 0; k < 3 * m->node_count; k++) {
-        free_motion = larger(free_motion, fabs(s->force[k]) / m->mass[k / 3]);
-        held_motion = larger(held_motion, fabs(s->force[k] - s->reaction[k]) / m->mass[k / 3]);
-    }
-    assert_true(free_motion > 0);
-    return held_motion / free_motion;
-}
-
 /* Uniform stress is in equilibrium with tractions that act at the held points of the surface. */
 static void affine_field_with_held_surface_is_in_equilibrium(void **state) {
     fixture *f = *state;
@@ -131,7 +109,7 @@ static void affine_field_with_held_surface_is_in_equilibrium(void **state) {
         fixture_start(&f[k]);
         fixture_set_affine(&f[k], GRADIENT, SHIFT);
         fixture_forces(&f[k]);
-        assert_close(relative_acceleration(&f[k], &f[k].operators.constraint), 0, 1e-10);
+        assert_close(fixture_held_acceleration(&f[k], &f[k].operators.constraint), 0, 1e-10);
     }
 }
 
@@ -157,7 +135,7 @@ static void holding_coefficients_instead_of_displacements_fails_the_patch_test(v
             m->phi_value[i] = 1;
         }
         assert_int_equal(sf_constraint_build(m, &constraint, &err), SF_OK);
-        double wrong_way = relative_acceleration(&wrong, &constraint);
+        double wrong_way = fixture_held_acceleration(&wrong, &constraint);
         sf_constraint_free(&constraint);
         free(m->phi_ptr);
         free(m->phi_node);
@@ -185,8 +163,8 @@ static void rigid_rotation_and_translation_cost_nothing(void **state) {
         fixture_forces(&f[k]);
         assert_uniform(&f[k], gradient, 1e-12);
         for (int64_t i = 0; i < m->node_count; i++)
-            assert_close(largest(&s->stress[9 * i], 9) / (m->volume[i] * modulus), 0, 1e-11);
-        assert_close(largest(s->force, 3 * m->node_count) / (modulus * h * h), 0, 1e-11);
+            assert_close(largest_of(&s->stress[9 * i], 9) / (m->volume[i] * modulus), 0, 1e-11);
+        assert_close(largest_of(s->force, 3 * m->node_count) / (modulus * h * h), 0, 1e-11);
         for (int64_t chunk = 0; chunk < s->chunk_count; chunk++)
             energy += s->partial[chunk].stabilisation + s->partial[chunk].stored;
         assert_close(energy / (modulus * h * h * h), 0, 1e-18);
@@ -256,7 +234,7 @@ static void elastic_forces_are_the_gradient_of_the_stored_energy(void **state) {
     size_t bytes = 3 * (size_t)m->node_count * sizeof *s->force;
     double *force = malloc(bytes), scale = 0;
     memcpy(force, s->force, bytes);
-    scale = largest(force, 3 * m->node_count);
+    scale = largest_of(force, 3 * m->node_count);
     for (int64_t q = 5; q < 3 * m->node_count; q += 61) {
         double kept = s->d[q], h = 1e-5 * m->spacing[q / 3];
         s->d[q] = kept + h;

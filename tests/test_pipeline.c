@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The three programs in a row on the example case with a coarse pad, judged by the files that they leave. */
+#include "check.h"
 #include "extreme.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
@@ -450,10 +451,7 @@ static void help_and_version_are_there(void **state) {
 /* All three XDMF readers load every step and array; the pad's counts are those of the model. */
 static void paraview_reads_every_frame(void **state) {
     const program_place *p = *state;
-    if (program_shell(p, "command -v pvpython").code != 0) {
-        print_message("skipped: pvpython is not installed\n");
-        skip();
-    }
+    check_programs("pvpython");
     sf_error err = SF_ERROR_INIT;
     sf_model model;
     assert_int_equal(sf_model_read(program_path(p, "model.h5"), &model, NULL, &err), SF_OK);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-post as a user runs it, on synthetic results with a closed-form history. */
+#include "check.h"
 #include "base/units.h"
 #include "post/figures/injury.h"
 #include "post/results/results.h"
@@ -187,23 +188,11 @@ static void section_follows_the_plane_and_the_axis(void **state) {
         fail_msg("%s", result.text);
 }
 
-/* Skips the test without ParaView. */
-static const char *need_paraview(void) {
-    const char *source = getenv("SF_SOURCE_DIR");
-    if (run_shell("command -v pvpython").code != 0) {
-        print_message("pvpython is not installed\n");
-        skip();
-    }
-    if (!source)
-        fail_msg("SF_SOURCE_DIR is not set: it names the source tree");
-    return source;
-}
-
 /* The peak, where no frame was due, is a frame in its place; the missile's arrays are those of the history.
  */
 static void xdmf_loads_in_all_three_paraview_readers(void **state) {
     place *p = *state;
-    const char *source = need_paraview();
+    check_programs("pvpython");
     write_fixture(p, (fixture_options){.peak_time = 0.015, .sphere_radius = 0.2});
     for (int full = 0; full < 2; full++) {
         assert_int_equal(run_post(p, full ? "--force --full" : "").code, 0);
@@ -214,8 +203,8 @@ static void xdmf_loads_in_all_three_paraview_readers(void **state) {
             "--range cauchy_stress_Pa 1 1000 1280 --range contact_pressure_Pa 2 2000 2280 --range 'cell material' 1 0 0 "
             "--range 'missile acceleration_g' 1 70.6681951667 70.6681951667 "
             "--range 'missile sphere_centre_m' 1 0 0 --range 'missile contact_force_N' 1 0 0",
-            source, p->output, FIXTURE_FRAMES + 1, FIXTURE_NODES, FIXTURE_CELLS, FIXTURE_TRIANGLES,
-            full ? "--full" : "");
+            getenv("SF_SOURCE_DIR"), p->output, FIXTURE_FRAMES + 1, FIXTURE_NODES, FIXTURE_CELLS,
+            FIXTURE_TRIANGLES, full ? "--full" : "");
         if (result.code != 0)
             fail_msg("%s", result.text);
         assert_says(&result, "XDMFReader");

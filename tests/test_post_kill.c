@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-post, killed after each call by which it moves or removes a file: pad.xdmf always has its own data
  * beside it. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include "io/plain_file.h"
@@ -44,7 +45,8 @@ static pid_t start(const program_place *p) {
     assert_true(child >= 0);
     if (child == 0) {
         setenv("PATH", "/nowhere", 1);
-        setenv("ASAN_OPTIONS", "detect_leaks=0", 1); /* the leak sanitizer does not work in a traced process */
+        setenv("ASAN_OPTIONS", "detect_leaks=0",
+               1); /* the leak sanitizer does not work in a traced process */
         if (chdir(p->folder) != 0 || !freopen("log", "w", stdout) || !freopen("errors", "w", stderr) ||
             ptrace(PTRACE_TRACEME, 0, NULL, NULL) != 0)
             _exit(99);
@@ -61,7 +63,7 @@ static bool run_and_kill(const program_place *p, int last) {
     pid_t child = start(p);
     assert_int_equal(waitpid(child, &status, 0), child);
     if (!WIFSTOPPED(status))
-        skip(); /* nothing may be traced here */
+        check_skip_refused("this process may trace no other (ptrace)");
     ptrace(PTRACE_SETOPTIONS, child, NULL, PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL);
     for (;;) {
         struct __ptrace_syscall_info info = {0};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.html and its pictures: what stands in them, and that nothing has to be loaded to read them. */
+#include "check.h"
 #include "report/chart.h"
 #include "report/html.h"
 #include "post/view/cut.h"
@@ -256,8 +257,7 @@ static void words_of_the_reference_cannot_leave_their_place(void **state) {
 
 static void a_script_runs_from_anywhere_and_writes_beside_itself(void **state) {
     const program_place *p = *state;
-    if (program_shell(p, "command -v gnuplot").code != 0)
-        skip();
+    check_programs("gnuplot");
     post_fixture(p, &(fixture_options){0}, "");
     program_result run = program_shell(
         p,
@@ -271,8 +271,7 @@ static void a_script_runs_from_anywhere_and_writes_beside_itself(void **state) {
 /* As many entries as post draws; in both pictures the key needs no more rows than are kept free. */
 static void the_key_lies_below_the_title_of_the_axis(void **state) {
     const program_place *p = *state;
-    if (program_shell(p, "command -v gnuplot").code != 0)
-        skip();
+    check_programs("gnuplot");
     for (int entries = 1; entries <= 5; entries++) {
         sf_error err = SF_ERROR_INIT;
         sf_staging output = {0};

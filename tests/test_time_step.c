@@ -161,8 +161,6 @@ static void make_hyperfoam(sf_case *c) {
 static void start_block_of(fixture *f, bool linear, bool hyper, double stabilisation) {
     const fixture_block block = {.cells = {3, 3, 3}, .spacing = 0.01, .jitter = 0.25, .surface_jitter = 0.2};
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     fixture_case(&c, NULL);
     fixture_hold(&c, (const char *const[]){NULL});
     if (linear)
@@ -174,9 +172,7 @@ static void start_block_of(fixture *f, bool linear, bool hyper, double stabilisa
     c.missile_card.gap = 100;
     c.run.stabilisation = stabilisation;
     c.run.step_limit = 1;
-    fixture_block_mesh(&block, &mesh);
-    fixture_plate(0.5, 0.015, 0.015, &surface);
-    fixture_build(&c, &mesh, &surface, f);
+    fixture_under_plate(&c, &block, 0.5, 0.015, 0.015, f);
     fixture_start(f);
 }
 

@@ -162,8 +162,6 @@ static void hertz_study(sf_study *s) {
 static void build_column(const sf_column *column, const fixture_block *block, fixture *f) {
     static const double still = 0, one = 1;
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     fixture_case(&c, NULL);
     fixture_make_elastic(&c);
     fixture_hold(&c, (const char *const[]){"base", NULL});
@@ -177,9 +175,7 @@ static void build_column(const sf_column *column, const fixture_block *block, fi
     c.missile_card.speed = column->speed;
     c.missile_card.gravity = column->gravity;
     c.missile_card.friction = 10;
-    fixture_block_mesh(block, &mesh);
-    fixture_plate(1, 0, 0, &surface);
-    fixture_build(&c, &mesh, &surface, f);
+    fixture_under_plate(&c, block, 1, 0, 0, f);
     fixture_start(f);
 }
 
@@ -338,10 +334,7 @@ static const double PRESS = 0.003, PRESS_SPEED = 0.015;   /* strain at the end; 
  * motion that it would have if it stuck, so that nothing rings. */
 static void build_oblique(double friction, fixture *f) {
     const fixture_block block = {.cells = {22, 22, 3}, .spacing = PAD_HEIGHT / 3};
-    double angle = TILT * PI / 180;
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     fixture_case(&c, NULL);
     fixture_make_linear(&c);
     fixture_hold(&c, (const char *const[]){"base", NULL});
@@ -349,13 +342,9 @@ static void build_oblique(double friction, fixture *f) {
     c.missile_card.speed = PRESS_SPEED;
     c.missile_card.gravity = 0;
     c.missile_card.friction = friction;
-    c.missile_card.direction[0] = sin(angle);
-    c.missile_card.direction[1] = 0;
-    c.missile_card.direction[2] = -cos(angle);
+    fixture_slant(&c, TILT * PI / 180);
     c.run.energy_limit = 1e9;
-    fixture_block_mesh(&block, &mesh);
-    fixture_plate(1, 0.5 * PAD_WIDTH, 0.5 * PAD_WIDTH, &surface);
-    fixture_build(&c, &mesh, &surface, f);
+    fixture_under_plate(&c, &block, 1, 0.5 * PAD_WIDTH, 0.5 * PAD_WIDTH, f);
     fixture_start(f);
     for (int64_t i = 0; i < 3 * f->model.node_count; i++)
         f->state.v[i] =

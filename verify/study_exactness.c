@@ -37,13 +37,6 @@ typedef struct mesh_result {
     double wrong_way;
 } mesh_result;
 
-static double largest(const double *a, int64_t count) {
-    double value = 0;
-    for (int64_t k = 0; k < count; k++)
-        value = larger(value, fabs(a[k]));
-    return value;
-}
-
 static double *copy(const double *a, int64_t count) {
     double *out = malloc((size_t)count * sizeof *out);
     if (!out)
@@ -83,9 +76,9 @@ static void measure_invariants(const fixture *f, double volume, double out[RESID
         }
         for (int c = 0; c < 3; c++)
             linear[4 * c] -= 1;
-        out[UNITY] = larger(out[UNITY], largest(unity, 3) * h);
-        out[LINEAR] = larger(out[LINEAR], largest(linear, 9));
-        out[SHAPE] = larger(out[SHAPE], larger(fabs(sum), largest(moment, 3) / h));
+        out[UNITY] = larger(out[UNITY], largest_of(unity, 3) * h);
+        out[LINEAR] = larger(out[LINEAR], largest_of(linear, 9));
+        out[SHAPE] = larger(out[SHAPE], larger(fabs(sum), largest_of(moment, 3) / h));
     }
     out[VOLUME] = fabs(total / volume - 1);
     out[TELESCOPE] = f->report.invariants.telescope; /* needs the mesh, which the model has swallowed */
@@ -160,9 +153,9 @@ static double measure_rigid(fixture *f) {
     fixture_forces(f);
     for (int64_t i = 0; i < m->node_count; i++) {
         double unit = sf_foam_card_of(&m->material[0])->modulus * m->spacing[i] * m->spacing[i];
-        worst = larger(worst, largest(&f->state.stress[9 * i], 9) /
+        worst = larger(worst, largest_of(&f->state.stress[9 * i], 9) /
                                   (m->volume[i] * sf_foam_card_of(&m->material[0])->modulus));
-        worst = larger(worst, largest(&f->state.force[3 * i], 3) / unit);
+        worst = larger(worst, largest_of(&f->state.force[3 * i], 3) / unit);
     }
     return worst;
 }
@@ -201,7 +194,7 @@ static void measure_objectivity(fixture *f, double out[RESIDUALS]) {
     double r[9];
     rotation(r);
     two_steps(f, same, still);
-    double *plain = copy(f->state.force, n), scale = largest(plain, n);
+    double *plain = copy(f->state.force, n), scale = largest_of(plain, n);
     two_steps(f, r, still);
     for (int64_t i = 0; i < n; i++) {
         const double *row = &r[3 * (i % 3)], *force = &plain[3 * (i / 3)];

@@ -57,8 +57,6 @@ static void build_cube(const sf_foam_card *card, int curves, const double *rates
     const fixture_block block = {
         .cells = {CELLS, CELLS, CELLS}, .spacing = SIDE / CELLS, .jitter = 0.2, .surface_jitter = 0.15};
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     fixture_case(&c, NULL);
     fixture_make_elastic(&c);
     fixture_hold(&c, (const char *const[]){NULL});
@@ -78,9 +76,7 @@ static void build_cube(const sf_foam_card *card, int curves, const double *rates
     c.missile_card.gravity = 0;
     c.run.energy_limit = 1e9; /* the motion is prescribed: the ledger does not see who does the work */
     c.run.step_limit = STRAIN_STEP / rate;
-    fixture_block_mesh(&block, &mesh);
-    fixture_plate(1, 0, 0, &surface);
-    fixture_build(&c, &mesh, &surface, f);
+    fixture_under_plate(&c, &block, 1, 0, 0, f);
     fixture_start(f);
 }
 

@@ -387,17 +387,13 @@ static double free_vibration(fixture *f, double dt, int steps, double enough) {
 static void linear_block(sf_study *s) {
     fixture f;
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     const fixture_block block = {.cells = {4, 4, 4}, .spacing = 0.01, .jitter = 0.25, .surface_jitter = 0.2};
     fixture_case(&c, NULL);
     fixture_make_linear(&c);
     fixture_hold(&c, (const char *const[]){NULL});
     c.missile_card.gap = 100; /* out of the way */
     c.run.energy_limit = 1e9; /* an unstable run must not be stopped */
-    fixture_block_mesh(&block, &mesh);
-    fixture_plate(1, 0, 0, &surface);
-    fixture_build(&c, &mesh, &surface, &f);
+    fixture_under_plate(&c, &block, 1, 0, 0, &f);
     fixture_start(&f);
     deform(&f, AT_REST);
     probe p = probe_begin(&f);

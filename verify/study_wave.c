@@ -7,7 +7,6 @@
 #include "order.h"
 #include "study.h"
 
-#include "solver/step.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -22,14 +21,10 @@ static const double AMPLITUDE = 1e-7; /* m: strains of 1e-6, far from any nonlin
 static void start_column(const int cells[3], double dt, fixture *f) {
     const fixture_block block = {.cells = {cells[0], cells[1], cells[2]}, .spacing = LENGTH / cells[2]};
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     fixture_case(&c, (const char *const[]){"missile.gap=1 m", "solver.end_time=1 s", NULL});
     fixture_make_linear(&c);
     fixture_hold(&c, (const char *const[]){"base", NULL});
-    fixture_block_mesh(&block, &mesh);
-    fixture_plate(1, 0, 0, &surface);
-    fixture_build(&c, &mesh, &surface, f);
+    fixture_under_plate(&c, &block, 1, 0, 0, f);
     f->model.run.step_limit = dt;
     f->model.run.step_safety = 1;
     fixture_start(f);
@@ -89,8 +84,7 @@ static double column_frequency(const int cells[3], double dt) {
     for (int64_t k = 0; k < count; k++) {
         for (int64_t i = 0; i < m->node_count; i++)
             q[k] += m->mass[i] * sin(0.5 * PI * m->position[3 * i + 2] / LENGTH) * s->d[3 * i + 2] / scale;
-        fixture_step(&f);
-        sf_step_advance(m, s);
+        fixture_advance(&f);
     }
     for (int k = 0; k < 20 && fabs(improve_fit(count, q, dt, p)) > 1e-14 * exact; k++)
         continue;
@@ -190,8 +184,7 @@ static double pulse_error(int n) {
         s->v[3 * i + 2] = AMPLITUDE * slope / width * c;
     }
     for (int64_t k = 0; k < steps; k++) {
-        fixture_step(&f);
-        sf_step_advance(m, s);
+        fixture_advance(&f);
     }
     for (int64_t i = 0; i < m->node_count; i++) {
         double u = 0, exact = AMPLITUDE * pulse((m->position[3 * i + 2] - start + travel) / width, &slope);
@@ -269,14 +262,10 @@ static double hexahedron_frequency(int axes, double phase) {
 static void start_lattice(double stabilisation, fixture *f) {
     const fixture_block block = {.cells = {12, 12, 12}, .spacing = 0.005};
     sf_case c;
-    sf_mesh mesh;
-    sf_surface surface;
     fixture_case(&c, NULL);
     fixture_make_linear(&c);
     fixture_hold(&c, (const char *const[]){"base", NULL});
-    fixture_block_mesh(&block, &mesh);
-    fixture_plate(1, 0, 0, &surface);
-    fixture_build(&c, &mesh, &surface, f);
+    fixture_under_plate(&c, &block, 1, 0, 0, f);
     f->model.run.stabilisation = stabilisation;
     fixture_start(f);
 }
