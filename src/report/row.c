@@ -183,7 +183,8 @@ void sf_rows_csv(FILE *file, sf_rows rows, sf_records records) {
 
 void sf_row_html_cell(sf_html_table *table, const sf_row *row, const void *record) {
     char text[512];
-    sf_html_cell(table, "%s", sf_row_shown(row, record, "–", text, sizeof text));
+    const char *dash = sf_row_value(row, record).kind == SF_VALUE_TEXT ? "" : "–";
+    sf_html_cell(table, "%s", sf_row_shown(row, record, dash, text, sizeof text));
 }
 
 void sf_rows_html_facts(sf_html_table *table, sf_rows rows, const void *record) {

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/program.h"
 #include "study/fit/compression/compression_command.h"
 
-#include "study/fit/compression/form_command.h"
-#include "study/fit/compression/hyperfoam_command.h"
-#include "study/fit/compression/compression_output.h"
-#include "study/fit/command_line.h"
+#include "base/program.h"
 #include "io/plain_file.h"
 #include "io/process.h"
+#include "study/fit/command_line.h"
+#include "study/fit/compression/compression_kind.h"
+#include "study/material_file.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -15,16 +14,8 @@
 
 enum { KEY_FORCE = 256, KEY_SIMULATE, KEY_FRICTION };
 
-typedef struct options {
-    const char *path;
-    const char *directory;
-    const char *command;
-    bool force;
-    sf_cube_options cube;
-} options;
-
 static error_t parse_option(int key, char *text, struct argp_state *state) {
-    options *o = state->input;
+    sf_compression_job *o = state->input;
     switch (key) {
     case 'o':
         o->directory = text;
@@ -55,7 +46,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
 }
 
-static sf_status parse_command(int argc, char **argv, options *o, sf_error *err) {
+static sf_status parse_command(int argc, char **argv, sf_compression_job *o, sf_error *err) {
     static char name[] = "softfall-fit compression";
     static const struct argp_option known[] = {
         {"output", 'o', "DIR", 0, "write everything there (required)", 0},
@@ -81,54 +72,132 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
     return SF_OK;
 }
 
-static void print_tests(const sf_compression_config *config) {
-    for (int k = 0; k < config->test_count; k++)
-        printf("test %s: %s\n", config->test[k].path, config->test[k].interpretation);
-    fflush(stdout);
+static const sf_compression_kind *kind_of(const sf_compression_config *config) {
+    return config->hyperfoam.terms > 0 ? &sf_compression_hyperfoam
+           : config->form.form.curve   ? &sf_compression_form_kind
+                                       : &sf_compression_tables;
 }
 
-static sf_status run_form(const options *o, const sf_compression_config *config, const sf_sink *sink,
-                          sf_error *err) {
-    if (o->cube.case_path)
-        return SF_FAIL(err, SF_ERR_INPUT, "--simulate does not work with curve_form = \"%s\" in %s",
-                       config->form.form.curve->name, o->path);
-    SF_TRY(sf_form_fit_check(o->directory, o->force, err));
-    return sf_form_fit_write(config, o->directory, o->force, stdout, sink, err);
+/* Refuses what cannot be done before anything is computed or made. */
+static sf_status check_job(const sf_compression_job *job, const sf_compression_kind *kind,
+                           const sf_compression_config *config, sf_error *err) {
+    uint64_t ignored; /* the case can be read */
+    if (kind->label && job->cube.case_path)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       kind == &sf_compression_form_kind
+                           ? "--simulate does not work with curve_form = \"%s\" in %s"
+                           : "--simulate does not work with law = \"%s\" in %s",
+                       config->form.form.curve ? config->form.form.curve->name : kind->label, job->path);
+    SF_TRY(sf_staging_check(job->directory, kind->outputs, job->force, err));
+    return job->cube.case_path ? sf_plain_hash(job->cube.case_path, "case file", SF_PLAIN_TEXT, &ignored, err)
+                               : SF_OK;
 }
 
-static sf_status run(const options *o, sf_error *err) {
-    sf_compression_config config = {0};
-    sf_compression_fit fit = {0};
-    const sf_sink sink = sf_program_sink("softfall-fit");
-    bool hyperfoam;
-    uint64_t ignored; /* the case can be read: nothing is made before */
-    SF_TRY(sf_hyperfoam_fit_asked(o->path, &hyperfoam, err));
-    if (hyperfoam && o->cube.case_path)
-        return SF_FAIL(err, SF_ERR_INPUT, "--simulate does not work with law = \"hyperfoam\" in %s", o->path);
-    if (hyperfoam)
-        return sf_hyperfoam_fit_file(o->path, o->directory, o->force, stdout, &sink, err);
-    if (sf_compression_output_check(o->directory, o->force, err) != SF_OK ||
-        (o->cube.case_path &&
-         sf_plain_hash(o->cube.case_path, "case file", SF_PLAIN_TEXT, &ignored, err) != SF_OK) ||
-        sf_compression_config_read(o->path, &config, err) != SF_OK)
+static void print_tests(FILE *out, const sf_compression_config *config) {
+    for (int k = 0; k < config->test_count; k++) {
+        fprintf(out, "test %s: %s", config->test[k].path, config->test[k].interpretation);
+        if (config->hyperfoam.terms > 0)
+            fprintf(out, ", %d points of lateral strain", config->hyperfoam.lateral_count);
+        fputc('\n', out);
+    }
+    fflush(out);
+}
+
+/* ---- files ---- */
+
+static sf_status write_points(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
+                              sf_error *err) {
+    FILE *file = sf_staging_open(output, "fit.csv", err);
+    if (!file)
         return err->status;
-    print_tests(&config);
-    if (config.form.form.curve)
-        run_form(o, &config, &sink, err);
-    else if (sf_compression_fit_run(&config, &fit, err) == SF_OK)
-        sf_compression_output(&fit, o->path, o->command, o->directory, o->force, &o->cube, &sink, err);
-    sf_compression_fit_free(&fit);
+    kind->points(file, fit);
+    return sf_staging_close(file, "fit.csv", err);
+}
+
+static sf_status write_json(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
+                            const char *path, sf_error *err) {
+    sf_json json = {.file = sf_staging_open(output, "fit.json", err)};
+    if (!json.file)
+        return err->status;
+    sf_json_open(&json, NULL, '{');
+    kind->json(&json, fit, path);
+    sf_json_close(&json, '}');
+    return sf_staging_close(json.file, "fit.json", err);
+}
+
+static sf_status write_material(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
+                                const char *title, sf_error *err) {
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (out) {
+        fputs("Identified by softfall-fit compression", out);
+        kind->describe(out, fit, true);
+    }
+    if (!out || fclose(out) != 0) {
+        free(text);
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the comments of the material file");
+    }
+    const sf_material_text comments = {.title = title, .provenance = text};
+    const sf_material material = kind->material(fit);
+    sf_material_write_checked(output->aside, "material", &material, &comments, err);
+    free(text);
+    return err->status;
+}
+
+static sf_status write_all(const sf_compression_job *job, const sf_compression_kind *kind, void *fit,
+                           const char *name, char *warning, size_t size, sf_error *err) {
+    sf_staging output;
+    SF_TRY(sf_staging_begin(job->directory, kind->outputs, job->force, &output, err));
+    if (write_points(&output, kind, fit, err) == SF_OK &&
+        (!kind->more || kind->more(job, &output, fit, warning, size, err) == SF_OK) &&
+        write_json(&output, kind, fit, job->path, err) == SF_OK &&
+        write_material(&output, kind, fit, name, err) == SF_OK)
+        sf_staging_commit(&output, err);
+    sf_staging_end(&output);
+    return err->status;
+}
+
+/* ---- the pipeline ---- */
+
+static sf_status fit_and_write(const sf_compression_job *job, const sf_compression_kind *kind,
+                               const sf_compression_config *config, void *fit, sf_error *err) {
+    const sf_sink sink = sf_program_sink("softfall-fit");
+    char warning[512] = "";
+    SF_TRY(kind->run(config, fit, err));
+    SF_TRY(write_all(job, kind, fit, config->name, warning, sizeof warning, err));
+    kind->title(job->cube.log, fit);
+    kind->describe(job->cube.log, fit, false);
+    fprintf(job->cube.log, "Files in %s: %s\n", job->directory, kind->files);
+    fflush(job->cube.log);
+    kind->warn(fit, &sink);
+    if (*warning)
+        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
+    return SF_OK;
+}
+
+static sf_status run(const sf_compression_job *job, sf_error *err) {
+    sf_compression_config config = {0};
+    SF_TRY(sf_compression_config_read(job->path, &config, err));
+    const sf_compression_kind *kind = kind_of(&config);
+    void *fit = check_job(job, kind, &config, err) == SF_OK ? sf_alloc(err, 1, kind->size, "the fit") : NULL;
+    if (fit) {
+        print_tests(job->cube.log, &config);
+        fit_and_write(job, kind, &config, fit, err);
+        kind->free(fit);
+    }
+    free(fit);
     sf_compression_config_free(&config);
     return err->status;
 }
 
 int sf_fit_compression_main(int argc, char **argv) {
     char *command = sf_fit_command_line(argc, argv);
-    options o = {.cube.log = stdout, .command = command ? command : "softfall-fit compression"};
+    sf_compression_job job = {.cube.log = stdout, .command = command ? command : "softfall-fit compression"};
     sf_error err = SF_ERROR_INIT;
     sf_process_handle_signals();
-    if (parse_command(argc, argv, &o, &err) == SF_OK)
-        run(&o, &err);
+    if (parse_command(argc, argv, &job, &err) == SF_OK)
+        run(&job, &err);
     free(command);
     return sf_error_report(&err, "softfall-fit");
 }

@@ -188,17 +188,25 @@ static sf_status read_name(const sf_config *file, const config_setting_t *root, 
 static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
     const config_setting_t *root = config_root_setting(&file->config);
     int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
-    bool form;
-    SF_TRY(sf_form_request_asked(file, root, &form, err));
+    bool form, hyperfoam;
+    SF_TRY(sf_hyperfoam_request_asked(file, root, &hyperfoam, err));
+    if (!hyperfoam)
+        SF_TRY(sf_form_request_asked(file, root, &form, err));
     SF_TRY(sf_config_names(
         file, root,
-        form ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|" SF_FORM_REQUEST_KEYS
-             : "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
-               "confidence|specimen|toe_correction|curve_form",
+        hyperfoam ? SF_HYPERFOAM_REQUEST_KEYS
+        : form    ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|" SF_FORM_REQUEST_KEYS
+                  : "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
+                    "confidence|specimen|toe_correction|curve_form",
         err));
     SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err));
     SF_TRY(read_name(file, root, c, err));
     SF_TRY(sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err));
+    if (hyperfoam) {
+        sf_hyperfoam_request_read(file, root, &c->hyperfoam, &c->test[0], err);
+        c->test_count = 1;
+        return err->status;
+    }
     SF_TRY(sf_config_number(file, root, "E_range", false, 0.001, 0.2, &c->modulus_range, err));
     SF_TRY(sf_config_number(file, root, "confidence", false, 0.5, 0.9999, &c->confidence, err));
     SF_TRY(
@@ -223,8 +231,8 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
 static sf_status check_together(const char *path, const sf_compression_config *c, sf_error *err) {
     double shortest = 1;
     int below = 0;
-    if (c->form.form.curve)
-        return SF_OK; /* nothing is asked of the tests together */
+    if (c->form.form.curve || c->hyperfoam.terms > 0)
+        return SF_OK; /* these need nothing of the tests together */
     for (int k = 0; k < c->test_count; k++)
         shortest = fmin(shortest, c->test[k].largest_strain);
     if (c->densification_start > 0.97 * shortest)
@@ -261,6 +269,7 @@ sf_status sf_compression_config_read(const char *path, sf_compression_config *co
 }
 
 void sf_compression_config_free(sf_compression_config *config) {
+    sf_hyperfoam_request_free(&config->hyperfoam);
     for (int k = 0; k < config->test_count; k++)
         sf_compression_test_free(&config->test[k]);
     for (int k = 0; k < config->predicted_count; k++)

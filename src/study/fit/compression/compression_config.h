@@ -4,6 +4,7 @@
 #define SF_FIT_COMPRESSION_CONFIG_H
 
 #include "study/fit/compression/form_request.h"
+#include "study/fit/compression/hyperfoam_request.h"
 #include "study/config.h"
 #include "study/fit/compression/compression_test.h"
 #include <stdio.h>
@@ -43,8 +44,9 @@ typedef struct sf_compression_config {
     sf_rule_choice rule;
     int test_count;
     sf_compression_test test[SF_COMPRESSION_TESTS]; /* ascending rate; owned */
-    sf_form_request form; /* which form of the loading curve; its curve is NULL: a free spline */
-    int predicted_count;  /* tests that a form is to predict, not fitted */
+    sf_form_request form;           /* which form of the loading curve; its curve is NULL: a free spline */
+    sf_hyperfoam_request hyperfoam; /* its terms are 0: another law */
+    int predicted_count;            /* tests that a form is to predict, not fitted */
     sf_compression_test predicted[SF_COMPRESSION_TESTS]; /* owned */
 } sf_compression_config;
 

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The models that `softfall-fit compression` fits: one entry for each. compression_command.c has the only
+ * pipeline: configuration, fit, files, summary, warnings. */
+#ifndef SF_FIT_COMPRESSION_KIND_H
+#define SF_FIT_COMPRESSION_KIND_H
+
+#include "io/staging.h"
+#include "report/json.h"
+#include "study/fit/compression/compression_config.h"
+#include "study/fit/compression/cube.h"
+
+/* The request of the command; borrowed. */
+typedef struct sf_compression_job {
+    const char *path, *directory, *command; /* FIT.cfg as given, -o, the words of the command */
+    bool force;
+    sf_cube_options cube; /* its log is that of the summary, too */
+} sf_compression_job;
+
+typedef struct sf_compression_kind {
+    const char *label; /* in a refusal of --simulate: "law = \"hyperfoam\""; NULL: --simulate works */
+    const char *files; /* of the closing line */
+    const char *const *outputs; /* every file that may be written, material.cfg last; NULL at the end */
+    size_t size;                /* bytes of a fit */
+
+    /* Fits; `config` is borrowed until `free`. SF_ERR_NUMERIC if no search converges. */
+    sf_status (*run)(const sf_compression_config *config, void *fit, sf_error *err);
+    void (*free)(void *fit);
+    /* The fitted material; its arrays stay those of the fit. */
+    sf_material (*material)(const void *fit);
+    /* The first line of the summary, and the lines that follow it and stand in material.cfg (`comments`). */
+    void (*title)(FILE *out, const void *fit);
+    void (*describe)(FILE *out, const void *fit, bool comments);
+    /* The contents of fit.csv, and the members of fit.json. */
+    void (*points)(FILE *file, const void *fit);
+    void (*json)(sf_json *json, const void *fit, const char *path);
+    /* Further files; NULL: none. `warning` (size bytes): why there is no picture, or "". */
+    sf_status (*more)(const sf_compression_job *job, const sf_staging *output, void *fit, char *warning,
+                      size_t size, sf_error *err);
+    void (*warn)(const void *fit, const sf_sink *sink);
+} sf_compression_kind;
+
+/* A spline with rate terms and a densification law, written as tables; a form of few parameters (fit/form);
+ * the hyperfoam. */
+extern const sf_compression_kind sf_compression_tables, sf_compression_form_kind, sf_compression_hyperfoam;
+
+#endif

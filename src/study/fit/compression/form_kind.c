@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The entry of the forms of the loading curve (fit/form): their parameters, files and words. */
+#include "study/fit/compression/compression_kind.h"
+
+#include "material/low_density_foam.h"
+#include "report/row.h"
+#include "study/fit/compression/form_fit.h"
+#include <math.h>
+
+static const char *const outputs[] = {"fit.csv", "fit.json", "material.csv", "material.cfg", NULL};
+static const char AT_BOUND[] = " (at its bound)", UNDETERMINED[] = " (these tests do not determine it)",
+                  BELOW_REFERENCE[] = " (below rate_reference, where the law has no effect of the rate)";
+static const char *const unloading_names[3] = {"HU", "SHAPE", "ALPHA"};
+static const char POOR_WARNING[] =
+    "the form does not describe these tests: a deviation exceeds 10 % of the largest stress";
+
+static sf_status run(const sf_compression_config *config, void *fit, sf_error *err) {
+    return sf_form_fit_run(config, fit, err);
+}
+
+static void release(void *fit) {
+    sf_form_fit_free(fit);
+}
+
+static sf_material material_of(const void *fit) {
+    return sf_foam_material(&((const sf_form_fit *)fit)->card);
+}
+
+/* ---- words ---- */
+
+static void put_unknowns(FILE *out, const sf_form_fit *fit) {
+    const sf_form_request *r = &fit->config->form;
+    for (int k = 0; k < r->unknown_count; k++) {
+        const sf_parameter_info *about = sf_parameter_get(r->unknown[k]);
+        fprintf(out, "  %s %.5g%s%s", about->name, fit->value[r->unknown[k]] / about->per_unit,
+                *about->unit ? " " : "", about->unit);
+        if (fit->at_bound[k])
+            fputs(AT_BOUND, out);
+        else if (isfinite(fit->error[k]))
+            fprintf(out, " +- %.2g %%", 100 * fit->error[k]);
+        if (!sf_form_fit_determines(fit, k) && !fit->at_bound[k])
+            fputs(UNDETERMINED, out);
+        fprintf(out, ", %s\n", about->description);
+    }
+}
+
+static void put_unloading(FILE *out, const sf_form_unloading *u) {
+    fputs("  unloading:", out);
+    for (int k = 0; k < 3; k++)
+        fprintf(out, "%s %s %.4g%s", k ? "," : "", unloading_names[k], u->value[k],
+                u->at_bound[k] ? AT_BOUND : "");
+    fprintf(out, "; rms %.2g %% of the largest stress, rms of the factor %.2g\n", 100 * u->rms,
+            u->factor_rms);
+}
+
+static void put_test(FILE *out, const sf_form_fit *fit, const sf_compression_test *t, const sf_form_test *f,
+                     const char *how) {
+    fprintf(out, "  %s %s at %.4g 1/s%s: rms of loading %.2g %% of the largest stress", how, t->path, t->rate,
+            sf_form_fit_is_below_reference(fit, t) ? BELOW_REFERENCE : "", 100 * f->loading_rms);
+    if (isfinite(f->unloading_rms))
+        fprintf(out, ", of unloading %.2g %%; energy returned: %.3g %% measured, %.3g %% by the law",
+                100 * f->unloading_rms, 100 * f->returned_measured, 100 * f->returned_fitted);
+    fputs("\n", out);
+}
+
+static void title(FILE *out, const void *place) {
+    const sf_form_fit *fit = place;
+    fprintf(out, "%s: curve_form = \"%s\"\n", fit->config->name, fit->config->form.form.curve->name);
+}
+
+static void describe(FILE *out, const void *place, bool comments) {
+    const sf_form_fit *fit = place;
+    const sf_compression_config *c = fit->config;
+    if (comments)
+        fputc('\n', out);
+    if (comments && sf_form_fit_is_poor(fit))
+        fprintf(out, "WARNING: %s\n", POOR_WARNING);
+    fprintf(out, "Curve: %s.\nRate: %s.\n", c->form.form.curve->formula, sf_form_rate_name(c->form.rate));
+    fprintf(out, "rms of loading %.2g %% of the largest stress, with %d parameters:\n",
+            100 * fit->loading_rms, c->form.unknown_count);
+    put_unknowns(out, fit);
+    if (fit->has_unloading) {
+        put_unloading(out, &fit->unloading_of_one);
+        put_unloading(out, &fit->unloading);
+    }
+    for (int k = 0; k < c->test_count; k++)
+        put_test(out, fit, &c->test[k], &fit->test[k], "fitted");
+    for (int k = 0; k < c->predicted_count; k++)
+        put_test(out, fit, &c->predicted[k], &fit->predicted[k], "predicted");
+    if (comments)
+        fprintf(out,
+                "Beyond the strain %.4g and outside these rates it is extrapolation. +-: standard errors.\n",
+                fit->card.informed_strain);
+}
+
+static bool is_of_rate(sf_foam_parameter p) {
+    return p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
+}
+
+static void warn(const void *place, const sf_sink *sink) {
+    const sf_form_fit *fit = place;
+    const sf_compression_config *c = fit->config;
+    if (sf_form_fit_is_poor(fit))
+        sf_sink_tell(sink, SF_WARNING, "%s", POOR_WARNING);
+    for (int k = 0; k < c->form.unknown_count; k++)
+        if (is_of_rate(c->form.unknown[k]) && !sf_form_fit_determines(fit, k))
+            sf_sink_tell(
+                sink, SF_WARNING,
+                "these tests do not determine %s: its standard error exceeds 100 %%, or it is at its bound",
+                sf_parameter_get(c->form.unknown[k])->name);
+    for (int k = 0; k < c->predicted_count; k++)
+        if (sf_form_fit_is_below_reference(fit, &c->predicted[k]))
+            sf_sink_tell(
+                sink, SF_WARNING,
+                "the predicted test %s at %g 1/s is below rate_reference = %g 1/s, where the law has no "
+                "effect of the rate",
+                c->predicted[k].path, c->predicted[k].rate, fit->value[SF_PARAMETER_RATE_REFERENCE]);
+}
+
+/* ---- files ---- */
+
+static void put_test_points(FILE *file, int number, const sf_compression_test *t, const double *stress,
+                            const char *how) {
+    for (int i = 0; i < t->count; i++) {
+        fprintf(file, "%d,%s,%.9g,%s,%.9g,%.9g,", number, how, t->rate,
+                i < t->loading ? "loading" : "unloading", t->strain[i], 1e-3 * t->stress[i]);
+        if (isfinite(stress[i]))
+            fprintf(file, "%.9g", 1e-3 * stress[i]);
+        fputs("\n", file);
+    }
+}
+
+static void put_points(FILE *file, const void *place) {
+    const sf_form_fit *fit = place;
+    const sf_compression_config *c = fit->config;
+    fputs("test,use,rate_1_s,branch,strain,measured_kPa,law_kPa\n", file);
+    for (int k = 0; k < c->test_count; k++)
+        put_test_points(file, k + 1, &c->test[k], fit->test[k].stress, "fitted");
+    for (int k = 0; k < c->predicted_count; k++)
+        put_test_points(file, c->test_count + k + 1, &c->predicted[k], fit->predicted[k].stress, "predicted");
+}
+
+static void json_unknowns(sf_json *json, const sf_form_fit *fit) {
+    const sf_form_request *r = &fit->config->form;
+    sf_json_open(json, "parameters", '[');
+    for (int k = 0; k < r->unknown_count; k++) {
+        const sf_parameter_info *about = sf_parameter_get(r->unknown[k]);
+        sf_json_open(json, NULL, '{');
+        sf_json_text(json, "name", about->name);
+        sf_json_text(json, "unit", about->unit);
+        sf_json_number(json, "value", fit->value[r->unknown[k]] / about->per_unit);
+        sf_json_number(json, "relative_error", fit->error[k]);
+        sf_json_bool(json, "at_bound", fit->at_bound[k]);
+        sf_json_bool(json, "determined", sf_form_fit_determines(fit, k));
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+static void json_unloading(sf_json *json, const char *key, const sf_form_unloading *u) {
+    sf_json_open(json, key, '{');
+    for (int k = 0; k < 3; k++)
+        sf_json_number(json, unloading_names[k], u->value[k]);
+    sf_json_open(json, "at_bound", '[');
+    for (int k = 0; k < 3; k++)
+        if (u->at_bound[k])
+            sf_json_text(json, NULL, unloading_names[k]);
+    sf_json_close(json, ']');
+    sf_json_number(json, "rms", u->rms);
+    sf_json_number(json, "factor_rms", u->factor_rms);
+    sf_json_close(json, '}');
+}
+
+static void json_tests(sf_json *json, const sf_form_fit *fit, const char *key, int count,
+                       const sf_compression_test *tests, const sf_form_test *fits) {
+    static const sf_row test_rows[] = {
+        {.key = "largest_strain", SF_ROW_OF(NUMBER, sf_compression_test, largest_strain)},
+        {.key = "largest_stress_Pa", SF_ROW_OF(NUMBER, sf_compression_test, largest_stress)},
+    };
+    static const sf_row fit_rows[] = {
+        {.key = "loading_rms", SF_ROW_OF(NUMBER, sf_form_test, loading_rms)},
+        {.key = "unloading_rms", SF_ROW_OF(NUMBER, sf_form_test, unloading_rms)},
+        {.key = "returned_energy_measured", SF_ROW_OF(NUMBER, sf_form_test, returned_measured)},
+        {.key = "returned_energy_fitted", SF_ROW_OF(NUMBER, sf_form_test, returned_fitted)},
+    };
+    sf_json_open(json, key, '[');
+    for (int k = 0; k < count; k++) {
+        sf_json_open(json, NULL, '{');
+        sf_json_text(json, "file", tests[k].path);
+        sf_json_number(json, "rate_1_s", tests[k].rate);
+        sf_json_bool(json, "below_rate_reference", sf_form_fit_is_below_reference(fit, &tests[k]));
+        sf_rows_json(json, SF_ROWS(test_rows), &tests[k]);
+        sf_rows_json(json, SF_ROWS(fit_rows), &fits[k]);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+static void put_json(sf_json *json, const void *place, const char *path) {
+    const sf_form_fit *fit = place;
+    const sf_compression_config *c = fit->config;
+    (void)path;
+    sf_json_text(json, "law", "low_density_foam");
+    sf_json_text(json, "name", c->name);
+    sf_json_text(json, "curve_form", c->form.form.curve->name);
+    sf_json_text(json, "rate_model", sf_form_rate_name(c->form.rate));
+    sf_json_integer(json, "parameter_count", c->form.unknown_count);
+    sf_json_number(json, "loading_rms", fit->loading_rms);
+    sf_json_bool(json, "describes_the_tests", !sf_form_fit_is_poor(fit));
+    json_unknowns(json, fit);
+    if (fit->has_unloading) {
+        json_unloading(json, "unloading_with_ALPHA_1", &fit->unloading_of_one);
+        json_unloading(json, "unloading", &fit->unloading);
+    }
+    json_tests(json, fit, "tests", c->test_count, c->test, fit->test);
+    json_tests(json, fit, "predicted", c->predicted_count, c->predicted, fit->predicted);
+}
+
+const sf_compression_kind sf_compression_form_kind = {.label = "",
+                                                      .files =
+                                                          "material.cfg, material.csv, fit.json, fit.csv",
+                                                      .outputs = outputs,
+                                                      .size = sizeof(sf_form_fit),
+                                                      .run = run,
+                                                      .free = release,
+                                                      .material = material_of,
+                                                      .title = title,
+                                                      .describe = describe,
+                                                      .points = put_points,
+                                                      .json = put_json,
+                                                      .warn = warn};
