@@ -269,18 +269,104 @@ const char *sf_case_source_find(const sf_case_source *source, int line, int *fil
     return source->piece[k].path;
 }
 
-/* The text under construction. */
+/* ---- the walk over includes ---- */
+
+typedef struct walk {
+    const sf_case_visitor *visitor;
+    const char *folder; /* of the case: includes are relative to it */
+    int includes;
+    size_t bytes; /* read so far: includes of includes multiply */
+    sf_case_scan scan;
+} walk;
+
+static sf_status walk_file(walk *w, const char *path, const sf_case_slice *included_as, const char *from,
+                           int line, int depth, sf_error *err);
+
+static sf_status walk_include(walk *w, const sf_case_slice *name, const char *path, int line, int depth,
+                              sf_error *err) {
+    const sf_case_visitor *v = w->visitor;
+    char *included = NULL;
+    if (++w->includes > MOST_INCLUDES)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: more than %d files are included", path, line,
+                       MOST_INCLUDES);
+    if (asprintf(&included, "%s%s%.*s", *name->text == '/' ? "" : w->folder, *name->text == '/' ? "" : "/",
+                 (int)name->length, name->text) < 0)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+    if (walk_file(w, included, name, path, line, depth + 1, err) == SF_OK && v->resume)
+        v->resume(v->context, path, line + 1, err);
+    free(included);
+    return err->status;
+}
+
+static sf_status walk_lines(walk *w, const char *text, size_t size, const char *path, int depth,
+                            sf_error *err) {
+    const sf_case_visitor *v = w->visitor;
+    for (int line = 1; size > 0; line++) {
+        const char *end = memchr(text, '\n', size);
+        size_t length = end ? (size_t)(end - text) : size;
+        sf_case_slice include;
+        w->scan.path = path;
+        w->scan.line = line;
+        SF_TRY(sf_case_scan_line(&w->scan, text, length, &include, err));
+        if (!include.text) {
+            SF_TRY(v->line(v->context, text, length, end != NULL, err));
+        } else {
+            if (v->include)
+                SF_TRY(v->include(v->context, text, length, end != NULL, &include, err));
+            SF_TRY(walk_include(w, &include, path, line, depth, err));
+        }
+        text += length + (end != NULL);
+        size -= length + (end != NULL);
+    }
+    w->scan.path = path;
+    return sf_case_scan_end(&w->scan, err);
+}
+
+/* `from`: the file with the @include, at `line`; NULL: none. */
+static sf_status walk_file(walk *w, const char *path, const sf_case_slice *included_as, const char *from,
+                           int line, int depth, sf_error *err) {
+    const sf_case_visitor *v = w->visitor;
+    char where[SF_CASE_WHERE_SIZE] = "", *text = NULL;
+    size_t size = 0;
+    sf_error inner = SF_ERROR_INIT;
+    if (from)
+        snprintf(where, sizeof where, "%s:%d: ", from, line);
+    if (depth > INCLUDE_DEPTH)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s@include is nested more than %d deep", where, INCLUDE_DEPTH);
+    if (sf_plain_read(path, "file", LARGEST_TEXT, &text, &size, &inner) != SF_OK)
+        return SF_FAIL(err, inner.status, "%s%s", where, inner.text);
+    size_t mark = strncmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark */
+    w->bytes += size;
+    if (w->bytes > LARGEST_TEXT)
+        SF_FAIL(err, SF_ERR_INPUT, "%sthe file %s and its includes are larger than %d bytes", where, path,
+                LARGEST_TEXT);
+    else if ((!v->begin || v->begin(v->context, path, included_as, err) == SF_OK) &&
+             walk_lines(w, text + mark, size - mark, path, depth, err) == SF_OK && v->end)
+        v->end(v->context, err);
+    free(text);
+    return err->status;
+}
+
+sf_status sf_case_walk(const char *path, const sf_case_visitor *visitor, sf_error *err) {
+    char *folder = sf_case_folder_of(path, err);
+    walk w = {.visitor = visitor, .folder = folder};
+    if (folder)
+        walk_file(&w, path, NULL, NULL, 0, 0, err);
+    free(folder);
+    return err->status;
+}
+
+/* ---- the text with its includes in place ---- */
+
 typedef struct text_copy {
     FILE *out;
-    int lines, includes;
-    size_t bytes; /* read so far */
-    sf_case_scan scan;
-    const char *folder;     /* of the case: includes are relative to it */
+    int lines;
     sf_case_source *source; /* NULL: not wanted */
 } text_copy;
 
 /* The next line of the text is line `line` of the file. */
-static sf_status begin_piece(text_copy *copy, const char *path, int line, sf_error *err) {
+static sf_status begin_piece(void *context, const char *path, int line, sf_error *err) {
+    const text_copy *copy = context;
     sf_case_source *source = copy->source;
     if (!source)
         return SF_OK;
@@ -299,75 +385,23 @@ static sf_status begin_piece(text_copy *copy, const char *path, int line, sf_err
     return SF_OK;
 }
 
-static sf_status copy_text(text_copy *copy, const char *path, const char *from, int line, int depth,
-                           sf_error *err);
-
-static sf_status copy_include(text_copy *copy, sf_case_slice name, const char *path, int line, int depth,
-                              sf_error *err) {
-    char *included = NULL;
-    int length = (int)name.length;
-    if (++copy->includes > MOST_INCLUDES)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: more than %d files are included", path, line,
-                       MOST_INCLUDES);
-    if (asprintf(&included, "%s%s%.*s", *name.text == '/' ? "" : copy->folder, *name.text == '/' ? "" : "/",
-                 length, name.text) < 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-    fprintf(copy->out, SF_INCLUDED_BEGIN "%.*s" SF_INCLUDED_END "\n", length, name.text);
-    copy->lines++;
-    if (copy_text(copy, included, path, line, depth + 1, err) == SF_OK)
-        begin_piece(copy, path, line + 1, err);
-    free(included);
-    return err->status;
+static sf_status begin_copy(void *context, const char *path, const sf_case_slice *included_as,
+                            sf_error *err) {
+    text_copy *copy = context;
+    if (included_as) {
+        fprintf(copy->out, SF_INCLUDED_BEGIN "%.*s" SF_INCLUDED_END "\n", (int)included_as->length,
+                included_as->text);
+        copy->lines++;
+    }
+    return begin_piece(copy, path, 1, err);
 }
 
-static sf_status copy_line(text_copy *copy, const char *text, size_t length, const char *path, int line,
-                           int depth, sf_error *err) {
-    sf_case_slice include;
-    copy->scan.path = path;
-    copy->scan.line = line;
-    SF_TRY(sf_case_scan_line(&copy->scan, text, length, &include, err));
-    if (include.text)
-        return copy_include(copy, include, path, line, depth, err);
+static sf_status copy_line(void *context, const char *text, size_t length, bool ended, sf_error *err) {
+    text_copy *copy = context;
+    (void)ended;
     fwrite(text, 1, length, copy->out);
     fputc('\n', copy->out);
     copy->lines++;
-    return SF_OK;
-}
-
-static sf_status copy_lines(text_copy *copy, const char *text, size_t size, const char *path, int depth,
-                            sf_error *err) {
-    SF_TRY(begin_piece(copy, path, 1, err));
-    for (int line = 1; size > 0; line++) {
-        const char *end = memchr(text, '\n', size);
-        size_t length = end ? (size_t)(end - text) : size;
-        SF_TRY(copy_line(copy, text, length, path, line, depth, err));
-        text += length + (end != NULL);
-        size -= length + (end != NULL);
-    }
-    copy->scan.path = path;
-    return sf_case_scan_end(&copy->scan, err);
-}
-
-/* `from`: the file with the @include, at `line`; NULL: none. */
-static sf_status copy_text(text_copy *copy, const char *path, const char *from, int line, int depth,
-                           sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE] = "", *text = NULL;
-    size_t size = 0;
-    sf_error inner = SF_ERROR_INIT;
-    if (from)
-        snprintf(where, sizeof where, "%s:%d: ", from, line);
-    if (depth > INCLUDE_DEPTH)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s@include is nested more than %d deep", where, INCLUDE_DEPTH);
-    if (sf_plain_read(path, "file", LARGEST_TEXT, &text, &size, &inner) != SF_OK)
-        return SF_FAIL(err, inner.status, "%s%s", where, inner.text);
-    size_t mark = strncmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark */
-    copy->bytes += size;                                         /* includes of includes multiply */
-    if (copy->bytes > LARGEST_TEXT)
-        SF_FAIL(err, SF_ERR_INPUT, "%sthe file %s and its includes are larger than %d bytes", where, path,
-                LARGEST_TEXT);
-    else
-        copy_lines(copy, text + mark, size - mark, path, depth, err);
-    free(text);
     return err->status;
 }
 
@@ -390,16 +424,17 @@ static void put_override(const char *text, FILE *out) {
 
 char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
                         sf_error *err) {
-    char *text = NULL, *folder = sf_case_folder_of(path, err);
+    char *text = NULL;
     size_t size = 0;
-    FILE *out = folder ? open_memstream(&text, &size) : NULL;
+    FILE *out = open_memstream(&text, &size);
     if (!out) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-        free(folder);
         return NULL;
     }
-    text_copy copy = {.out = out, .folder = folder, .source = source};
-    copy_text(&copy, path, NULL, 0, 0, err);
+    text_copy copy = {.out = out, .source = source};
+    const sf_case_visitor visitor = {
+        .context = &copy, .begin = begin_copy, .line = copy_line, .resume = begin_piece};
+    sf_case_walk(path, &visitor, err);
     for (int i = 0; i < count && err->status == SF_OK; i++) {
         const char *file = sf_case_override_file(overrides[i]);
         put_override(overrides[i], out);
@@ -408,7 +443,6 @@ char *sf_case_load_text(const char *path, int count, const char *const *override
     }
     if (fclose(out) != 0)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-    free(folder);
     if (err->status != SF_OK) {
         free(text);
         return NULL;

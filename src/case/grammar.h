@@ -58,6 +58,23 @@ typedef struct sf_case_source {
     sf_case_piece *piece; /* [count] ascending in `first` */
 } sf_case_source;
 
+/* The only walk over a file and its includes, in the order of the text. `begin` and `end` frame the lines of
+ * a file; `include` receives a line with an @include before its file begins, `resume` the next line of the
+ * outer file after it has ended. Members may be NULL, except `line`. `ended`: the line has a line end. */
+typedef struct sf_case_visitor {
+    void *context;
+    sf_status (*begin)(void *context, const char *path, const sf_case_slice *included_as, sf_error *err);
+    sf_status (*line)(void *context, const char *text, size_t length, bool ended, sf_error *err);
+    sf_status (*include)(void *context, const char *text, size_t length, bool ended,
+                         const sf_case_slice *name, sf_error *err);
+    sf_status (*resume)(void *context, const char *path, int line, sf_error *err);
+    sf_status (*end)(void *context, sf_error *err);
+} sf_case_visitor;
+
+/* Refuses includes that are missing or no plain files, nested or many beyond reason, and what the scan
+ * refuses. */
+sf_status sf_case_walk(const char *path, const sf_case_visitor *visitor, sf_error *err);
+
 /* The text of the case with its includes put in place and the overrides as comments; from malloc. Includes
  * that are missing or no plain files are refused. `source` (may be NULL) is filled. */
 char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,

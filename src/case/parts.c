@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEPTH = 10, MOST_PARTS = 1000, NAME_SIZE = 4096 };
+enum { DEPTH = 12, MOST_PARTS = 1000 };
 
 void sf_case_parts_free(sf_case_parts *parts) {
     for (int k = 0; k < parts->count; k++) {
@@ -48,73 +48,67 @@ static sf_status add_part(sf_case_parts *parts, const char *path, sf_error *err)
     return err->status;
 }
 
-static sf_status read_part(sf_case_parts *parts, const char *path, const char *folder, int depth,
-                           sf_error *err);
+/* The parts whose text is being written: a file and those that include it. */
+typedef struct open_parts {
+    sf_case_parts *parts;
+    int depth;
+    struct {
+        int index;
+        char *text;
+        size_t size;
+        FILE *out;
+    } at[DEPTH];
+} open_parts;
 
-/* The line of an include becomes that of a part; `folder`: where includes begin. */
-static sf_status read_include(sf_case_parts *parts, const sf_case_slice *name, const char *folder, int depth,
-                              FILE *out, sf_error *err) {
-    char path[NAME_SIZE];
-    int index = parts->count;
-    snprintf(path, sizeof path, "%s%s%.*s", *name->text == '/' ? "" : folder, *name->text == '/' ? "" : "/",
-             (int)name->length, name->text);
-    fprintf(out, "@include \"#%d\"", index);
-    SF_TRY(read_part(parts, path, folder, depth + 1, err));
-    if (!(parts->part[index].included_as = strndup(name->text, name->length)))
-        no_memory(err);
+static sf_status begin_part(void *context, const char *path, const sf_case_slice *included_as,
+                            sf_error *err) {
+    open_parts *o = context;
+    int index = o->parts->count;
+    if (o->depth == DEPTH)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: @include is nested more than %d deep", path, DEPTH - 1);
+    SF_TRY(add_part(o->parts, path, err));
+    if (included_as && !(o->parts->part[index].included_as = strndup(included_as->text, included_as->length)))
+        return no_memory(err);
+    o->at[o->depth].index = index;
+    o->at[o->depth].out = open_memstream(&o->at[o->depth].text, &o->at[o->depth].size);
+    return o->at[o->depth++].out ? SF_OK : no_memory(err);
+}
+
+static sf_status put_line(void *context, const char *text, size_t length, bool ended, sf_error *err) {
+    open_parts *o = context;
+    FILE *out = o->at[o->depth - 1].out;
+    fwrite(text, 1, length, out);
+    fputs(ended ? "\n" : "", out);
     return err->status;
 }
 
-static sf_status read_lines(sf_case_parts *parts, const char *text, const char *path, const char *folder,
-                            int depth, FILE *out, sf_error *err) {
-    sf_case_scan scan = {.path = path};
-    while (*text && err->status == SF_OK) {
-        size_t length = strcspn(text, "\n");
-        sf_case_slice include;
-        scan.line++;
-        SF_TRY(sf_case_scan_line(&scan, text, length, &include, err));
-        if (include.text) {
-            fwrite(text, 1, strspn(text, " \t"), out);
-            read_include(parts, &include, folder, depth, out, err);
-            fwrite(include.text + include.length + 1, 1,
-                   (size_t)(text + length - include.text) - include.length - 1, out);
-        } else {
-            fwrite(text, 1, length, out);
-        }
-        fputs(text[length] ? "\n" : "", out);
-        text += length + (text[length] == '\n');
-    }
-    return err->status;
+/* The line of an include becomes that of the next part. */
+static sf_status put_include(void *context, const char *text, size_t length, bool ended,
+                             const sf_case_slice *name, sf_error *err) {
+    open_parts *o = context;
+    FILE *out = o->at[o->depth - 1].out;
+    const char *rest = name->text + name->length + 1;
+    fprintf(out, "%.*s@include \"#%d\"", (int)strspn(text, " \t"), text, o->parts->count);
+    return put_line(o, rest, (size_t)(text + length - rest), ended, err);
+}
+
+static sf_status end_part(void *context, sf_error *err) {
+    open_parts *o = context;
+    o->depth--;
+    FILE *out = o->at[o->depth].out;
+    bool good = out && fclose(out) == 0;
+    o->parts->part[o->at[o->depth].index].text = o->at[o->depth].text;
+    return good ? err->status : no_memory(err);
 }
 
 /* Reads the file and what it includes as the next parts. */
-static sf_status read_part(sf_case_parts *parts, const char *path, const char *folder, int depth,
-                           sf_error *err) {
-    char *source = NULL, *text = NULL;
-    size_t size = 0;
-    int index = parts->count;
-    if (depth > DEPTH)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: @include is nested more than %d deep", path, DEPTH);
-    SF_TRY(add_part(parts, path, err));
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        return no_memory(err);
-    if (sf_plain_read(path, "case file", SF_PLAIN_TEXT, &source, NULL, err) == SF_OK)
-        read_lines(parts, source + (strncmp(source, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0), path, folder, depth,
-                   out, err);
-    free(source);
-    if (fclose(out) != 0)
-        no_memory(err);
-    parts->part[index].text = text;
-    return err->status;
-}
-
-/* With the includes of the file, which begin at its own folder. */
 static sf_status read_whole(sf_case_parts *parts, const char *path, sf_error *err) {
-    char *folder = sf_case_folder_of(path, err);
-    if (folder)
-        read_part(parts, path, folder, 0, err);
-    free(folder);
+    open_parts o = {.parts = parts};
+    const sf_case_visitor visitor = {
+        .context = &o, .begin = begin_part, .line = put_line, .include = put_include, .end = end_part};
+    sf_case_walk(path, &visitor, err);
+    while (o.depth > 0) /* after a failure */
+        end_part(&o, err);
     return err->status;
 }
 
