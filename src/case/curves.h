@@ -35,4 +35,7 @@ void sf_case_curve_free(sf_case_curve *curve);
 /* The readers of SF_KEY_CURVE and SF_KEY_CURVES. */
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err);
+/* The reader of SF_KEY_MOTION, the displacement over time of a missile that a machine drives. */
+sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *setting, char *detail,
+                              size_t size, sf_error *err);
 #endif

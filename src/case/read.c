@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAST_STEPS = 3, NAMED_UNKNOWN = 10 };
+enum { NAMED_UNKNOWN = 10 };
 
 /* Names that are not in the table: the first one in full, the next ones in short. */
 typedef struct unknown {
@@ -236,241 +236,6 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
-static bool key_is_given(const void *reader, const char *group, const char *key) {
-    return sf_case_is_given(reader, group, key);
-}
-
-/* Checks the law itself as the solver will build it: it may refuse the curves. */
-static sf_status check_law(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_material *m = reader->material;
-    const char *place = "material", *file = NULL;
-    char path[SF_CASE_GROUP_SIZE];
-    sf_material_law law;
-    sf_error inner = SF_ERROR_INIT;
-    if (sf_material_law_build(m, &law, &inner) == SF_OK) {
-        sf_material_law_free(&law);
-        return SF_OK;
-    }
-    if (m->law->curves != SIZE_MAX)
-        place = sf_case_is_given(reader, "material", "curve") ? "material.curve" : "material.curves";
-    sf_case_material_path(reader->material_group, place, path, sizeof path);
-    config_lookup_string(&reader->config, path, &file);
-    return SF_FAIL(err, inner.status, "%s: %s: %s%s%s", sf_case_where_is(reader, place, where), path,
-                   file ? file : "", file ? ": " : "", inner.text);
-}
-
-/* The law's rules. */
-static sf_status check_material(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    char text[sizeof((sf_error *)NULL)->text];
-    const sf_material *m = reader->material;
-    const sf_given given = {key_is_given, reader};
-    const char *place = "material";
-    sf_error inner = SF_ERROR_INIT;
-    if (!m->law->check_keys || m->law->check_keys(m->card, &given, &place, &inner) == SF_OK)
-        return check_law(reader, err);
-    sf_case_material_path(reader->material_group, inner.text, text, sizeof text);
-    return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), text);
-}
-
-static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const double *d = reader->out->missile_card.direction;
-    double square = sf_dot3(d, d);
-    if (!(square > 0.0) || !(d[2] < 0.0) || !isfinite(square))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: missile.direction: [%g, %g, %g] does not point down to the pad; its third "
-                       "component must be negative",
-                       sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
-    return SF_OK;
-}
-
-/* The free missile falls while it travels along its direction. */
-static sf_status check_reach(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    const sf_missile_card *card = &c->missile_card;
-    double time = c->run.end_time, reach = 0;
-    for (int64_t k = 0; k < c->motion_count; k++)
-        reach = fmax(reach, c->motion_displacement[k]);
-    if (c->motion_count == 0)
-        reach = card->speed * time - 0.5 * card->gravity * card->direction[2] * time * time;
-    if (reach > card->gap)
-        return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: missile.gap: the missile travels %g m until solver.end_time (%g s) and never reaches "
-                   "the pad, which is %g m away",
-                   sf_case_where_is(reader, "missile.gap", where), reach, time, card->gap);
-}
-
-/* A curve needs 3 rows of the history, one per step; frames are files' worth of fields. */
-static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    const sf_run_options *run = &c->run;
-    if (run->end_time < LEAST_STEPS * run->step_limit)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: solver.end_time: %g s is less than %d times solver.step_limit (%g s): there "
-                       "would be no curve",
-                       sf_case_where_is(reader, "solver.end_time", where), run->end_time, LEAST_STEPS,
-                       run->step_limit);
-    if (run->step_limit < SF_SMALLEST_STEP * run->end_time)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: solver.step_limit: %g s is below %g of solver.end_time (%g s), where a run stops",
-                       sf_case_where_is(reader, "solver.step_limit", where), run->step_limit,
-                       SF_SMALLEST_STEP, run->end_time);
-    if (run->end_time / run->frame_interval > SF_MOST_FRAMES)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: output.frame_interval: %g s up to solver.end_time (%g s) means %.3g frames; at "
-                       "most %d are written",
-                       sf_case_where_is(reader, "output.frame_interval", where), run->frame_interval,
-                       run->end_time, run->end_time / run->frame_interval, SF_MOST_FRAMES);
-    for (int k = 0; k < c->frame_time_count; k++)
-        if (c->frame_time[k] > run->end_time)
-            sf_sink_tell(reader->sink, SF_WARNING,
-                         "%s: output.times: %g s lies beyond solver.end_time (%g s): there "
-                         "will be no such frame",
-                         sf_case_where_is(reader, "output.times", where), c->frame_time[k], run->end_time);
-    return SF_OK;
-}
-
-/* The layer with this name of `length` characters; -1: none. */
-static int find_layer(const sf_case *c, const char *name, size_t length) {
-    for (int k = 0; k < c->layer_count; k++)
-        if (strlen(c->layer[k].name) == length && strncmp(c->layer[k].name, name, length) == 0)
-            return k;
-    return -1;
-}
-
-/* Two different layers, "NAME/NAME". */
-static sf_status find_interface(const sf_case_reader *reader, const char *name, int layer[2], sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const char *slash = strchr(name, '/');
-    layer[0] = slash ? find_layer(reader->out, name, (size_t)(slash - name)) : -1;
-    layer[1] = slash ? find_layer(reader->out, slash + 1, strlen(slash + 1)) : -1;
-    if (layer[0] >= 0 && layer[1] >= 0 && layer[0] != layer[1])
-        return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: pad.sliding_interfaces: \"%s\" does not name two layers of materials, for example "
-                   "\"cover/core\"",
-                   sf_case_where_is(reader, "pad.sliding_interfaces", where), name);
-}
-
-/* Interface k, in either order of its layers, is not among those before it. */
-static sf_status check_interface_once(const sf_case_reader *reader, int k, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    const int *own = c->interface_layer[k];
-    for (int j = 0; j < k; j++) {
-        const int *other = c->interface_layer[j];
-        if ((own[0] == other[0] && own[1] == other[1]) || (own[0] == other[1] && own[1] == other[0]))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: pad.sliding_interfaces: \"%s\" and \"%s\" are the same interface",
-                           sf_case_where_is(reader, "pad.sliding_interfaces", where), c->interface_name[j],
-                           c->interface_name[k]);
-    }
-    return SF_OK;
-}
-
-/* Rules on the layers; their names, for sentences, as the pad's group. */
-static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    sf_case *c = reader->out;
-    if (!reader->layers && c->interface_count > 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.sliding_interfaces: the pad has one material; layers are the groups of "
-                       "materials",
-                       sf_case_where_is(reader, "pad.sliding_interfaces", where));
-    if (reader->layers && sf_case_is_given(reader, "pad", "group"))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: pad.group: the groups of materials name the pad's volumes; only one of the two may "
-            "be given",
-            sf_case_where_is(reader, "pad.group", where));
-    for (int k = 0; k < c->interface_count; k++)
-        if (find_interface(reader, c->interface_name[k], c->interface_layer[k], err) != SF_OK ||
-            check_interface_once(reader, k, err) != SF_OK)
-            return err->status;
-    for (int k = 0; k < c->layer_count; k++) {
-        size_t used = k ? strlen(c->pad_group) : 0;
-        snprintf(c->pad_group + used, sizeof c->pad_group - used, "%s%s", k ? "\", \"" : "",
-                 c->layer[k].name);
-    }
-    return SF_OK;
-}
-
-static bool in_list(const char *name, int count, const char (*list)[SF_CASE_NAME_SIZE]) {
-    for (int g = 0; g < count; g++)
-        if (strcmp(list[g], name) == 0)
-            return true;
-    return false;
-}
-
-/* Friction and weight belong to a pad that rests. */
-static sf_status check_resting(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    static const char *const keys[] = {"friction", "gravity"};
-    for (int k = 0; k < 2 && c->base_rule != SF_BASE_RESTING; k++)
-        if (sf_case_is_given(reader, "pad", keys[k])) {
-            char key[32];
-            snprintf(key, sizeof key, "pad.%s", keys[k]);
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: %s: it acts on a resting pad only, and pad.base is not \"resting\"",
-                           sf_case_where_is(reader, key, where), key);
-        }
-    if (c->base_rule == SF_BASE_RESTING && !(c->pad_gravity > 0))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.gravity: a resting pad without weight is not held by anything",
-                       sf_case_where_is(reader, "pad.gravity", where));
-    return SF_OK;
-}
-
-/* The base: surfaces that no other key holds or moves. */
-static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    if (c->fixed_count + c->sliding_count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
-                       sf_case_where_is(reader, "pad.fixed", where));
-    if (sf_case_is_given(reader, "pad", "base") && c->fixed_count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.base: pad.fixed names no surface that it could apply to",
-                       sf_case_where_is(reader, "pad.base", where));
-    for (int g = 0; g < c->fixed_count && sf_case_is_given(reader, "pad", "base"); g++) {
-        const char *name = c->fixed_group[g],
-                   *other = strcmp(name, c->contact_group) == 0                   ? "contact"
-                            : in_list(name, c->sliding_count, c->sliding_group)   ? "sliding"
-                            : in_list(name, c->symmetry_count, c->symmetry_group) ? "symmetry"
-                                                                                  : NULL;
-        if (other)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: pad.base: the surface group \"%s\" is in pad.fixed and in pad.%s",
-                           sf_case_where_is(reader, "pad.base", where), name, other);
-    }
-    return check_resting(reader, err);
-}
-
-/* Rules that join several keys, on the values as they are given. */
-static sf_status check_given(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    if (!reader->layers && check_material(reader, err) != SF_OK)
-        return err->status;
-    if (check_layers(reader, err) != SF_OK)
-        return err->status;
-    if (!c->missile.path && c->missile.parameter_count > 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: geometry.missile_parameters are given but no geometry.missile_file that they belong to",
-            sf_case_where_is(reader, "geometry.missile_parameters", where));
-    if (check_base(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
-        sf_case_check_freedom(reader, err) != SF_OK)
-        return err->status;
-    return sf_case_check_motion(reader, err);
-}
-
 /* Derives values from those read; the only function that changes values after reading. */
 static void complete(const sf_case_reader *reader, sf_case *c) {
     sf_missile_card *card = &c->missile_card;
@@ -481,38 +246,6 @@ static void complete(const sf_case_reader *reader, sf_case *c) {
         card->gravity = 0.0;
     c->position_given = sf_case_is_given(reader, "missile", "position");
     c->symmetry_given = sf_case_is_given(reader, "pad", "symmetry");
-}
-
-/* A free missile's first step adds the speed g dt, and the energy balance of the run sees it. */
-static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
-    static const double SHARE = 0.5; /* of the energy limit: the rest of the run needs some, too */
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    double gain = -c->missile_card.gravity * c->missile_card.direction[2] * c->run.step_limit,
-           most = SHARE * c->run.energy_limit;
-    if (c->motion_count > 0 || 0.5 * gain <= most * c->missile_card.speed)
-        return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: missile.velocity: %g m/s is too slow to resolve: in one solver.step_limit (%g s) "
-                   "gravity adds %g m/s, an energy error of %.3g %%, more than half of solver.energy_limit "
-                   "(%g %%)",
-                   sf_case_where_is(reader, "missile.velocity", where), c->missile_card.speed,
-                   c->run.step_limit, gain, 50 * gain / c->missile_card.speed, 100 * c->run.energy_limit);
-}
-
-/* Rules on the complete case. */
-static sf_status check_complete(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    if (check_times(reader, err) != SF_OK || check_reach(reader, err) != SF_OK ||
-        check_speed(reader, err) != SF_OK)
-        return err->status;
-    if (c->support_ratio >= 2.0)
-        sf_sink_tell(reader->sink, SF_WARNING,
-                     "%s: kernel.support_ratio = %g: from 2 on the constraint matrix is "
-                     "nearly singular",
-                     sf_case_where_is(reader, "kernel.support_ratio", where), c->support_ratio);
-    return SF_OK;
 }
 
 /* The law, on which the other keys of the material depend, and its card. */
@@ -550,7 +283,7 @@ static sf_status read_layer(const sf_case_reader *reader, const config_setting_t
     own->material = material;
     snprintf(own->material_group, sizeof own->material_group, "materials.%s", config_setting_name(setting));
     if (choose_law(own, err) == SF_OK && check_names(own, setting, own->material_group, err) == SF_OK &&
-        read_keys(own, err) == SF_OK && check_material(own, err) == SF_OK)
+        read_keys(own, err) == SF_OK && sf_case_check_card(own, err) == SF_OK)
         snprintf(material->name, sizeof material->name, "%s", config_setting_name(setting));
     free(own);
     return err->status;
@@ -649,9 +382,9 @@ sf_status sf_case_read_values(const char *path, int count, const char *const *ov
     out->text = sf_case_load_text(path, count, overrides, &reader.source, err);
     if (!out->text || parse_text(&reader, count, overrides, err) != SF_OK || read_keys(&reader, err) != SF_OK)
         goto done;
-    if (check_given(&reader, err) == SF_OK) {
+    if (sf_case_check_given(&reader, err) == SF_OK) {
         complete(&reader, out);
-        check_complete(&reader, err);
+        sf_case_check_complete(&reader, err);
     }
 done:
     if (reader.listing)
@@ -682,7 +415,7 @@ static sf_status read_alone(const char *path, sf_case *scratch, sf_error *err) {
              sf_case_override(&reader.config, override, err) == SF_OK && choose_law(&reader, err) == SF_OK &&
              check_names(&reader, config_root_setting(&reader.config), "", err) == SF_OK &&
              read_keys(&reader, err) == SF_OK)
-        check_material(&reader, err);
+        sf_case_check_card(&reader, err);
     if (reader.listing)
         fclose(reader.listing);
     free(override);

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rules that join several keys of a case, or a key with the law of the material. Each refusal is
+ * SF_ERR_INPUT with place, key, value and bound. Internal to src/case. */
 #ifndef SF_CASE_RULES_H
 #define SF_CASE_RULES_H
+
 #include "case/reader.h"
 
-/* The rules that join missile.freedom with other keys. Internal to src/case. */
+/* The card of the reader's material, and the law as the solver will build it. */
+sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err);
+/* The values as they are given. */
+sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err);
+/* The complete case; warnings go to the reader's sink. */
+sf_status sf_case_check_complete(const sf_case_reader *reader, sf_error *err);
 
-sf_status sf_case_check_freedom(const sf_case_reader *reader, sf_error *err);
-
-/* The key missile.motion. Internal to src/case. */
-
-/* The reader of SF_KEY_MOTION, and the rules that join the motion with mass, velocity, gravity and end time.
- */
-sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *setting, char *detail,
-                              size_t size, sf_error *err);
-sf_status sf_case_check_motion(const sf_case_reader *reader, sf_error *err);
 #endif

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "case/curves.h"
-#include "case/rules.h"
 #include "io/plain_file.h"
 
 /* Reads one value of each kind of sf_key_kind into the case. */
