@@ -391,6 +391,9 @@ void fixture_set_affine(fixture *f, const double gradient[9], const double shift
 void fixture_step(fixture *f) {
     sf_error err = SF_ERROR_INIT;
     require(sf_step_evaluate(&f->model, &f->operators, &f->state, &err), &err);
+    const sf_ledger *l = &f->state.ledger;
+    if (!(l->largest_error >= fabs(l->error)))
+        fail_msg("the energy error is %g, and the largest one %g", l->error, l->largest_error);
 }
 
 void fixture_advance(fixture *f) {

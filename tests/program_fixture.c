@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "program_fixture.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -151,6 +152,24 @@ program_bytes program_read_file(const char *path) {
     bytes.data[bytes.size] = '\0';
     fclose(file);
     return bytes;
+}
+
+double program_json_number(const char *json, const char *after, const char *key) {
+    char quoted[96], *end;
+    const char *at = after && json ? strstr(json, after) : json;
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    at = at ? strstr(at, quoted) : NULL;
+    if (!at)
+        fail_msg("no %s after %s in: %s", key, after ? after : "the beginning", json);
+    double value = strtod(at + strlen(quoted), &end);
+    return end == at + strlen(quoted) ? NAN : value;
+}
+
+double program_file_number(const program_place *place, const char *name, const char *key) {
+    program_bytes text = program_read_file(program_path(place, name));
+    double value = program_json_number(text.data, NULL, key);
+    free(text.data);
+    return value;
 }
 
 sf_h5 *program_open_h5(const program_place *place, const char *name) {

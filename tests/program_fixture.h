@@ -63,6 +63,11 @@ program_bytes program_read_file(const char *path);
 void program_write_file(const char *path, const void *data, size_t size);
 /* Writes folder/name and returns its path, as program_path does. */
 const char *program_write_text(const program_place *place, const char *name, const char *text);
+/* The number behind "key": in a JSON text, from the first place of the text `after` on (NULL: anywhere). NaN
+ * if no number follows; fails the test if the key is missing. */
+double program_json_number(const char *json, const char *after, const char *key);
+/* The same of the file folder/name. */
+double program_file_number(const program_place *place, const char *name, const char *key);
 /* Fails unless folder/page is well-formed, loads nothing, runs nothing, has each id once and shows the words.
  */
 void program_assert_page(const program_place *place, const char *page, const char *words);

@@ -254,6 +254,21 @@ static void a_rocking_pad_conserves_momentum_with_the_anvil(void **state) {
     fixture_free(&f);
 }
 
+/* The missile's reach follows the points that it can touch, not those on the anvil. */
+static void the_reach_is_that_of_the_top(void **state) {
+    fixture f;
+    double finest = INFINITY;
+    (void)state;
+    resting_start(&f, &(resting){.gap = 1});
+    for (int64_t c = 0; c < f.model.contact_count; c++)
+        finest = smaller(finest, f.model.spacing[f.model.contact_node[c]]);
+    for (int64_t k = 0; k < f.model.rest_count; k++)
+        f.model.spacing[f.model.rest_node[k]] = 0.5 * finest;
+    fixture_start(&f);
+    assert_true(f.operators.gram.spacing == finest);
+    fixture_free(&f);
+}
+
 /* One layer of cells: nodes of top and base share their kernels, and neither surface is penetrated. */
 static void a_thin_pad_is_outside_both(void **state) {
     (void)state;
@@ -376,6 +391,7 @@ int main(void) {
         cmocka_unit_test(below_the_friction_angle_it_sticks_and_above_it_slides),
         cmocka_unit_test(a_thrown_block_flies_and_lands),
         cmocka_unit_test(a_rocking_pad_conserves_momentum_with_the_anvil),
+        cmocka_unit_test(the_reach_is_that_of_the_top),
         cmocka_unit_test(a_thin_pad_is_outside_both),
         cmocka_unit_test(same_bits_for_any_number_of_threads),
         cmocka_unit_test(contradictions_of_a_case_are_refused),

@@ -100,6 +100,29 @@ static void collapsed_draws_are_above_every_peak(void **state) {
     free(p);
 }
 
+/* A model's weight is shared by its states, however many it has. */
+static void a_model_with_fewer_states_keeps_its_weight(void **state) {
+    static const double probability[] = {0.3, 0.5, 0.9};
+    const double expected[] = {ceil(0.3 / 0.6 * STATES), ceil(0.5 / 0.6 * STATES), 1e6};
+    posterior *many = posterior_new(0), *few = posterior_new(0);
+    double value[3];
+    sf_error err = SF_ERROR_INIT;
+    (void)state;
+    few->inference.chains.kept = KEPT / 9;
+    for (int s = 0; s < STATES * KINDS; s++)
+        few->quantity[s] = log(1e6);
+    many->average.models = 2;
+    many->average.model[1] = &few->inference;
+    many->average.weight[0] = 0.6;
+    many->average.weight[1] = 0.4;
+    assert_int_equal(sf_drop_average_quantiles(&many->average, -1, SF_FIT_A_MAX, 3, probability, value, &err),
+                     SF_OK);
+    for (int q = 0; q < 3; q++)
+        assert_true(fabs(value[q] / expected[q] - 1) < 2.0 / STATES); /* a state more or less by rounding */
+    free(many);
+    free(few);
+}
+
 /* What a writer writes. */
 typedef sf_status write_part(FILE *file, const sf_drop_average *average, sf_error *err);
 
@@ -162,6 +185,7 @@ static void every_output_says_open(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(collapsed_draws_are_above_every_peak),
+        cmocka_unit_test(a_model_with_fewer_states_keeps_its_weight),
         cmocka_unit_test(every_output_says_open),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

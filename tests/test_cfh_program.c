@@ -17,19 +17,6 @@
 static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
 static const double SPACING = 15;
 
-/* The number after the first "key": in the text that follows `after`; NaN for null. */
-static double number_of(const char *json, const char *after, const char *key) {
-    char quoted[64];
-    const char *at = strstr(json, after);
-    snprintf(quoted, sizeof quoted, "\"%s\": ", key);
-    at = at ? strstr(at, quoted) : NULL;
-    if (!at)
-        fail_msg("no %s after %s in: %s", key, after, json);
-    char *end;
-    double value = strtod(at + strlen(quoted), &end);
-    return end == at + strlen(quoted) ? NAN : value;
-}
-
 static char *read_text(const program_place *p, const char *name) {
     return program_read_file(program_path(p, name)).data;
 }
@@ -48,21 +35,22 @@ static void the_height_found_gives_the_limit_when_it_is_simulated(void **state) 
         program_succeed(p, "cfh", "'%s' -o out -t 1 --limit-hic 1e6 %s --rig '%s'", fixture_source(EXAMPLE),
                         program_coarse(SPACING), fixture_source("examples/data/penta2018_table2_70mm.csv"));
     char *json = read_text(p, "out/cfh.json"), *report = read_text(p, "out/report.html");
-    double height = number_of(json, "critical_fall_height", "height_m");
-    double speed = number_of(json, "critical_fall_height", "speed_m_s");
+    double height = program_json_number(json, "critical_fall_height", "height_m");
+    double speed = program_json_number(json, "critical_fall_height", "speed_m_s");
     assert_non_null(strstr(json, "\"deciding\": \"a_max\""));
     assert_true(count_of(json, "\"speed_m_s\"") - 1 >= 4); /* points; one is the verdict's */
     assert_relative(speed * speed, 2 * 9.80665 * height, 1e-6);
     /* What the foam adds is not known: no interval in the headline, that of the fit below, named as such. */
-    assert_true(isnan(number_of(json, "critical_fall_height", "height_low_m")));
-    assert_true(isnan(number_of(json, "critical_fall_height", "height_high_m")));
-    assert_true(number_of(json, "criteria", "fit_low_m") <= height);
-    assert_true(number_of(json, "criteria", "fit_high_m") >= height);
+    assert_true(isnan(program_json_number(json, "critical_fall_height", "height_low_m")));
+    assert_true(isnan(program_json_number(json, "critical_fall_height", "height_high_m")));
+    assert_true(program_json_number(json, "criteria", "fit_low_m") <= height);
+    assert_true(program_json_number(json, "criteria", "fit_high_m") >= height);
     assert_non_null(strstr(r.out, "The uncertainty of the foam is not included."));
     assert_null(strstr(r.out, "interval"));
     program_assert_page(p, "out/report.html", "The uncertainty of the foam is not included.");
     program_assert_page(p, "out/report.html", "interval of the fit (m)");
-    assert_relative(number_of(json, "critical_fall_height", "rig_height_m"), height * 9.80665 / 7.9668, 1e-4);
+    assert_relative(program_json_number(json, "critical_fall_height", "rig_height_m"),
+                    height * 9.80665 / 7.9668, 1e-4);
     assert_non_null(strstr(report, "Indicative, not a certification"));
     program_assert_page(p, "out/report.html", "a_max reaches 200 g first");
     assert_non_null(strstr(r.out, "a_max reaches 200 g first"));
@@ -74,7 +62,7 @@ static void the_height_found_gives_the_limit_when_it_is_simulated(void **state) 
     program_succeed(p, "solve", "m.h5 -o r.h5 --threads 1");
     program_succeed(p, "post", "r.h5 -o one");
     char *one = read_text(p, "one/summary.json");
-    assert_relative(number_of(one, "{", "a_max_g"), 200, 0.01);
+    assert_relative(program_json_number(one, "{", "a_max_g"), 200, 0.01);
     free(one);
     free(json);
     free(report);
@@ -139,21 +127,21 @@ static void draws_of_the_foam_give_the_interval(void **state) {
     assert_non_null(
         strstr(r.out, " as simulated: a_max reaches 200 g first. With the uncertainty of foam and mesh: "));
     char *json = read_text(p, "out/cfh.json");
-    double height = number_of(json, "critical_fall_height", "height_m");
-    double low = number_of(json, "critical_fall_height", "height_low_m");
-    double high = number_of(json, "critical_fall_height", "height_high_m");
-    double foam_low = number_of(json, "\"posterior\"", "foam_low_m");
-    double foam_high = number_of(json, "\"posterior\"", "foam_high_m");
+    double height = program_json_number(json, "critical_fall_height", "height_m");
+    double low = program_json_number(json, "critical_fall_height", "height_low_m");
+    double high = program_json_number(json, "critical_fall_height", "height_high_m");
+    double foam_low = program_json_number(json, "\"posterior\"", "foam_low_m");
+    double foam_high = program_json_number(json, "\"posterior\"", "foam_high_m");
     assert_true(low < foam_low && foam_low < height && height < foam_high);
     assert_true(high / low > foam_high / foam_low && high / low < 1.3);
-    assert_true(number_of(json, "critical_fall_height", "rig_height_high_m") /
-                    number_of(json, "critical_fall_height", "rig_height_low_m") >
+    assert_true(program_json_number(json, "critical_fall_height", "rig_height_high_m") /
+                    program_json_number(json, "critical_fall_height", "rig_height_low_m") >
                 high / low);
-    assert_true(number_of(json, "\"posterior\"", "draws") == 100);
+    assert_true(program_json_number(json, "\"posterior\"", "draws") == 100);
     assert_non_null(strstr(json, "\"height_open\": \"no\""));
     assert_int_equal(count_of(json, "\"share_below\""), 2);
-    assert_true(fabs(number_of(json, "\"checks\"", "height_shift")) < 0.05);
-    assert_relative(number_of(json, "\"checks\"", "a_max_columns_g"), 200, 0.01);
+    assert_true(fabs(program_json_number(json, "\"checks\"", "height_shift")) < 0.05);
+    assert_relative(program_json_number(json, "\"checks\"", "a_max_columns_g"), 200, 0.01);
     char *band = read_text(p, "out/cfh_band.csv"), *draws = read_text(p, "out/cfh_draws.csv");
     assert_int_equal(strncmp(band, "height_m,a_max_low_g,", 21), 0);
     assert_int_equal(count_of(draws, "\n"), 101);
@@ -185,11 +173,11 @@ static void errors_of_the_responses_widen_the_interval(void **state) {
              fixture_source(EXAMPLE), program_coarse(SPACING));
     program_result r = program_succeed(p, "cfh", words, "posterior");
     char *json = read_text(p, "out/cfh.json");
-    before[0] = number_of(json, "critical_fall_height", "height_low_m");
-    before[1] = number_of(json, "critical_fall_height", "height_high_m");
-    double foam_low = number_of(json, "\"posterior\"", "foam_low_m");
+    before[0] = program_json_number(json, "critical_fall_height", "height_low_m");
+    before[1] = program_json_number(json, "critical_fall_height", "height_high_m");
+    double foam_low = program_json_number(json, "\"posterior\"", "foam_low_m");
     assert_non_null(strstr(json, "\"response_errors\": false"));
-    assert_true(number_of(json, "\"shares\"", "response") == 0);
+    assert_true(program_json_number(json, "\"shares\"", "response") == 0);
     assert_non_null(strstr(r.err, "warning: The draws have no response_error: "));
     program_assert_page(p, "out/report.html", "and the errors of the responses: not known, not in it");
     free(json);
@@ -198,11 +186,11 @@ static void errors_of_the_responses_widen_the_interval(void **state) {
            "a_max_sd = 0.1; HIC = 0.0; HIC_sd = 0.2; };\n' >> $k; done");
     r = program_succeed(p, "cfh", words, "errors");
     json = read_text(p, "out/cfh.json");
-    after[0] = number_of(json, "critical_fall_height", "height_low_m");
-    after[1] = number_of(json, "critical_fall_height", "height_high_m");
-    assert_true(number_of(json, "\"posterior\"", "foam_low_m") == foam_low);
+    after[0] = program_json_number(json, "critical_fall_height", "height_low_m");
+    after[1] = program_json_number(json, "critical_fall_height", "height_high_m");
+    assert_true(program_json_number(json, "\"posterior\"", "foam_low_m") == foam_low);
     assert_non_null(strstr(json, "\"response_errors\": true"));
-    assert_true(number_of(json, "\"shares\"", "response") > 0.3);
+    assert_true(program_json_number(json, "\"shares\"", "response") > 0.3);
     assert_true(after[1] / after[0] > 1.05 * before[1] / before[0]);
     assert_null(strstr(r.err, "response_error"));
     assert_non_null(strstr(r.out, "With the uncertainty of foam, responses and mesh: "));
@@ -214,8 +202,8 @@ static void errors_of_the_responses_widen_the_interval(void **state) {
     program_succeed(p, "cfh", "%s", words);
     program_assert_unchanged(program_path(p, "out/cfh_draws.csv"), &same);
     char *again = read_text(p, "out/cfh.json");
-    assert_true(number_of(again, "critical_fall_height", "height_low_m") == after[0]);
-    assert_true(number_of(again, "critical_fall_height", "height_high_m") == after[1]);
+    assert_true(program_json_number(again, "critical_fall_height", "height_low_m") == after[0]);
+    assert_true(program_json_number(again, "critical_fall_height", "height_high_m") == after[1]);
     free(again);
     free(json);
 }
@@ -301,8 +289,8 @@ static void a_limit_exceeded_from_the_lowest_height_on_is_a_bound(void **state) 
     assert_null(strstr(json, "\"grade\": \"do not use\""));
     assert_non_null(strstr(json, "\"verdict\": \"below the lowest point\""));
     assert_non_null(strstr(json, "\"deciding\": \"a_max\""));
-    assert_true(isnan(number_of(json, "critical_fall_height", "height_m")));
-    assert_relative(number_of(json, "critical_fall_height", "lowest_simulated_m"), 0.01, 1e-9);
+    assert_true(isnan(program_json_number(json, "critical_fall_height", "height_m")));
+    assert_relative(program_json_number(json, "critical_fall_height", "lowest_simulated_m"), 0.01, 1e-9);
     assert_non_null(strstr(report, "a limit is exceeded down to 1 cm"));
     free(json);
     free(report);

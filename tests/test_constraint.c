@@ -139,6 +139,11 @@ static void reported_residual_is_the_largest_held_velocity(void **state) {
     advance(&heavier, &p);
     assert_true(p.residual > 1e-3 * p.velocity_size);
     assert_relative(held_velocity(&f->model, p.v, &rows), p.residual, 1e-12);
+    for (size_t k = 0; k < 3 * n; k++) /* the other sign has the same size */
+        p.v[k] = -p.v[k];
+    p.step.dt = 1e-300;
+    double turned = sf_constraint_residual(&heavier.model, &f->operators.constraint, &p.step);
+    assert_relative(turned, p.residual, 1e-12);
     projection_free(&p);
     free(heavier.model.mass);
 }

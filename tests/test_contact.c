@@ -263,6 +263,26 @@ static void sphere_and_its_triangles_give_the_same_drop(void **state) {
     assert_true(peak_of("missile.shape=surface", true) == surface);
 }
 
+/* A point that is free and deeper than a tenth of its spacing did not come through the surface: nothing
+ * pushes it. */
+static void points_that_come_from_behind_stay_free(void **state) {
+    (void)state;
+    for (int deep = 0; deep < 2; deep++) {
+        fixture f;
+        sf_error ignored = SF_ERROR_INIT; /* of the energy that pushing out at once takes */
+        double finest = INFINITY, coarsest = 0;
+        start_press(&f, 0, 0);
+        for (int64_t c = 0; c < f.model.contact_count; c++) {
+            finest = smaller(finest, f.model.spacing[f.model.contact_node[c]]);
+            coarsest = larger(coarsest, f.model.spacing[f.model.contact_node[c]]);
+        }
+        f.state.missile.displacement = deep ? 0.11 * coarsest : 0.09 * finest;
+        sf_step_evaluate(&f.model, &f.operators, &f.state, &ignored);
+        assert_int_equal(f.state.contact_count > 0, !deep);
+        fixture_free(&f);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pressed_points_lie_on_the_plate_and_free_ones_outside),
@@ -272,6 +292,7 @@ int main(void) {
         cmocka_unit_test(smooth_plate_slides_at_the_coulomb_bound),
         cmocka_unit_test(sliding_friction_loses_energy),
         cmocka_unit_test(sphere_and_its_triangles_give_the_same_drop),
+        cmocka_unit_test(points_that_come_from_behind_stay_free),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -114,16 +114,6 @@ static void put_fit(const program_place *place, const char *name, const char *co
     program_write_text(place, name, text);
 }
 
-/* The number of that key after `from`. */
-static double number_in(const char *from, const char *key) {
-    char quoted[80];
-    double value = NAN;
-    snprintf(quoted, sizeof quoted, "\"%s\": ", key);
-    const char *at = from ? strstr(from, quoted) : NULL;
-    assert_true(at && sscanf(at + strlen(quoted), "%lf", &value) == 1);
-    return value;
-}
-
 /* Of the last iteration in the log. */
 static double last_objective(const char *log) {
     static const char word[] = ": objective ";
@@ -145,21 +135,24 @@ static void coarse_iterations_save_drops_and_keep_the_result(void **state) {
     assert_non_null(strstr(run.out, "coarse iteration 0: objective"));
     program_bytes alone = program_read_file(program_path(&place, "alone/fit.json")),
                   fit = program_read_file(program_path(&place, "out/fit.json"));
-    assert_true(number_in(alone.data, "coarse_iterations") == 0);
-    assert_true(number_in(fit.data, "coarse_iterations") > 2);
-    assert_true(number_in(fit.data, "iterations") < number_in(alone.data, "iterations"));
+    assert_true(program_json_number(alone.data, NULL, "coarse_iterations") == 0);
+    assert_true(program_json_number(fit.data, NULL, "coarse_iterations") > 2);
+    assert_true(program_json_number(fit.data, NULL, "iterations") <
+                program_json_number(alone.data, NULL, "iterations"));
     assert_non_null(strstr(fit.data, "\"converged\": true"));
-    assert_true(number_in(fit.data, "expected_gain") < 0.2);
+    assert_true(program_json_number(fit.data, NULL, "expected_gain") < 0.2);
     assert_true(fabs(last_objective(run.out) - objective) < 0.1);
     /* The drop in the report is that of the case as it is. */
     const char *slow = strstr(fit.data, "\"name\": \"slow\"");
-    double reported = number_in(slow, "a_max_g");
-    assert_true(fabs(reported / number_in(strstr(alone.data, "\"name\": \"slow\""), "a_max_g") - 1) < 5e-3);
+    double reported = program_json_number(slow, NULL, "a_max_g");
+    assert_true(
+        fabs(reported / program_json_number(strstr(alone.data, "\"name\": \"slow\""), NULL, "a_max_g") - 1) <
+        5e-3);
     program_succeed(&place, "pre", "slow.cfg --set material=@out/material.cfg -o m.h5");
     program_succeed(&place, "solve", "m.h5 -o r.h5 -t 1");
     program_succeed(&place, "post", "r.h5 -o post");
     program_bytes summary = program_read_file(program_path(&place, "post/summary.json"));
-    assert_true(fabs(reported / number_in(summary.data, "a_max_g") - 1) < 1e-4);
+    assert_true(fabs(reported / program_json_number(summary.data, NULL, "a_max_g") - 1) < 1e-4);
     program_assert_page(&place, "out/report.html", "with the coarse mesh of coarse_set");
     free(alone.data);
     free(fit.data);

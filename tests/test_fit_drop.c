@@ -648,17 +648,6 @@ static void no_foam_is_one_that_a_case_refuses(void **state) {
     program_tear_down(&place);
 }
 
-/* The first number of that key. */
-static double number_in(const char *json, const char *key) {
-    char quoted[80];
-    double value = NAN;
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    const char *at = strstr(json, quoted);
-    assert_non_null(at);
-    assert_int_equal(sscanf(at + strlen(quoted), "%lf", &value), 1);
-    return value;
-}
-
 /* The number after `before`, in text that begins there. */
 static double number_after(const char *text, const char *before) {
     const char *at = strstr(text, before);
@@ -722,11 +711,11 @@ static void hidden_foam_is_found(void **state) {
         program_bytes json = program_read_file(program_path(&place, "post/summary.json"));
         assert_int_equal(sscanf(strstr(json.data, "\"a_max_g\":"), "\"a_max_g\": %lf", &a_max[k]), 1);
         assert_int_equal(sscanf(strstr(json.data, "\"hic\":"), "\"hic\": %lf", &hic[k]), 1);
-        begin[k] = number_in(json.data, "hic_t1_ms");
-        end[k] = number_in(json.data, "hic_t2_ms");
-        contact[k] = number_in(json.data, "contact_time_ms");
-        left[k] = number_in(json.data, "rebound_time_ms");
-        rebound[k] = number_in(json.data, "v_rebound_m_s");
+        begin[k] = program_json_number(json.data, NULL, "hic_t1_ms");
+        end[k] = program_json_number(json.data, NULL, "hic_t2_ms");
+        contact[k] = program_json_number(json.data, NULL, "contact_time_ms");
+        left[k] = program_json_number(json.data, NULL, "rebound_time_ms");
+        rebound[k] = program_json_number(json.data, NULL, "v_rebound_m_s");
         window[k] = end[k] - begin[k];
         free(json.data);
     }
@@ -755,11 +744,13 @@ static void hidden_foam_is_found(void **state) {
         assert_true(fabs(a / a_max[k] - 1) < 0.004 && fabs(h / hic[k] - 1) < 0.008);
     }
     assert_non_null(strstr(json.data, "\"converged\": true"));
-    assert_true(fabs(number_in(json.data, "hic_window_measured_sd") - 0.5 / sqrt(6) / window[0]) < 1e-6);
-    assert_true(fabs(number_in(json.data, "hic_window_ms") / window[0] - 1) < 0.01);
-    assert_true(fabs(number_in(json.data, "v_rebound_m_s") / rebound[0] - 1) < 0.015);
-    assert_true(fabs(number_in(json.data, "contact_time_ms") / (left[0] - contact[0]) - 1) < 0.01);
-    assert_true(number_in(json.data, "hic_window_from_others_ms") > 0);
+    assert_true(fabs(program_json_number(json.data, NULL, "hic_window_measured_sd") -
+                     0.5 / sqrt(6) / window[0]) < 1e-6);
+    assert_true(fabs(program_json_number(json.data, NULL, "hic_window_ms") / window[0] - 1) < 0.01);
+    assert_true(fabs(program_json_number(json.data, NULL, "v_rebound_m_s") / rebound[0] - 1) < 0.015);
+    assert_true(fabs(program_json_number(json.data, NULL, "contact_time_ms") / (left[0] - contact[0]) - 1) <
+                0.01);
+    assert_true(program_json_number(json.data, NULL, "hic_window_from_others_ms") > 0);
     const double hidden[3] = {134e3, 23e3, 3e6}; /* p0, B, ED */
     at = strstr(json.data, "\"parameters\":");
     for (int k = 0; k < 3; k++) {

@@ -187,6 +187,24 @@ static void frame_that_leads_elsewhere_is_not_read(void **state) {
     }
 }
 
+/* A frame is due at its time, not only behind it, and once. */
+static void a_frame_is_due_at_its_time(void **state) {
+    double at[] = {1e-3, 2e-3};
+    const sf_model m = {.run.frame_interval = 1, .frame_time_count = 2, .frame_time = at};
+    sf_recorder r = {.next_frame = 1};
+    sf_state s = {.time = 0.9e-3};
+    (void)state;
+    assert_false(sf_recorder_frame_due(&r, &m, &s));
+    s.time = at[0];
+    assert_true(sf_recorder_frame_due(&r, &m, &s));
+    assert_false(sf_recorder_frame_due(&r, &m, &s));
+    s.time = at[1];
+    assert_true(sf_recorder_frame_due(&r, &m, &s));
+    s.time = 1;
+    assert_true(sf_recorder_frame_due(&r, &m, &s));
+    assert_int_equal(r.frames, 3);
+}
+
 /* ---- bytes ---- */
 
 /* Bytes that this process has handed to the system for writing so far. */
@@ -272,6 +290,7 @@ int main(void) {
         cmocka_unit_test(damage_during_a_run_stops_its_end_and_no_restart),
         cmocka_unit_test(frame_that_leads_elsewhere_is_not_read),
         cmocka_unit_test(bytes_written_are_those_of_the_data),
+        cmocka_unit_test(a_frame_is_due_at_its_time),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -77,12 +77,20 @@ static void a_given_body_is_taken(void **state) {
         p, "pre",
         "'%s' -o given.h5 %s" WHOLE FREE OBLIQUE
         " --set 'missile.inertia=[\"0.01 kg m2\", \"0.012 kg m2\", \"0.015 kg m2\", \"10 kg cm2\", "
-        "\"0 kg m2\", \"0 kg m2\"]' --set 'missile.centre=[\"5 mm\", \"0 mm\", \"50 mm\"]'",
+        "\"0 kg m2\", \"0 kg m2\"]' --set 'missile.centre=[\"5 mm\", \"0 mm\", \"50 mm\"]' "
+        "--set 'missile.position=[\"20 mm\", \"10 mm\"]'",
         fixture_source(EXAMPLE), program_coarse(20));
     read_model(p, "given.h5", &m);
     read_model(p, "free.h5", &own);
-    assert_close(m.missile.centre[0] - own.missile.centre[0], 0.005, 1e-6);
-    assert_close(m.missile.centre[2] - own.missile.centre[2], 0, 1e-6); /* 5/8 of 80 mm above the pole */
+    double moved[3]; /* against the other model, whose missile is placed elsewhere */
+    for (int k = 0; k < 3; k++)
+        moved[k] = m.surface_position[k] - own.surface_position[k];
+    assert_close(m.missile.impact[0], 0.02, 1e-9);
+    assert_true(fabs(moved[0]) > 0.01 && fabs(moved[1]) > 0.001);
+    assert_close(m.missile.centre[0] - own.missile.centre[0], 0.005 + moved[0], 1e-6);
+    assert_close(m.missile.centre[1] - own.missile.centre[1], moved[1], 1e-6);
+    assert_close(m.missile.centre[2] - own.missile.centre[2], moved[2],
+                 1e-6); /* 5/8 of 80 mm above the pole */
     assert_close(m.missile.inertia[1], 0.012, 1e-15);
     assert_close(m.missile.inertia[3], 0.001, 1e-15);
     assert_close(m.missile.angular_velocity[1], -5, 1e-15);

@@ -36,17 +36,9 @@ static int set_up(void **state) {
 
 /* The number behind `"key":` after the `place`-th one of `"name":`. */
 static double figure_of(const char *text, const char *key, int place) {
-    char quoted[80];
-    const char *at = text;
-    for (int k = 0; k < place; k++) {
-        at = strstr(at, "\"name\":");
-        assert_non_null(at);
-        at++;
-    }
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    at = strstr(at, quoted);
-    assert_non_null(at);
-    return strtod(at + strlen(quoted), NULL);
+    for (int k = 0; k < place && text; k++)
+        text = strstr(text, "\"name\":") ? strstr(text, "\"name\":") + 1 : NULL;
+    return program_json_number(text, NULL, key);
 }
 
 /* The value of a column in the last row of a CSV file. */
@@ -76,14 +68,18 @@ static void summary_tells_strain_and_energy_by_layer(void **state) {
                   history = program_read_file(program_path(p, "out/history.csv"));
     const char *layers = strstr(summary.data, "\"layers\":");
     assert_non_null(layers);
-    double most = 0, share = 0;
+    double most = 0, share = 0, volume = 0;
     for (int k = 1; k <= 3; k++) {
         most = larger(most, figure_of(layers, "max_local_strain", k));
         share += figure_of(layers, "energy_share", k);
+        volume += figure_of(layers, "volume_cm3", k);
         assert_close(figure_of(layers, "energy_beyond_data", k), 0.5, 0.5);
     }
     assert_close(most, figure_of(summary.data, "max_local_strain", 0), 1e-6);
     assert_close(share, 1, 1e-6);
+    assert_close(volume / (1e-3 * figure_of(summary.data, "section_mm2", 0) *
+                           figure_of(summary.data, "thickness_mm", 0)),
+                 1, 1e-6);
     for (int e = 0; e < 3; e++) { /* the ledger's energy is that of its layers */
         double sum = 0, all = last_value(history.data, energies[e][1]);
         for (int k = 1; k <= 3; k++)

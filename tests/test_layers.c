@@ -4,6 +4,7 @@
 #include "extreme.h"
 #include "layer_fixture.h"
 
+#include "pre/cloud/cloud.h"
 #include "solver/constraint/constraint.h"
 #include "solver/step.h"
 #include <math.h>
@@ -73,6 +74,31 @@ static void no_list_reaches_across_an_interface(void **state) {
     assert_int_equal(m->material_count, 2);
     assert_true(m->tie_count > 0);
     fixture_free(&f);
+}
+
+static void a_model_whose_layers_are_out_of_order_is_refused(void **state) {
+    fixture f;
+    sf_error err = SF_ERROR_INIT;
+    (void)state;
+    build_block(&JITTERED, flat, 2, &f);
+    assert_int_equal(sf_model_check(&f.model, &err), SF_OK);
+    f.model.node_material[1] = 1;
+    assert_int_equal(sf_model_check(&f.model, &err), SF_ERR_MODEL);
+    assert_non_null(strstr(err.text, "node 2 is of material 0, after one of 1: they must ascend"));
+    fixture_free(&f);
+}
+
+static void the_hash_of_a_mesh_knows_its_layers(void **state) {
+    sf_mesh mesh;
+    char one[17], other[17];
+    (void)state;
+    fixture_block_mesh(&JITTERED, &mesh);
+    layers_assign(&JITTERED, flat, &mesh);
+    sf_cloud_hash(&mesh, one);
+    mesh.cell_layer[mesh.cell_count - 1] ^= 1;
+    sf_cloud_hash(&mesh, other);
+    assert_string_not_equal(one, other);
+    sf_mesh_free(&mesh);
 }
 
 static void nodes_of_an_interface_exist_once_per_layer(void **state) {
@@ -451,6 +477,8 @@ static void contact_on_a_seam_is_that_of_one_pad(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_list_reaches_across_an_interface),
+        cmocka_unit_test(a_model_whose_layers_are_out_of_order_is_refused),
+        cmocka_unit_test(the_hash_of_a_mesh_knows_its_layers),
         cmocka_unit_test(nodes_of_an_interface_exist_once_per_layer),
         cmocka_unit_test(junction_of_three_layers_is_a_chain_of_ties),
         cmocka_unit_test(gaps_are_those_of_the_whole_pad),

@@ -111,6 +111,13 @@ static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
         else
             assert_memory_equal(&a, &b, sizeof a);
     }
+    program_succeed(&p->folder, "post", "results.h5 -o out"); /* in the units of summary.json */
+    for (int k = 0; k < count; k++) {
+        double a = softfall_figure(theirs, list[k].name),
+               b = program_file_number(&p->folder, "out/summary.json", list[k].name);
+        if (isfinite(a) && isfinite(b) && !(fabs(a - b) <= 1e-8 * fabs(b)))
+            fail_msg("%s is %.12g in the library and %.12g in summary.json", list[k].name, a, b);
+    }
     assert_true(softfall_figure(ours, "hic") > 0 && softfall_figure(ours, "a_max_g") > 0);
     assert_true(softfall_figure(ours, "rebounded") == 1);
     assert_true(isnan(softfall_figure(ours, "nodes")));

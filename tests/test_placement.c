@@ -243,12 +243,6 @@ static void sheet_drawn_either_way_is_one_model(void **state) {
     assert_true(fabs(a_max[0] / a_max[1] - 1) < 0.02);
 }
 
-static double figure_of(const program_place *p, const char *file, const char *key) {
-    program_result r = program_shell(p, "grep -m1 '\"%s\":' %s", key, file);
-    assert_non_null(strchr(r.out, ':'));
-    return strstr(r.out, "null") ? NAN : atof(strchr(r.out, ':') + 1);
-}
-
 /* From the case to summary.json and report.html, on a whole pad. */
 static void impact_point_is_reported(void **state) {
     const program_place *p = *state;
@@ -261,8 +255,8 @@ static void impact_point_is_reported(void **state) {
     assert_non_null(strstr(pre.out, "(-30, 20) mm: there the missile's lowest point arrives"));
     program_succeed(p, "solve", "hit.h5 -o hit-r.h5");
     program_succeed(p, "post", "hit-r.h5 -o hit");
-    assert_true(fabs(figure_of(p, "hit/summary.json", "impact_x_mm") + 30) < 1e-9);
-    assert_true(fabs(figure_of(p, "hit/summary.json", "impact_y_mm") - 20) < 1e-9);
+    assert_true(fabs(program_file_number(p, "hit/summary.json", "impact_x_mm") + 30) < 1e-9);
+    assert_true(fabs(program_file_number(p, "hit/summary.json", "impact_y_mm") - 20) < 1e-9);
     program_assert_page(p, "hit/report.html", "x = -30 mm, y = 20 mm");
 }
 

@@ -6,12 +6,14 @@
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
+#include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <cmocka.h>
@@ -166,6 +168,20 @@ static void rests_of_killed_processes_go_and_nothing_else(void **state) {
     assert_string_equal(content(p, "m.h5.partial-999999997-0123abcd"), "somebody's text");
 }
 
+/* The process that wrote a file has ended, but another one has it open: HDF5 locks what it has open. */
+static void a_rest_that_is_open_stays(void **state) {
+    const program_place *p = *state;
+    program_write_text(p, "o.h5.partial-999999999-0123abcd", "");
+    int file = open(program_path(p, "o.h5.partial-999999999-0123abcd"), O_RDONLY);
+    assert_true(file >= 0);
+    assert_int_equal(flock(file, LOCK_SH), 0);
+    sf_replace_clean(program_path(p, "o.h5"));
+    assert_int_equal(access(program_path(p, "o.h5.partial-999999999-0123abcd"), F_OK), 0);
+    close(file);
+    sf_replace_clean(program_path(p, "o.h5"));
+    assert_int_not_equal(access(program_path(p, "o.h5.partial-999999999-0123abcd"), F_OK), 0);
+}
+
 /* ---- folders of our own ---- */
 
 static void a_folder_with_strange_files_is_not_taken(void **state) {
@@ -249,6 +265,7 @@ int main(void) {
         cmocka_unit_test(names_that_cannot_be_written_are_refused_first),
         cmocka_unit_test(what_was_read_is_no_output),
         cmocka_unit_test(rests_of_killed_processes_go_and_nothing_else),
+        cmocka_unit_test(a_rest_that_is_open_stays),
         cmocka_unit_test(a_folder_with_strange_files_is_not_taken),
         cmocka_unit_test(processes_that_begin_at_once_share_a_folder),
         cmocka_unit_test(files_of_a_known_name_but_strange_content_stay),

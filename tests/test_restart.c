@@ -281,6 +281,14 @@ static void restart_takes_the_peak_of_its_checkpoint(void **state) {
 
     double end = number_of(p, "late.h5.restart", "/time_before") + 1e-9; /* the step that it holds */
     program_shell(p, "cp late.h5.restart killed.restart");
+    sf_error err = SF_ERROR_INIT;
+    sf_h5 *file = program_open_h5(p, "killed.restart");
+    int64_t rows = -1;
+    void *time = NULL;
+    assert_int_equal(sf_h5_read(file, "/history/time", SF_H5_F64, 1, &rows, &time, &err), SF_OK);
+    assert_true(rows > 2 && fabs(end - 1e-9 - ((double *)time)[rows - 2]) < 1e-15);
+    free(time);
+    sf_h5_close(&file, &err);
     program_succeed(p, "solve", "model.h5 -o short.h5 --end-time '%.17g s' --threads 1", end);
     program_succeed(p, "solve", "--restart late.h5 --end-time '%.17g s' --threads 1", end);
     assert_same_peak(p, "killed.restart", "late.h5.restart");
