@@ -146,12 +146,6 @@ static double area_in_contact(const sf_model *m, const sf_state *s) {
     return area;
 }
 
-/* Contact force over the area in contact (Pa); 0 without contact. */
-static double mean_pressure(const sf_model *m, const sf_state *s) {
-    double area = area_in_contact(m, s);
-    return area > 0 ? sf_missile_contact_force(m, &s->missile) / area : 0;
-}
-
 /* The value of each column of model/columns.h. m: the model; s: the state after sf_step_evaluate; whole:
  * modelled parts that make the whole. */
 #define VALUE(name, value)                                                                                   \
@@ -208,7 +202,6 @@ VALUE(smallest_jacobian, s->smallest_jacobian)
 VALUE(contact_nodes, (double)s->contact_count)
 VALUE(anvil_nodes, (double)s->anvil_count)
 VALUE(contact_area, whole * area_in_contact(m, s))
-VALUE(mean_pressure, mean_pressure(m, s))
 VALUE(penetration, s->penetration)
 VALUE(constraint_residual, s->constraint_residual)
 VALUE(time_step, s->dt)
