@@ -54,16 +54,6 @@ static void the_last_block_is_the_fastest_and_zipped_lists_go_together(void **st
     sf_plan_free(&plan);
 }
 
-static void a_value_is_taken_with_a_margin_on_each_side(void **state) {
-    sf_plan plan;
-    sweep_read_plan(*state, "{ key = \"missile.velocity\"; around = \"4 m/s\"; percent = 10; count = 3; }",
-                    &plan);
-    assert_int_equal(plan.rows, 3);
-    for (int64_t row = 0; row < 3; row++)
-        assert_close(sf_plan_value(&plan, 0, row), 3.6 + 0.4 * (double)row, 1e-12);
-    sf_plan_free(&plan);
-}
-
 static void a_material_comes_before_its_keys_and_ranges_hold_both_ends(void **state) {
     sf_plan plan;
     char factors[2048], text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
@@ -441,7 +431,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(another_order_is_another_plan),
         cmocka_unit_test(the_last_block_is_the_fastest_and_zipped_lists_go_together),
-        cmocka_unit_test(a_value_is_taken_with_a_margin_on_each_side),
         cmocka_unit_test(a_material_comes_before_its_keys_and_ranges_hold_both_ends),
         cmocka_unit_test(plans_that_cannot_be_meant_are_refused),
         cmocka_unit_test(keys_and_units_that_a_case_does_not_take_are_refused),

@@ -276,20 +276,6 @@ static sf_status read_range(reading *r, const config_setting_t *first, sf_error 
     return SF_OK;
 }
 
-/* Equal steps over `percent` on each side of a value. */
-static sf_status read_around(reading *r, const config_setting_t *middle, sf_error *err) {
-    sf_factor *f = r->factor;
-    double value = 0, percent = 0, count = 0;
-    if (take_number(r, middle, &value, err) != SF_OK ||
-        sf_config_number(r->config, r->group, "percent", true, 0, 100, &percent, err) != SF_OK ||
-        sf_config_whole(r->config, r->group, "count", true, 2, MOST_LEVELS, &count, err) != SF_OK ||
-        make_levels(f, (int64_t)count, false, err) != SF_OK)
-        return err->status;
-    for (int64_t k = 0; k < f->count; k++)
-        f->number[k] = value * (1 + percent / 100 * (2 * (double)k / (double)(f->count - 1) - 1));
-    return SF_OK;
-}
-
 /* ---- a posterior ---- */
 
 static void draw_name(const char *folder, int number, char *path, size_t size) {
@@ -431,7 +417,6 @@ static const factor_kind kinds[] = {
     {"values", "", "values", true, true, read_values},
     {"files", "", "files", true, true, read_files},
     {"posterior", "draws", "posterior", true, true, read_posterior},
-    {"around", "percent|count", "around, percent and count", true, false, read_around},
     {"from", "to|count|spacing", "or from, to and count", true, false, read_range},
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
