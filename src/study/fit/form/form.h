@@ -29,8 +29,6 @@
     X(AVALLE_M, "avalle_m", NONE, "", 1, 0.01, 60, 0.7, "exponent of softening on the plateau") \
     X(AVALLE_B, "avalle_B", SF_PRESSURE, "kPa", 1e3, 1e-3, 1e9, 1, "stress of densification, of B x^n") \
     X(AVALLE_N, "avalle_n", NONE, "", 1, 1.001, 20, 0.3, "exponent of densification, above 1") \
-    X(PLATEAU_A, "plateau_A", SF_PRESSURE, "kPa", 1e3, 1, 1e9, 0.7, "stress of the plateau") \
-    X(PLATEAU_N, "plateau_n", NONE, "", 1, 0.01, 20, 0.3, "exponent of densification") \
     X(SPLINE_1, "spline_1", NONE, "", 1, 1e-3, 1e3, 0.4, "factor on the whole gas curve") \
     X(SPLINE_2, "spline_2", NONE, "", 1, 1e-2, 1e2, 0.1, "its growth from one knot to the next") \
     X(SPLINE_3, "spline_3", NONE, "", 1, 1e-2, 1e2, 0.15, "bend of the logarithm at a strain of 0") \
