@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tables of docs/formats.md are those of the program: what stands between `<!-- generated: NAME -->` and
- * `<!-- end -->` is written from the lists in src/. With SF_WRITE_DOCS=1 in the environment the document is
+/* The tables of the documents are those of the program: what stands between `<!-- generated: NAME -->` and
+ * `<!-- end -->` is written from the lists in src/. With SF_WRITE_DOCS=1 in the environment the documents are
  * brought up to date instead. */
 #include "model/columns.h"
 #include "model/good_run.h"
 #include "model/model.h"
 #include "post/figures/figures.h"
+#include "study/fit/form/form.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -112,16 +113,67 @@ static void put_model(FILE *f) {
     }
 }
 
+/* The words between bars, as a list with commas. */
+static void put_words(FILE *f, const char *words) {
+    for (; *words; words++)
+        *words == '|' ? fputs(", ", f) : fputc(*words, f);
+}
+
+/* A value of a parameter with its unit, as people read it. */
+static void put_value(FILE *f, const sf_parameter_info *i, double value) {
+    fprintf(f, "%.3g%s%s", value / i->per_unit, *i->unit ? " " : "", i->unit);
+}
+
+static void put_forms(FILE *f) {
+    fputs("| `curve_form` | parameters: median, standard deviation |\n|---|---|\n", f);
+    for (int k = 0; k < SF_CURVE_FORMS; k++) {
+        const sf_curve_form *form = sf_curve_form_get(k);
+        double value[SF_PARAMETER_COUNT] = {[SF_PARAMETER_E] = 1e6, [SF_PARAMETER_SOLID_FRACTION] = 0.05};
+        if (form->stress)
+            form->start(value);
+        fprintf(f, "| `%s` | ", form->name);
+        for (int e = 0; e < form->entry_count; e++) {
+            const sf_form_entry *entry = &form->entry[e];
+            const sf_parameter_info *i = sf_parameter_get(entry->parameter);
+            fprintf(f, "%s%s`%s`: ", e ? "; " : "", entry->usual ? "" : "(", i->name);
+            form->stress ? put_value(f, i, value[entry->parameter]) : fputs("the start material's", f);
+            fprintf(f, ", %g%s", entry->prior_sd, entry->usual ? "" : ")");
+        }
+        fputs(" |\n", f);
+    }
+}
+
+static void put_parameters(FILE *f) {
+    fputs("| parameter | unit | standard deviation | meaning |\n|---|---|---|---|\n", f);
+    for (int k = 0; k < SF_PARAMETER_COUNT; k++) {
+        const sf_parameter_info *i = sf_parameter_get((sf_foam_parameter)k);
+        fprintf(f, "| `%s` | %s | %g | ", i->name, *i->unit ? i->unit : "1", i->prior_sd);
+        put_meaning(f, i->description, "");
+    }
+}
+
+static void put_measured(FILE *f) {
+    fputs("| key | standard deviation | default | measured |\n|---|---|---|---|\n", f);
+    for (int k = 0; k < SF_FIT_SAMPLES; k++) {
+        const sf_drop_kind_info *i = sf_drop_kind_get(k);
+        fprintf(f, "| `%s` | `%s` | %g | %s |\n", i->key, i->sd_key, i->sd, i->meaning);
+    }
+}
+
+/* In each document in their order there. */
 static const struct {
-    const char *name;
+    const char *document, *name;
     void (*put)(FILE *f);
 } tables[] = {
-    {"model", put_model},
-    {"history", put_history},
-    {"frame fields", put_frame_fields},
-    {"figures", put_figures},
-    {"layer figures", put_layer_figures},
-    {"good run", put_good_run},
+    {"formats", "model", put_model},
+    {"formats", "history", put_history},
+    {"formats", "frame fields", put_frame_fields},
+    {"formats", "figures", put_figures},
+    {"formats", "layer figures", put_layer_figures},
+    {"formats", "good run", put_good_run},
+    {"identification", "measured numbers", put_measured},
+    {"identification", "forms", put_forms},
+    {"identification", "parameters", put_parameters},
 };
 
 /* The whole file as text; free it. */
@@ -137,18 +189,21 @@ static char *read_text(const char *path) {
     return text;
 }
 
-/* The document with what the lists say between its markers; free it. */
-static char *bring_up_to_date(const char *document) {
-    char *text = NULL;
+/* The text of a document with what the lists say between its markers; free it. */
+static char *bring_up_to_date(const char *document, const char *text) {
+    char *updated = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    const char *rest = document;
+    FILE *out = open_memstream(&updated, &size);
+    const char *rest = text;
     for (size_t k = 0; k < sizeof tables / sizeof tables[0]; k++) {
         char marker[64];
+        if (strcmp(tables[k].document, document) != 0)
+            continue;
         snprintf(marker, sizeof marker, "<!-- generated: %s -->\n", tables[k].name);
         const char *begin = strstr(rest, marker), *end = begin ? strstr(begin, "<!-- end -->") : NULL;
         if (!end)
-            fail_msg("docs/formats.md: \"%s\" is missing, has no end or is out of order", tables[k].name);
+            fail_msg("docs/%s.md: \"%s\" is missing, has no end or is out of order", document,
+                     tables[k].name);
         begin += strlen(marker);
         fwrite(rest, 1, (size_t)(begin - rest), out);
         tables[k].put(out);
@@ -156,17 +211,16 @@ static char *bring_up_to_date(const char *document) {
     }
     fputs(rest, out);
     fclose(out);
-    return text;
+    return updated;
 }
 
-static void document_has_the_tables_of_the_program(void **state) {
+static void check_document(const char *document) {
     const char *root = getenv("SF_SOURCE_DIR");
     char path[4096];
-    (void)state;
     assert_non_null(root);
-    snprintf(path, sizeof path, "%s/docs/formats.md", root);
-    char *document = read_text(path), *expected = bring_up_to_date(document);
-    bool same = strcmp(document, expected) == 0;
+    snprintf(path, sizeof path, "%s/docs/%s.md", root, document);
+    char *text = read_text(path), *expected = bring_up_to_date(document, text);
+    bool same = strcmp(text, expected) == 0;
     if (!same && getenv("SF_WRITE_DOCS")) {
         FILE *file = fopen(path, "w");
         assert_non_null(file);
@@ -174,14 +228,42 @@ static void document_has_the_tables_of_the_program(void **state) {
         assert_int_equal(fclose(file), 0);
         same = true;
     }
-    free(document);
+    free(text);
     free(expected);
     if (!same)
-        fail_msg(
-            "docs/formats.md is not up to date: run test_formats with SF_WRITE_DOCS=1 in its environment");
+        fail_msg("%s is not up to date: run test_formats with SF_WRITE_DOCS=1 in its environment", path);
+}
+
+static void formats_has_the_tables_of_the_program(void **state) {
+    (void)state;
+    check_document("formats");
+}
+
+static void identification_has_the_tables_of_the_program(void **state) {
+    (void)state;
+    check_document("identification");
+}
+
+/* The key `curve_form` of both commands lists every form. */
+static void the_forms_are_named_where_the_key_is(void **state) {
+    char path[4096], *words = NULL;
+    size_t size = 0;
+    (void)state;
+    FILE *f = open_memstream(&words, &size);
+    put_words(f, sf_curve_form_words());
+    fclose(f);
+    *strstr(words, ", table") = '\0'; /* of drops only: it has a start material */
+    snprintf(path, sizeof path, "%s/docs/identification.md", getenv("SF_SOURCE_DIR"));
+    char *text = read_text(path);
+    if (!strstr(text, words))
+        fail_msg("docs/identification.md does not list the forms \"%s\"", words);
+    free(text);
+    free(words);
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(document_has_the_tables_of_the_program)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(formats_has_the_tables_of_the_program),
+                                       cmocka_unit_test(identification_has_the_tables_of_the_program),
+                                       cmocka_unit_test(the_forms_are_named_where_the_key_is)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,15 +85,20 @@ const sf_good_run_rule *sf_good_run_rule_get(int k);
 
 /* X(name, key in the fit file, key in response_error, default of the standard deviation, standard deviation
  * of the model's error at kappa = 1, stem and unit in fit.json, name and unit in reports, digits there,
- * always shown, what it needs of a drop, is it above every value where the foam collapses). The key of a
- * standard deviation is SF_DROP_SD(key in response_error), in both files. */
+ * always shown, what it needs of a drop, is it above every value where the foam collapses, meaning). The key
+ * of a standard deviation is SF_DROP_SD(key in response_error), in both files. */
 /* clang-format off */
 #define SF_DROP_KINDS(X)                                                                                       \
-    X(A_MAX, "a_max_g", "a_max", 0.02, 0.01, "a_max", "_g", "a_max", "g", 1, true, "contact", true)                     \
-    X(HIC, "HIC", "HIC", 0.04, 0.02, "hic", "", "HIC", "", 0, true, "contact", true)                                    \
-    X(WINDOW, "HIC_window_ms", "HIC_window", 0.03, 0.02, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact", false) \
-    X(REBOUND, "v_rebound_m_s", "v_rebound", 0.03, 0.02, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound", false) \
-    X(CONTACT, "contact_time_ms", "contact_time", 0.03, 0.02, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound", false)
+    X(A_MAX, "a_max_g", "a_max", 0.02, 0.01, "a_max", "_g", "a_max", "g", 1, true, "contact", true,                     \
+      "largest deceleration")                                                                                          \
+    X(HIC, "HIC", "HIC", 0.04, 0.02, "hic", "", "HIC", "", 0, true, "contact", true,                                    \
+      "head injury criterion, no limit of the window")                                                                 \
+    X(WINDOW, "HIC_window_ms", "HIC_window", 0.03, 0.02, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact", false, \
+      "length t_2 − t_1 of the window of HIC")                                                                         \
+    X(REBOUND, "v_rebound_m_s", "v_rebound", 0.03, 0.02, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound", false, \
+      "speed upwards when contact ends")                                                                               \
+    X(CONTACT, "contact_time_ms", "contact_time", 0.03, 0.02, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound", false, \
+      "from first contact to the end of contact")
 /* clang-format on */
 #define SF_DROP_SD(key) key "_sd"
 
@@ -113,6 +118,7 @@ typedef struct sf_drop_kind_info {
     /* True if a collapsed foam counts as above every value, as of peaks. False: the number has no order,
      * as a pulse that has no end has no window. */
     bool above_all;
+    const char *meaning; /* one phrase */
 } sf_drop_kind_info;
 
 /* Static storage. */
