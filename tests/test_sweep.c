@@ -795,6 +795,10 @@ static void a_disk_that_is_too_small_is_refused(void **state) {
     err = (sf_error)SF_ERROR_INIT;
     cost.there = cost.open - 10; /* they may be drops of another plan */
     assert_int_equal(sf_sweep_cost_check_disk(&cost, folder, 2, &err), SF_ERR_INPUT);
+    err = (sf_error)SF_ERROR_INIT;
+    cost = (sf_sweep_cost){.bytes = 1, .work_bytes = 1e18, .open = 1}; /* each job has a drop at work */
+    assert_int_equal(sf_sweep_cost_check_disk(&cost, folder, 3, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "the runs need about 3e+09 GB"));
 }
 
 static double seconds(void) {

@@ -43,12 +43,12 @@ static sf_status begin_wait(sf_script *s, char *rest, sf_error *err) {
 }
 
 static sf_status look_wait(sf_script *s, const sf_session *session, sf_error *err) {
-    if (session->activity == s->awaited && session->frames >= s->frames)
+    if (session->activity == s->awaited && session->pictures.frames >= s->frames)
         s->deadline = 0;
     else if (now() > s->deadline)
         return SF_FAIL(err, SF_ERR_INPUT, "line %d: it is \"%s\" with %d frames, not \"%s\": %s", s->line,
-                       sf_activity_name(session->activity), session->frames, sf_activity_name(s->awaited),
-                       session->sentence);
+                       sf_activity_name(session->activity), session->pictures.frames,
+                       sf_activity_name(s->awaited), session->sentence);
     return SF_OK;
 }
 
@@ -87,7 +87,7 @@ static sf_status act(sf_script *s, sf_session *session, char *word, char *rest, 
     else if (strcmp(word, "wait") == 0)
         return begin_wait(s, rest, err);
     else if (strcmp(word, "frames") == 0)
-        fprintf(out, "frames = %d\n", session->frames);
+        fprintf(out, "frames = %d\n", session->pictures.frames);
     else if (strcmp(word, "activity") == 0)
         fprintf(out, "activity = %s\n", sf_activity_name(session->activity));
     else if (strcmp(word, "status") == 0)

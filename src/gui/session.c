@@ -2,20 +2,16 @@
 #include "gui/session.h"
 
 #include "gui/cache.h"
-#include "gui/outcome.h"
 #include "gui/children.h"
 #include "io/folder.h"
-#include "model/model_io.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
-#include "post/figures/verdict.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder", FRAME[] = "1Drop/83frame",
+static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder",
                   TARGET[] = "1Drop/7save to folder";
 static const char BAD[] = "LightCoral";
 
@@ -89,64 +85,6 @@ static void show_folder(const sf_session *s) {
 
 /* ---- the case and its geometry ---- */
 
-/* Puts the missile above the pad as the case says; softfall-pre does it exactly. */
-static void show_missile(sf_session *s, const sf_triangles *t) {
-    double low[3], high[3], shift[3] = {0};
-    int64_t n = 3 * t->count;
-    const double unit = s->case_file.length_unit;
-    sf_body body = {.node_count = n, .position = t->corner, .face_count = t->count};
-    sf_error none = SF_ERROR_INIT;
-    body.face = sf_alloc(&none, 4 * (unsigned long)t->count + 1, sizeof *body.face, "the missile's picture");
-    double *move = sf_alloc(&none, 3 * (unsigned long)n + 1, sizeof *move, "the missile's picture");
-    sf_geometry_box(low, high);
-    shift[2] = high[2] - t->low[2] + s->place.gap / unit;
-    for (int d = 0; d < 2 && s->place.given; d++)
-        shift[d] = s->place.position[d] / unit;
-    for (int64_t k = 0; k < 3 * n && none.status == SF_OK; k++)
-        t->corner[k] += shift[k % 3];
-    if (!s->fitted)
-        sf_window_fit(low, high, fmin(low[0], t->low[0] + shift[0]), fmax(high[0], t->high[0] + shift[0]),
-                      t->high[2] + shift[2]);
-    s->fitted = true; /* from now on the user's */
-    for (int64_t k = 0; k < 4 * t->count && none.status == SF_OK; k++)
-        body.face[k] = k % 4 == 3 ? -1 : (int32_t)(3 * (k / 4) + k % 4);
-    if (none.status == SF_OK && sf_view_begin(SF_PICTURE_MISSILE, "missile", &body, &none) == SF_OK)
-        sf_view_add(SF_PICTURE_MISSILE, 0, 0, &body, move, NULL);
-    free(body.face);
-    free(move);
-}
-
-static void forget_results(sf_session *s) {
-    sf_shape_free(&s->shape);
-    s->seen = (sf_watch_stamp){0};
-    s->frames = 0;
-    s->frame = 0;
-    sf_view_remove(SF_PICTURE_PAD);
-    sf_view_remove(SF_PICTURE_MISSILE);
-    sf_view_remove(SF_PICTURE_CURVE);
-    sf_window_remove(FRAME);
-    sf_outcome_clear();
-}
-
-/* Shows the geometries with the parameters of the tree. gmsh shows one model only: the missile is a picture.
- */
-static sf_status show_geometry(sf_session *s, sf_error *err) {
-    const sf_case *c = &s->case_file;
-    sf_triangles missile = {0};
-    forget_results(s);
-    sf_geometry_clear();
-    if (s->with_missile && sf_geometry_read_surface(c->missile.path, &missile, err) != SF_OK)
-        return err->status;
-    if (sf_geometry_show(c->pad.path, err) == SF_OK) {
-        sf_fields_take_defaults(&s->fields);
-        sf_fields_lock_unknown(&s->fields);
-        if (missile.count > 0)
-            show_missile(s, &missile);
-    }
-    free(missile.corner);
-    return err->status;
-}
-
 static sf_status add_geometry(const char *path, const char *group, const sf_geo_source *source,
                               const sf_fields *before, sf_fields *fields, sf_error *err) {
     sf_geo_names *names = sf_alloc(err, 1, sizeof *names, "names of parameters");
@@ -166,10 +104,9 @@ static sf_status read_case(sf_session *s, sf_error *err) {
     if (sf_fields_read(s->case_path, NULL, &s->fields, &fresh, err) == SF_OK) {
         sf_case_free(&s->case_file);
         s->case_file = fresh;
-        s->with_missile = fresh.missile.path != NULL;
         if (add_geometry(fresh.pad.path, "geometry.parameters", &fresh.pad, before, &s->fields, err) ==
                 SF_OK &&
-            s->with_missile)
+            fresh.missile.path)
             add_geometry(fresh.missile.path, "geometry.missile_parameters", &fresh.missile, before,
                          &s->fields, err);
     }
@@ -185,7 +122,7 @@ static sf_status check_values(sf_session *s, sf_error *err) {
     sf_case c;
     if (sf_fields_overrides(&s->fields, &o, err) == SF_OK &&
         sf_case_read(s->case_path, o.count, (const char *const *)o.text, NULL, &c, err) == SF_OK) {
-        s->place = (sf_session_place){
+        s->place = (sf_pictures_place){
             c.position_given, {c.missile_position[0], c.missile_position[1]}, c.missile_card.gap};
         sf_case_free(&c);
     }
@@ -213,7 +150,7 @@ static void begin_anew(sf_session *s, bool reread) {
         check_values(s, &err);
     sf_watch_register(&s->watch, 0); /* with the files that the values of the window name */
     if (s->case_file.pad.path)
-        show_geometry(s, &geometry);
+        sf_pictures_show_geometry(&s->pictures, &s->case_file, &s->place, &s->fields, &geometry);
     if (err.status == SF_OK && geometry.status != SF_OK)
         err = geometry;
     show_folder(s);
@@ -307,7 +244,14 @@ static sf_status start_save(sf_session *s, sf_error *err) {
     return err->status;
 }
 
-static void show_model(sf_session *s);
+static void show_model(sf_session *s) {
+    sf_pictures_show_model(&s->pictures, s->at.model, s->case_file.length_unit);
+}
+
+static void show_results(sf_session *s, bool whole) {
+    if (*s->at.path)
+        sf_pictures_show_results(&s->pictures, s->at.results, s->case_file.length_unit, whole);
+}
 
 /* Removes the results of an earlier run from the folder, so that they do not stand beside those of the new
  * run. */
@@ -320,8 +264,8 @@ static void remove_results(sf_session *s) {
         snprintf(path, sizeof path, "%s/report/%s", s->at.path, products[k]);
         sf_folder_remove_file(path);
     }
-    s->seen = (sf_watch_stamp){0};
-    if (s->frames > 0)
+    s->pictures.seen = (sf_watch_stamp){0};
+    if (s->pictures.frames > 0)
         show_model(s);
 }
 
@@ -372,99 +316,6 @@ static void start(sf_session *s) {
         unlock(s);
         tell_error(s, &err);
     }
-}
-
-/* ---- results ---- */
-
-static void show_frame(sf_session *s, int frame) {
-    s->frame = frame;
-    sf_window_put(&(sf_entry){.name = FRAME,
-                              .kind = SF_ENTRY_NUMBER,
-                              .number = s->frame,
-                              .low = 0,
-                              .high = s->frames - 1,
-                              .step = 1,
-                              .help = "the frame that is shown; drag it, or play it with the buttons below"});
-    sf_view_show_frame(s->frame);
-}
-
-/* Begins the pictures of a model in place of those before. */
-static sf_status begin_pictures(sf_session *s, sf_error *err) {
-    if (sf_view_begin(SF_PICTURE_PAD, "pad, von Mises stress [kPa]", &s->shape.pad, err) == SF_OK)
-        sf_view_begin(SF_PICTURE_MISSILE, "missile", &s->shape.missile, err);
-    s->frames = 0;
-    return err->status;
-}
-
-/* Pad and missile as softfall-pre has made them. */
-static void show_model(sf_session *s) {
-    sf_error err = SF_ERROR_INIT;
-    sf_model m = {0};
-    double *zero = NULL;
-    forget_results(s);
-    if (sf_model_read(s->at.model, &m, NULL, &err) == SF_OK &&
-        sf_shape_of_model(&m, s->case_file.length_unit, &s->shape, &err) == SF_OK &&
-        begin_pictures(s, &err) == SF_OK) {
-        int64_t most = s->shape.pad.node_count + s->shape.missile.node_count;
-        zero = sf_alloc(&err, 3 * (unsigned long)most, sizeof *zero, "a picture");
-    }
-    if (zero) {
-        sf_view_add(SF_PICTURE_PAD, 0, 0, &s->shape.pad, zero, zero);
-        sf_view_add(SF_PICTURE_MISSILE, 0, 0, &s->shape.missile, zero, NULL);
-    }
-    free(zero);
-    sf_model_free(&m);
-    sf_shape_free(&s->shape);
-}
-
-/* The frame of the largest acceleration. */
-static int find_peak(const sf_results *r) {
-    int best = 0;
-    for (int k = 1; k < r->frame_count; k++)
-        if (r->frames[k].acceleration > r->frames[best].acceleration)
-            best = k;
-    return best;
-}
-
-static void add_frames(sf_session *s, const sf_results *r, sf_error *err) {
-    for (; s->frames < r->frame_count && err->status == SF_OK; s->frames++) {
-        const sf_frame_head *head = &r->frames[s->frames];
-        sf_shape_frame f;
-        if (sf_shape_read_frame(&s->shape, r, head, &f, err) != SF_OK)
-            return;
-        sf_view_add(SF_PICTURE_PAD, s->frames, 1e3 * head->time, &s->shape.pad, f.pad, f.stress);
-        sf_view_add(SF_PICTURE_MISSILE, s->frames, 1e3 * head->time, &s->shape.missile, f.missile, NULL);
-        sf_shape_frame_free(&f);
-    }
-}
-
-/* results.h5 is complete at any instant, but its frames may have moved into a newer one meanwhile: then the
- * next look finds that. */
-static void show_results(sf_session *s, bool whole) {
-    sf_error err = SF_ERROR_INIT;
-    sf_results r;
-    char line[SF_VERDICT_LINE_SIZE] = "";
-    sf_watch_stamp now = sf_watch_stamp_of(s->at.results);
-    if (!*s->at.path || now.inode == 0 || (!whole && sf_watch_same(&now, &s->seen)))
-        return;
-    sf_plain_clear();
-    if (sf_results_open(s->at.results, &r, &err) != SF_OK)
-        return;
-    if (s->shape.pad.node_count == 0 || s->frames > r.frame_count) {
-        sf_shape_free(&s->shape);
-        if (sf_shape_of_results(&r, s->case_file.length_unit, &s->shape, &err) == SF_OK)
-            begin_pictures(s, &err);
-    }
-    add_frames(s, &r, &err);
-    if (s->frames > 0)
-        show_frame(s, whole && err.status == SF_OK ? find_peak(&r) : s->frames - 1);
-    sf_outcome_plot(&r);
-    if (whole && err.status == SF_OK)
-        sf_outcome_show(&r, line, sizeof line, &err);
-    if (err.status == SF_OK)
-        s->seen = now;
-    sf_results_close(&r);
-    sf_window_refresh();
 }
 
 /* A finished run of the same values is shown at once. */
@@ -613,12 +464,7 @@ void sf_session_refresh(sf_session *s) {
 
 static void check_edits(sf_session *s) {
     bool of_case, of_geometry;
-    double frame;
-    if (s->frames > 0 && sf_window_number(FRAME, &frame) && (int)lround(frame) != s->frame) {
-        s->frame = (int)lround(frame);
-        sf_view_show_frame(s->frame);
-        sf_window_refresh();
-    }
+    sf_pictures_take_frame(&s->pictures);
     if (sf_activity_is_busy(s->activity))
         return; /* the values of the next run */
     sf_fields_take(&s->fields, &of_case, &of_geometry);
@@ -721,6 +567,6 @@ void sf_session_end(sf_session *s) {
     sf_child_end(&s->child, 20);
     close_log(s);
     unlock(s);
-    sf_shape_free(&s->shape);
+    sf_shape_free(&s->pictures.shape);
     sf_case_free(&s->case_file);
 }

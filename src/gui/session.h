@@ -6,17 +6,11 @@
 #include "study/run_folder.h"
 #include "gui/fields.h"
 #include "gui/gmsh/window.h"
-#include "gui/shape.h"
+#include "gui/pictures.h"
 #include "gui/activity.h"
 #include "gui/outcome.h"
 #include "gui/children.h"
 #include "io/process.h"
-
-/* The missile's place by the case alone, until softfall-pre has computed the exact one. */
-typedef struct sf_session_place {
-    bool given;
-    double position[2], gap; /* m */
-} sf_session_place;
 
 typedef struct sf_session {
     const char *case_path; /* borrowed */
@@ -29,8 +23,8 @@ typedef struct sf_session {
     sf_check_entries checks; /* in the tree */
     char sentence[1100];     /* the last one told */
     bool failed;             /* it is an error */
-    bool with_missile;       /* the missile has a geometry of its own */
-    sf_session_place place;
+    sf_pictures pictures;
+    sf_pictures_place place;
     double next_look; /* s, at the program that runs and the files */
 
     sf_run_folder at; /* of the present values; path "" until Mesh or Run */
@@ -39,12 +33,6 @@ typedef struct sf_session {
     FILE *log;     /* its output */
     bool resuming; /* softfall-solve goes on from a checkpoint */
     bool told;     /* softfall-solve has told its progress */
-
-    sf_shape shape;      /* that is shown; pad.node_count 0: none */
-    sf_watch_stamp seen; /* of the results.h5 that is shown */
-    int frames;          /* of it that are shown */
-    bool fitted;         /* the picture shows pad and missile */
-    int frame;           /* shown, as the tree has it */
 } sf_session;
 
 /* Reads the case and shows it in the window. Failures are told there. Release with sf_session_end. */
