@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-cfh CASE -o DIR: critical fall height of a pad, from drops that it simulates. */
-#include "study/engine.h"
+#include "case/case.h"
 #include "study/cfh/cfh_options.h"
 #include "study/cfh/cfh_plot.h"
 #include "study/cfh/series.h"
 #include "study/cfh/spread_report.h"
-#include "base/program.h"
-#include "io/folder.h"
-#include "io/process.h"
-#include "io/provenance.h"
-#include "case/case.h"
+#include "study/setup.h"
 
 #include <math.h>
 #include <omp.h>
@@ -20,6 +16,7 @@ enum { MAX_DROPS = 8 };
 
 /* The figures of the drop before the first simulation. */
 typedef struct setting {
+    sf_cfh_options options;
     double speed; /* m s-1, of the case */
     double mass;  /* kg */
     sf_cfh_foams foams;
@@ -27,7 +24,6 @@ typedef struct setting {
     sf_material material;    /* with --posterior: the case's own; owned, as its law and the draws */
     sf_material_law law;
     sf_cfh_draws draws;
-    int lock; /* of the directory, until the program ends */
 } setting;
 
 static void list_foams(const sf_case *c, sf_cfh_foams *out) {
@@ -42,25 +38,26 @@ static void list_foams(const sf_case *c, sf_cfh_foams *out) {
 }
 
 /* The case's own material and the draws. */
-static sf_status read_posterior(const sf_cfh_options *o, sf_case *c, setting *out, sf_error *err) {
+static sf_status read_posterior(const char *case_path, sf_case *c, setting *out, sf_error *err) {
+    const sf_cfh_options *o = &out->options;
     if (c->layer_count > 0)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "--posterior: its draws are of one material, the pad of %s has layers (materials.%s)",
-                       o->case_path, c->layer[0].name);
+                       case_path, c->layer[0].name);
     out->material = c->material;
     c->material = (sf_material){0}; /* moved */
     if (sf_material_law_build(&out->material, &out->law, err) == SF_OK)
-        sf_cfh_draws_read(o->posterior, o->case_path, o->override_count, o->overrides, &out->material,
+        sf_cfh_draws_read(o->posterior, case_path, o->override_count, o->overrides, &out->material,
                           &out->draws, err);
     return err->status;
 }
 
-static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *err) {
+static sf_status read_setting(const sf_study *study, setting *out, sf_error *err) {
+    const sf_cfh_options *o = &out->options;
     sf_case c;
     char *material = NULL;
     const char *list[SF_RUNNER_OVERRIDES + 1];
     int count = 0;
-    const sf_sink sink = sf_program_sink("softfall-cfh");
     if (o->material) {
         if (asprintf(&material, "material=@%s", o->material) < 0)
             return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", o->material);
@@ -68,18 +65,18 @@ static sf_status read_setting(const sf_cfh_options *o, setting *out, sf_error *e
     }
     for (int k = 0; k < o->override_count; k++)
         list[count++] = o->overrides[k];
-    if (sf_case_read(o->case_path, count, list, &sink, &c, err) == SF_OK) {
-        *out = (setting){.speed = c.missile_card.speed,
-                         .mass = c.missile_card.mass,
-                         .text = c.text,
-                         .parameters = c.parameters};
+    if (sf_case_read(study->input, count, list, &study->sink, &c, err) == SF_OK) {
+        out->speed = c.missile_card.speed;
+        out->mass = c.missile_card.mass;
+        out->text = c.text;
+        out->parameters = c.parameters;
         list_foams(&c, &out->foams);
         c.text = c.parameters = NULL; /* moved */
         if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_FAIL(err, SF_ERR_INPUT,
                     "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");
         else if (o->posterior)
-            read_posterior(o, &c, out, err);
+            read_posterior(study->input, &c, out, err);
         sf_case_free(&c);
     }
     free(material);
@@ -101,39 +98,37 @@ static sf_cfh_plan make_plan(const sf_cfh_options *o, const sf_cfh_rig *rig, con
     return plan;
 }
 
-static sf_status write_output(sf_staging *output, const sf_cfh_report *report, sf_error *err) {
+static sf_status write_output(sf_study *study, const sf_cfh_report *report, sf_error *err) {
     char warning[512] = "", draws[SF_CFH_NOTE_SIZE] = "";
+    sf_staging *output = &study->output;
     if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_draws(output, report, err) != SF_OK ||
         sf_cfh_write_json(output, report, err) != SF_OK ||
         sf_cfh_plot(output, report, warning, sizeof warning, err) != SF_OK ||
         sf_cfh_write_page(output, report, err) != SF_OK || sf_staging_commit(output, err) != SF_OK)
         return err->status;
     sf_cfh_print(stdout, report);
-    printf("Written: %s/report.html, cfh.json, cfh.csv%s\n", output->directory,
-           warning[0] ? "" : ", cfh.png (cfh.gp)");
-    fflush(stdout);
-    const sf_sink sink = sf_program_sink("softfall-cfh");
+    sf_study_close(study,
+                   *warning ? "report.html, cfh.json, cfh.csv" : "report.html, cfh.json, cfh.csv, cfh.png",
+                   warning);
     for (int k = 0; k < report->points->count; k++)
         if (report->points->point[k].note[0])
-            sf_sink_tell(&sink, SF_WARNING, "at %.3f m: %s", report->points->point[k].height,
+            sf_sink_tell(&study->sink, SF_WARNING, "at %.3f m: %s", report->points->point[k].height,
                          report->points->point[k].note);
     if (report->spread)
         sf_cfh_draws_text(report->spread, draws, sizeof draws);
     if (draws[0])
-        sf_sink_tell(&sink, SF_WARNING, "%s", draws);
+        sf_sink_tell(&study->sink, SF_WARNING, "%s", draws);
     if (report->spread && !report->spread->with_response)
-        sf_sink_tell(&sink, SF_WARNING, "%s", sf_cfh_response_text(report->spread));
+        sf_sink_tell(&study->sink, SF_WARNING, "%s", sf_cfh_response_text(report->spread));
     if (report->no_interval[0])
-        sf_sink_tell(&sink, SF_WARNING, "no interval: %s", report->no_interval);
-    if (warning[0])
-        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
+        sf_sink_tell(&study->sink, SF_WARNING, "no interval: %s", report->no_interval);
     return SF_OK;
 }
 
 /* The interval: columns of every draw, checks of some, random errors. */
-static sf_status find_interval(const sf_cfh_options *o, const setting *s, const sf_cfh_series *series,
-                               sf_runner *runner, sf_cfh_report *report, sf_cfh_spread *spread,
-                               sf_error *err) {
+static sf_status find_interval(sf_study *study, const setting *s, const sf_cfh_series *series,
+                               sf_cfh_report *report, sf_cfh_spread *spread, sf_error *err) {
+    const sf_cfh_options *o = &s->options;
     sf_error problem = SF_ERROR_INIT;
     if (!o->posterior)
         return SF_OK;
@@ -141,7 +136,7 @@ static sf_status find_interval(const sf_cfh_options *o, const setting *s, const 
         snprintf(report->no_interval, sizeof report->no_interval, "no simulated drop has figures");
         return SF_OK;
     }
-    omp_set_num_threads(o->threads);
+    omp_set_num_threads(study->threads);
     printf("%d draws of %s as columns, then at most %d of them simulated\n", s->draws.count, o->posterior,
            o->checks);
     fflush(stdout);
@@ -155,64 +150,55 @@ static sf_status find_interval(const sf_cfh_options *o, const setting *s, const 
         return err->status;
     }
     sf_cfh_spread_choose(spread, o->checks, 1e-3 * report->plan->unit);
-    if (sf_cfh_simulate_checks(series, &s->draws, runner, spread, err) != SF_OK ||
+    if (sf_cfh_simulate_checks(series, &s->draws, &study->runner, spread, err) != SF_OK ||
         sf_cfh_spread_evaluate(spread, report->rig, err) != SF_OK)
         return err->status;
     report->spread = spread;
     return SF_OK;
 }
 
-static sf_status simulate(const sf_cfh_options *o, const setting *s, sf_staging *output,
-                          sf_cfh_report *report, sf_cfh_points *points, sf_cfh_result *result,
-                          sf_cfh_spread *spread, sf_error *err) {
-    char folder[4096];
-    if ((size_t)snprintf(folder, sizeof folder, "%s/runs", output->directory) >= sizeof folder)
-        return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
-    sf_runner runner = {
-        .folder = folder, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
-    runner.engine.lock = &s->lock;
-    if (!sf_engine_is_local(&o->engine) &&
-        runner.engine.per_job == 0) /* the few drops of a step are side by side */
-        runner.engine.per_job = 1;
+static sf_status simulate(sf_study *study, const setting *s, sf_cfh_report *report, sf_cfh_points *points,
+                          sf_cfh_result *result, sf_cfh_spread *spread, sf_error *err) {
+    const sf_cfh_options *o = &s->options;
+    sf_study_run_apart(study);
     sf_runner_drop base = {
-        .case_path = o->case_path, .material = o->material, .override_count = o->override_count};
+        .case_path = study->input, .material = o->material, .override_count = o->override_count};
     memcpy(base.overrides, o->overrides, sizeof base.overrides);
     sf_cfh_pad pad = {.mesh_error = NAN};
     const sf_cfh_series series = {report->plan, report->rig, &base, report->foams,
                                   o->posterior ? &pad : NULL};
     printf("%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
-           o->list_count ? o->list_count : MAX_DROPS, folder,
+           o->list_count ? o->list_count : MAX_DROPS, study->runs,
            report->rig->pairs ? "on the rig" : "of free fall");
     fflush(stdout);
-    if (sf_cfh_simulate(&series, &runner, points, &report->ending, err) != SF_OK)
+    if (sf_cfh_simulate(&series, &study->runner, points, &report->ending, err) != SF_OK)
         return err->status;
     sf_cfh_evaluate(points, report->plan->limit, result);
-    if (find_interval(o, s, &series, &runner, report, spread, err) != SF_OK)
-        return err->status;
-    printf("%lld drops simulated, %lld were there\n", (long long)runner.simulated, (long long)runner.reused);
-    return SF_OK;
+    return find_interval(study, s, &series, report, spread, err);
 }
 
 /* Every file that this program writes; cfh.json last, so that it speaks of files that are there. */
 static const char *const output_names[] = {"cfh.csv", "cfh_band.csv", "cfh_draws.csv", "cfh.gp",
                                            "cfh.png", "report.html",  "cfh.json",      NULL};
 
-static sf_status run(const sf_cfh_options *o, const char *command, setting *s, sf_staging *output,
-                     sf_error *err) {
+static sf_status run(sf_study *study, void *own, sf_error *err) {
+    setting *s = own;
+    sf_cfh_options *o = &s->options;
     sf_cfh_rig rig = sf_cfh_free_fall();
     sf_cfh_points points = {0};
     sf_cfh_result result;
     sf_cfh_spread spread = {0};
-    if (sf_engine_check(&o->engine, err) != SF_OK ||
-        sf_staging_check(o->directory, output_names, o->force, err) != SF_OK ||
-        (o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) || read_setting(o, s, err) != SF_OK)
+    SF_TRY(sf_cfh_options_finish(o, err));
+    SF_TRY(sf_study_check(study, output_names, err));
+    if ((o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) ||
+        read_setting(study, s, err) != SF_OK)
         return err->status;
     if (rig.interpretation[0])
         printf("rig %s: %s, %d pairs\n", o->rig_path, rig.interpretation, rig.pairs);
     const sf_cfh_plan plan = make_plan(o, &rig, s);
-    sf_cfh_report report = {.case_path = o->case_path,
+    sf_cfh_report report = {.case_path = study->input,
                             .material = o->material,
-                            .command_line = command,
+                            .command_line = study->command,
                             .rig_path = o->rig_path,
                             .posterior = o->posterior,
                             .plan = &plan,
@@ -223,31 +209,39 @@ static sf_status run(const sf_cfh_options *o, const char *command, setting *s, s
                             .parameters = s->parameters,
                             .mass = s->mass,
                             .foams = &s->foams};
-    if (sf_staging_begin(o->directory, output_names, o->force, output, err) != SF_OK ||
-        sf_folder_lock(o->directory, &s->lock, err) != SF_OK ||
-        simulate(o, s, output, &report, &points, &result, &spread, err) != SF_OK)
-        ;
-    else if (write_output(output, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)
+    if (sf_study_begin(study, output_names, err) == SF_OK &&
+        simulate(study, s, &report, &points, &result, &spread, err) == SF_OK &&
+        write_output(study, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)
         *err = result.problem;
     sf_cfh_spread_free(&spread);
     return err->status;
 }
 
+static void take_option(int key, const char *text, void *own, sf_error *err) {
+    sf_cfh_options_take(&((setting *)own)->options, key, text, err);
+}
+
+static const sf_study_program program = {
+    .name = "softfall-cfh",
+    .argument = "CASE",
+    .doc = "Critical fall height of a pad: the lowest drop height at which a_max or HIC reaches its limit "
+           "(--limit-g, --limit-hic).\vSimulates up to 8 drops with softfall-pre and softfall-solve, with "
+           "--posterior 5 more, and writes cfh.json, cfh.csv, cfh.png (and .gp) and report.html. After an "
+           "interruption run the same "
+           "command again to resume. The height is indicative, not a certification.",
+    .drops = true,
+    .options = sf_cfh_option_list,
+    .take = take_option,
+    .run = run,
+};
+
 int main(int argc, char **argv) {
-    sf_cfh_options options;
-    sf_staging output = {0};
-    setting s = {.lock = -1};
-    sf_error err = SF_ERROR_INIT;
-    char *command = sf_command_line(argc, argv);
-    sf_process_handle_signals();
-    if (sf_program_begin(argv, &err) == SF_OK && sf_cfh_options_parse(argc, argv, &options, &err) == SF_OK)
-        run(&options, command ? command : "softfall-cfh", &s, &output, &err);
-    sf_staging_end(&output);
+    setting s = {.options = sf_cfh_options_begin()};
+    int code = sf_study_main(argc, argv, &program, &s);
     free(s.text);
     free(s.parameters);
     sf_cfh_draws_free(&s.draws);
     sf_material_law_free(&s.law);
     sf_material_free(&s.material);
-    free(command);
-    return sf_error_report(&err, "softfall-cfh");
+    return code;
 }

@@ -35,7 +35,7 @@ int main(int argc, char **argv) {
     sf_error err = SF_ERROR_INIT;
     if (sf_program_begin(argv, &err) != SF_OK)
         return sf_error_report(&err, "softfall-fit");
-    argp_program_version = "softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")";
+    static const char version[] = "softfall-fit " SF_VERSION " (" SF_GIT_REVISION ")";
     for (int k = 0; k < COMMANDS; k++)
         if (strcmp(word, commands[k].word) == 0)
             return commands[k].run(argc - 1, argv + 1);
@@ -44,7 +44,7 @@ int main(int argc, char **argv) {
         return 0;
     }
     if (strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0) {
-        puts(argp_program_version);
+        puts(version);
         return 0;
     }
     if (argc > 1)

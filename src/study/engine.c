@@ -150,25 +150,3 @@ void sf_engine_complaint(const char *log, size_t begin, char *out, size_t size) 
             snprintf(out, size, " (%.300s)", line);
     free(text);
 }
-
-bool sf_engine_option(int key, const char *text, sf_runner_engine *engine, sf_error *err) {
-    char *end = NULL;
-    switch (key) {
-    case SF_ENGINE_KEY:
-        engine->name = text;
-        return true;
-    case SF_ENGINE_KEY_PROFILE:
-        engine->profile = text;
-        return true;
-    case SF_ENGINE_KEY_RETRY:
-        engine->retry = true;
-        return true;
-    case SF_ENGINE_KEY_GROUP:
-        engine->per_job = (int)strtol(text, &end, 10);
-        if (end == text || *end || engine->per_job < 1 || engine->per_job > 100000)
-            SF_FAIL(err, SF_ERR_INPUT, "--per-job %s: not a number from 1 to 100000", text);
-        return true;
-    default:
-        return false;
-    }
-}

@@ -6,7 +6,7 @@
 
 #include "study/drop.h"
 #include "base/error.h"
-#include <argp.h>
+#include <stddef.h>
 
 /* This process runs the drops. */
 bool sf_engine_is_local(const sf_runner_engine *engine);
@@ -25,26 +25,5 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int threads, const char 
 /* " (sentence)", the last one of sbatch in the log of Snakemake, from byte `begin` on; "" if there is none.
  */
 void sf_engine_complaint(const char *log, size_t begin, char *text, size_t size);
-
-/* The rows of the options of a program that runs batches, in its `group` of argp_option, and what each does
- * with its text: false if `key` is none of them. */
-enum { SF_ENGINE_KEY = 0x7001, SF_ENGINE_KEY_PROFILE, SF_ENGINE_KEY_RETRY, SF_ENGINE_KEY_GROUP };
-#define SF_ENGINE_OPTIONS(group)                                                                             \
-    {"engine", SF_ENGINE_KEY, "NAME", 0, "what runs the drops: local (default) or snakemake", (group)},      \
-        {"profile",                                                                                          \
-         SF_ENGINE_KEY_PROFILE,                                                                              \
-         "PROFILE",                                                                                          \
-         0,                                                                                                  \
-         "with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall",         \
-         (group)},                                                                                           \
-    {                                                                                                        \
-        "per-job", SF_ENGINE_KEY_GROUP, "N", 0,                                                              \
-            "with --engine snakemake: drops of a job (default 1; of softfall-sweep as many as take three "   \
-            "minutes, within bounds)",                                                                       \
-            (group)                                                                                          \
-    }
-#define SF_ENGINE_RETRY(group)                                                                               \
-    { "retry", SF_ENGINE_KEY_RETRY, NULL, 0, "simulate drops again that failed earlier", (group) }
-bool sf_engine_option(int key, const char *text, sf_runner_engine *engine, sf_error *err);
 
 #endif

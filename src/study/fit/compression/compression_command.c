@@ -1,75 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/compression_command.h"
 
-#include "base/program.h"
 #include "io/plain_file.h"
-#include "io/process.h"
-#include "study/fit/command_line.h"
 #include "study/fit/compression/compression_kind.h"
 #include "study/material_file.h"
+#include "study/setup.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { KEY_FORCE = 256, KEY_SIMULATE, KEY_FRICTION };
+enum { KEY_SIMULATE = 256, KEY_FRICTION };
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
-    sf_compression_job *o = state->input;
-    switch (key) {
-    case 'o':
-        o->directory = text;
-        break;
-    case KEY_FORCE:
-        o->force = true;
-        break;
-    case KEY_SIMULATE:
-        o->cube.case_path = text;
-        break;
-    case KEY_FRICTION:
-        o->cube.friction = text;
-        break;
-    case ARGP_KEY_ARG:
-        if (o->path)
-            argp_error(state, "one file is expected, found \"%s\" as well", text);
-        o->path = text;
-        break;
-    case ARGP_KEY_END:
-        if (!o->path || !o->directory)
-            argp_error(state, "give the file that names the tests, and the output directory with -o");
-        if (o->cube.friction && !o->cube.case_path)
-            argp_error(state, "--friction needs --simulate");
-        break;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-    return 0;
-}
+static const struct argp_option options[] = {
+    {"simulate", KEY_SIMULATE, "CASE", 0,
+     "press a cube of the fitted material between platens too, as CASE says "
+     "(examples/compression/case.cfg), and compare it with the material point",
+     1},
+    {"friction", KEY_FRICTION, "MU", 0, "of the upper platen in --simulate (default: that of CASE)", 1},
+    {0},
+};
 
-static sf_status parse_command(int argc, char **argv, sf_compression_job *o, sf_error *err) {
-    static char name[] = "softfall-fit compression";
-    static const struct argp_option known[] = {
-        {"output", 'o', "DIR", 0, "write everything there (required)", 0},
-        {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier fit in DIR", 0},
-        {"simulate", KEY_SIMULATE, "CASE", 0,
-         "press a cube of the fitted material between platens too, as CASE says "
-         "(examples/compression/case.cfg), and compare it with the material point",
-         1},
-        {"friction", KEY_FRICTION, "MU", 0, "of the upper platen in --simulate (default: that of CASE)", 1},
-        {0},
-    };
-    const struct argp parser = {
-        .options = known,
-        .parser = parse_option,
-        .args_doc = "FIT.cfg -o DIR",
-        .doc = "A material file from compression tests of a foam.\vWrites material.cfg with its curves, "
-               "report.html, fit.json, fit.png (and .gp), fit.csv and loading_curve.csv. "
-               "docs/identification.md explains FIT.cfg and the report.",
-    };
-    argv[0] = name;
-    if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "the command line cannot be read");
-    return SF_OK;
+static void take_option(int key, const char *text, void *own, sf_error *err) {
+    sf_compression_job *job = own;
+    (void)err;
+    *(key == KEY_SIMULATE ? &job->cube.case_path : &job->cube.friction) = text;
 }
 
 static const sf_compression_kind *kind_of(const sf_compression_config *config) {
@@ -79,7 +33,7 @@ static const sf_compression_kind *kind_of(const sf_compression_config *config) {
 }
 
 /* Refuses what cannot be done before anything is computed or made. */
-static sf_status check_job(const sf_compression_job *job, const sf_compression_kind *kind,
+static sf_status check_job(const sf_compression_job *job, sf_study *study, const sf_compression_kind *kind,
                            const sf_compression_config *config, sf_error *err) {
     uint64_t ignored; /* the case can be read */
     if (kind->label && job->cube.case_path)
@@ -88,7 +42,7 @@ static sf_status check_job(const sf_compression_job *job, const sf_compression_k
                            ? "--simulate does not work with curve_form = \"%s\" in %s"
                            : "--simulate does not work with law = \"%s\" in %s",
                        config->form.form.curve ? config->form.form.curve->name : kind->label, job->path);
-    SF_TRY(sf_staging_check(job->directory, kind->outputs, job->force, err));
+    SF_TRY(sf_study_check(study, kind->outputs, err));
     return job->cube.case_path ? sf_plain_hash(job->cube.case_path, "case file", SF_PLAIN_TEXT, &ignored, err)
                                : SF_OK;
 }
@@ -145,45 +99,48 @@ static sf_status write_material(const sf_staging *output, const sf_compression_k
     return err->status;
 }
 
-static sf_status write_all(const sf_compression_job *job, const sf_compression_kind *kind, void *fit,
-                           const char *name, char *warning, size_t size, sf_error *err) {
-    sf_staging output;
-    SF_TRY(sf_staging_begin(job->directory, kind->outputs, job->force, &output, err));
-    if (write_points(&output, kind, fit, err) == SF_OK &&
-        (!kind->more || kind->more(job, &output, fit, warning, size, err) == SF_OK) &&
-        write_json(&output, kind, fit, job->path, err) == SF_OK &&
-        write_material(&output, kind, fit, name, err) == SF_OK)
-        sf_staging_commit(&output, err);
-    sf_staging_end(&output);
-    return err->status;
+static sf_status write_all(const sf_compression_job *job, const sf_compression_kind *kind, sf_study *study,
+                           void *fit, const char *name, char *warning, size_t size, sf_error *err) {
+    sf_staging *output = &study->output;
+    SF_TRY(sf_staging_begin(job->directory, kind->outputs, study->force, output, err));
+    SF_TRY(write_points(output, kind, fit, err));
+    if (kind->more)
+        SF_TRY(kind->more(job, output, fit, warning, size, err));
+    SF_TRY(write_json(output, kind, fit, job->path, err));
+    SF_TRY(write_material(output, kind, fit, name, err));
+    return sf_staging_commit(output, err);
 }
 
 /* ---- the pipeline ---- */
 
-static sf_status fit_and_write(const sf_compression_job *job, const sf_compression_kind *kind,
-                               const sf_compression_config *config, void *fit, sf_error *err) {
-    const sf_sink sink = sf_program_sink("softfall-fit");
+static sf_status fit_and_write(sf_study *study, const sf_compression_job *job,
+                               const sf_compression_kind *kind, const sf_compression_config *config,
+                               void *fit, sf_error *err) {
     char warning[512] = "";
     SF_TRY(kind->run(config, fit, err));
-    SF_TRY(write_all(job, kind, fit, config->name, warning, sizeof warning, err));
+    SF_TRY(write_all(job, kind, study, fit, config->name, warning, sizeof warning, err));
     kind->title(job->cube.log, fit);
     kind->describe(job->cube.log, fit, false);
-    fprintf(job->cube.log, "Files in %s: %s\n", job->directory, kind->files);
-    fflush(job->cube.log);
-    kind->warn(fit, &sink);
-    if (*warning)
-        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
+    sf_study_close(study, kind->files, warning);
+    kind->warn(fit, &study->sink);
     return SF_OK;
 }
 
-static sf_status run(const sf_compression_job *job, sf_error *err) {
+static sf_status run(sf_study *study, void *own, sf_error *err) {
+    sf_compression_job *job = own;
     sf_compression_config config = {0};
+    job->path = study->input;
+    job->directory = study->directory;
+    job->command = study->command;
+    if (job->cube.friction && !job->cube.case_path)
+        return SF_FAIL(err, SF_ERR_INPUT, "--friction needs --simulate");
     SF_TRY(sf_compression_config_read(job->path, &config, err));
     const sf_compression_kind *kind = kind_of(&config);
-    void *fit = check_job(job, kind, &config, err) == SF_OK ? sf_alloc(err, 1, kind->size, "the fit") : NULL;
+    void *fit =
+        check_job(job, study, kind, &config, err) == SF_OK ? sf_alloc(err, 1, kind->size, "the fit") : NULL;
     if (fit) {
         print_tests(job->cube.log, &config);
-        fit_and_write(job, kind, &config, fit, err);
+        fit_and_write(study, job, kind, &config, fit, err);
         kind->free(fit);
     }
     free(fit);
@@ -192,12 +149,17 @@ static sf_status run(const sf_compression_job *job, sf_error *err) {
 }
 
 int sf_fit_compression_main(int argc, char **argv) {
-    char *command = sf_fit_command_line(argc, argv);
-    sf_compression_job job = {.cube.log = stdout, .command = command ? command : "softfall-fit compression"};
-    sf_error err = SF_ERROR_INIT;
-    sf_process_handle_signals();
-    if (parse_command(argc, argv, &job, &err) == SF_OK)
-        run(&job, &err);
-    free(command);
-    return sf_error_report(&err, "softfall-fit");
+    static const sf_study_program program = {
+        .name = "softfall-fit",
+        .word = "compression",
+        .argument = "FIT.cfg",
+        .doc = "A material file from compression tests of a foam.\vWrites material.cfg with its curves, "
+               "report.html, fit.json, fit.png (and .gp), fit.csv and loading_curve.csv. "
+               "docs/identification.md explains FIT.cfg and the report.",
+        .options = options,
+        .take = take_option,
+        .run = run,
+    };
+    sf_compression_job job = {.cube.log = stdout};
+    return sf_study_main(argc, argv, &program, &job);
 }

@@ -11,9 +11,8 @@
 
 /* The request of the command; borrowed. */
 typedef struct sf_compression_job {
-    const char *path, *directory, *command; /* FIT.cfg as given, -o, the words of the command */
-    bool force;
-    sf_cube_options cube; /* its log is that of the summary, too */
+    const char *path, *directory, *command; /* FIT.cfg as given, -o, the whole command line */
+    sf_cube_options cube;                   /* its log is that of the summary, too */
 } sf_compression_job;
 
 typedef struct sf_compression_kind {

@@ -1,63 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/engine.h"
-#include "base/program.h"
 #include "study/fit/drop/drop_command.h"
 
-#include "study/fit/command_line.h"
-#include "study/fit/drop/inference_report.h"
-#include "study/fit/drop/drop_report.h"
+#include "base/program.h"
 #include "io/folder.h"
-#include "io/process.h"
-#include <argp.h>
-#include <gsl/gsl_errno.h>
-#include <limits.h>
+#include "study/fit/drop/drop_report.h"
+#include "study/fit/drop/inference_report.h"
+#include "study/setup.h"
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
-
-typedef struct options {
-    const char *input, *directory, *command;
-    bool force;
-    int threads, jobs;
-    sf_runner_engine engine;
-} options;
-
-static error_t parse(int key, char *arg, struct argp_state *state) {
-    options *o = state->input;
-    sf_error err = SF_ERROR_INIT;
-    switch (key) {
-    case 'o':
-        o->directory = arg;
-        return 0;
-    case 'f':
-        o->force = true;
-        return 0;
-    case 't':
-        if (sf_program_read_threads(arg, &o->threads, &err) != SF_OK)
-            argp_error(state, "%s", err.text);
-        return 0;
-    case 'j':
-        if (sf_program_read_threads(arg, &o->jobs, &err) != SF_OK)
-            argp_error(state, "--jobs takes a number from 1 on, as --threads does, not \"%s\"", arg);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->input)
-            argp_error(state, "one input at a time: \"%s\" is one too many", arg);
-        o->input = arg;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->input || !o->directory)
-            argp_error(state, "give the input, and the output directory with -o");
-        return 0;
-    default:
-        if (!sf_engine_option(key, arg, &o->engine, &err))
-            return ARGP_ERR_UNKNOWN;
-        if (err.status != SF_OK)
-            argp_error(state, "%s", err.text);
-        return 0;
-    }
-}
 
 /* "<material>.cfg" and so on, for sf_staging. */
 typedef struct names {
@@ -81,13 +32,6 @@ static void name_files(const sf_fit_input *in, names *n) {
     const char *const list[] = {n->curve,  n->card,    "fit-curve.csv", "fit-drops.csv", "fit.gp",
                                 "fit.png", "fit.json", "report.html",   "posterior.csv", NULL};
     memcpy(n->list, list, sizeof list);
-}
-
-/* The drops' folders are kept between runs of the command: DIR/runs. So is, until the fit has ended, what was
- * computed between the drops: DIR/runs/columns.bin. */
-static sf_status make_runs(const char *directory, char *runs, sf_error *err) {
-    snprintf(runs, PATH_MAX, "%s/runs", directory);
-    return sf_folder_own(runs, err);
 }
 
 static void print_curves(const sf_fit_input *in) {
@@ -220,112 +164,88 @@ static sf_status commit(const char *directory, const sf_drop_average *average, s
 
 /* ---- the whole ---- */
 
-static sf_status report(const options *o, const models *all, sf_staging *output, char *warning, size_t size,
-                        sf_error *err) {
+static sf_status report(sf_study *study, const models *all, char *warning, size_t size, sf_error *err) {
     const sf_drop_average *average = all->average.models > 0 ? &all->average : NULL;
     const sf_drop_fit *best = average ? average->model[sf_drop_average_best(average)]->fit : &all->fit[0];
-    if (sf_drop_report_write(best, average, o->input, o->command, output, warning, size, err) != SF_OK ||
-        commit(o->directory, &all->average, output, err) != SF_OK)
+    if (sf_drop_report_write(best, average, study->input, study->command, &study->output, warning, size,
+                             err) != SF_OK ||
+        commit(study->directory, &all->average, &study->output, err) != SF_OK)
         return err->status;
     sf_drop_report_print(best, stdout);
     return average ? sf_inference_print(stdout, average, err) : SF_OK;
 }
 
-static void warn(const models *all, const char *warning) {
-    const sf_sink sink = sf_program_sink("softfall-fit");
+static void warn(const sf_sink *sink, const models *all) {
     char text[96];
-    if (*warning)
-        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
     for (int m = 0; m < all->count; m++)
         if (all->failure[m].status != SF_OK)
-            sf_sink_tell(&sink, SF_WARNING, "model %s has no weight: %s",
+            sf_sink_tell(sink, SF_WARNING, "model %s has no weight: %s",
                          sf_model_label(&all->input[m], text, sizeof text), all->failure[m].text);
         else if (!all->fit[m].result.converged)
-            sf_sink_tell(&sink, SF_WARNING, "%s%snot converged after %d iterations",
+            sf_sink_tell(sink, SF_WARNING, "%s%snot converged after %d iterations",
                          all->count > 1 ? sf_model_label(&all->input[m], text, sizeof text) : "",
                          all->count > 1 ? ": " : "", all->fit[m].result.iterations);
 }
 
-static sf_status run(const options *o, models *all, sf_fit_memory *memory, sf_staging *output,
-                     sf_error *err) {
-    char runs[PATH_MAX], warning[512] = "";
-    names n;
-    char columns[PATH_MAX + 16];
-    int lock = -1;                     /* until the program ends */
-    const char *const none[] = {NULL}; /* the names are in the input */
+/* Fits all models and writes the files. What was computed between the drops is kept in DIR/runs/columns.bin
+ * until the fit has ended. */
+static sf_status fit_and_write(sf_study *study, models *all, sf_fit_memory *memory, sf_error *err) {
+    char columns[PATH_MAX + 16], warning[512] = "", files[SF_FIT_NAME_SIZE + 80];
     const sf_fit_input *in = &all->input[0];
-    if (sf_engine_check(&o->engine, err) != SF_OK ||
-        sf_staging_check(o->directory, none, o->force, err) != SF_OK ||
-        read_models(o->input, all, err) != SF_OK)
-        return err->status;
-    name_files(in, &n);
-    if (sf_staging_begin(o->directory, n.list, o->force, output, err) != SF_OK ||
-        sf_folder_lock(o->directory, &lock, err) != SF_OK || make_runs(o->directory, runs, err) != SF_OK)
-        return err->status;
-    sf_runner runner = {
-        .folder = runs, .threads = o->threads, .jobs = o->jobs, .log = stdout, .engine = o->engine};
-    runner.engine.lock = &lock;
-    if (!sf_engine_is_local(&o->engine) &&
-        runner.engine.per_job == 0) /* the few drops of a step are side by side */
-        runner.engine.per_job = 1;
-    snprintf(columns, sizeof columns, "%s/columns.bin", runs);
+    snprintf(columns, sizeof columns, "%s/columns.bin", study->runs);
     sf_fit_memory_open(columns, memory);
     printf("softfall-fit drop: %d unknown parameters, %d drops; finished drops are kept in %s\n",
-           in->unknown_count, in->drop_count, runs);
+           in->unknown_count, in->drop_count, study->runs);
     print_curves(in);
-    omp_set_num_threads(o->threads);
-    if (fit_models(all, &runner, memory, err) != SF_OK ||
-        report(o, all, output, warning, sizeof warning, err) != SF_OK)
+    omp_set_num_threads(study->threads);
+    if (fit_models(all, &study->runner, memory, err) != SF_OK ||
+        report(study, all, warning, sizeof warning, err) != SF_OK)
         return err->status;
     if (memory->file >= 0)
         sf_folder_remove_file(columns);
-    printf("%lld drops simulated, %lld found; written: %s/%s.cfg, report.html, fit.json, fit.png%s\n",
-           (long long)runner.simulated, (long long)runner.reused, o->directory, in->material_name,
-           all->average.models > 0 ? ", posterior.csv, posterior/" : "");
-    fflush(stdout);
-    warn(all, warning);
+    snprintf(files, sizeof files, "%s.cfg, report.html, fit.json, fit.png%s", in->material_name,
+             all->average.models > 0 ? ", posterior.csv, posterior/" : "");
+    sf_study_close(study, files, warning);
+    warn(&study->sink, all);
     return SF_OK;
 }
 
+static sf_status run(sf_study *study, void *own, sf_error *err) {
+    models *all = own;
+    names n;
+    sf_fit_memory memory = {.file = -1};
+    const char *const none[] = {NULL}; /* the names are in the input */
+    SF_TRY(sf_study_check(study, none, err));
+    SF_TRY(read_models(study->input, all, err));
+    name_files(&all->input[0], &n);
+    if (sf_study_begin(study, n.list, err) == SF_OK && sf_folder_own(study->runs, err) == SF_OK) {
+        sf_study_run_apart(study);
+        fit_and_write(study, all, &memory, err);
+    }
+    sf_staging_end(&study->output); /* before its names go */
+    sf_fit_memory_close(&memory);
+    return err->status;
+}
+
 int sf_fit_drop_main(int argc, char **argv) {
-    static const struct argp_option known[] = {
-        {"output", 'o', "DIR", 0,
-         "write everything there (required); drops that are there already are used again", 0},
-        {"force", 'f', 0, 0, "replace the results of an earlier fit in DIR", 0},
-        {"threads", 't', "N", 0, "threads of the simulations together (default: every core)", 0},
-        {"jobs", 'j', "N", 0,
-         "drops that run side by side, 64 at most, each with at least one thread (default: as many as threads)",
-         0},
-        SF_ENGINE_OPTIONS(1),
-        SF_ENGINE_RETRY(1),
-        {0},
+    static const sf_study_program program = {
+        .name = "softfall-fit",
+        .word = "drop",
+        .argument = "FIT.cfg",
+        .doc = "Identifies a foam from measured drops, and predicts others.",
+        .drops = true,
+        .run = run,
     };
-    static const struct argp parser = {.options = known,
-                                       .parser = parse,
-                                       .args_doc = "FIT.cfg -o DIR",
-                                       .doc = "Identifies a foam from measured drops, and predicts others."};
-    char *command = sf_fit_command_line(argc, argv);
-    options o = {.threads = (int)sysconf(_SC_NPROCESSORS_ONLN),
-                 .command = command ? command : "softfall-fit drop"};
     sf_error err = SF_ERROR_INIT;
     models *all = sf_alloc(&err, 1, sizeof *all, "the models");
-    sf_fit_memory memory = {.file = -1};
-    sf_staging output = {0};
-    static char name[] = "softfall-fit drop";
-    argv[0] = name;
-    gsl_set_error_handler_off(); /* statuses are looked at */
-    sf_process_handle_signals();
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
-    if (all)
-        run(&o, all, &memory, &output, &err);
-    sf_staging_end(&output);
-    sf_fit_memory_close(&memory);
-    for (int m = 0; all && m < SF_FIT_MAX_MODELS; m++) {
+    if (!all)
+        return sf_error_report(&err, program.name);
+    int code = sf_study_main(argc, argv, &program, all);
+    for (int m = 0; m < SF_FIT_MAX_MODELS; m++) {
         sf_drop_inference_free(&all->inference[m]);
         sf_drop_fit_free(&all->fit[m]);
         sf_fit_input_free(&all->input[m]);
     }
     free(all);
-    free(command);
-    return sf_error_report(&err, "softfall-fit");
+    return code;
 }
