@@ -18,7 +18,6 @@
 #include "pre/mesh/gmsh_session.h"
 #include "pre/mesh/mesh_stream.h"
 #include "study/sweep/analysis.h"
-#include "study/sweep/inputs.h"
 #include <ftw.h>
 #include <hdf5.h>
 #include <stdio.h>

@@ -5,7 +5,6 @@
 #include "program_fixture.h"
 #include "sweep_fixture.h"
 
-#include "study/sweep/inputs.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,8 +4,7 @@
 #include "build_info.h"
 #include "base/program.h"
 #include "base/error.h"
-#include "study/fit/compression/compression_command.h"
-#include "study/fit/drop/drop_command.h"
+#include "study/fit/commands.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -8,7 +8,6 @@
 #include "study/setup.h"
 #include "study/sweep/cost.h"
 #include "study/sweep/drops.h"
-#include "study/sweep/inputs.h"
 #include "study/sweep/sweep_plot.h"
 #include "study/sweep/sweep_report.h"
 

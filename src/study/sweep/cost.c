@@ -6,7 +6,6 @@
 #include "pre/make.h"
 #include "pre/model_report.h"
 #include "study/sweep/drops.h"
-#include "study/sweep/inputs.h"
 #include <gsl/gsl_sort.h>
 #include <limits.h>
 #include <math.h>

@@ -5,6 +5,7 @@
 #ifndef SF_SWEEP_PLAN_H
 #define SF_SWEEP_PLAN_H
 
+#include "case/case.h"
 #include "study/runner.h"
 #include "study/sweep/factor.h"
 #include "study/sweep/sample.h"
@@ -73,5 +74,13 @@ uint64_t sf_plan_hash(const sf_plan *plan);
 
 /* The block of Saltelli samples; NULL: none. */
 const sf_block *sf_plan_saltelli(const sf_plan *plan);
+
+/* Reads the case of a row with each level of each factor (of many numbers the least and the greatest), the
+ * other blocks at their first values. `hash`: of the contents of all files that these cases lead to and of
+ * the programs. Errors: "file:line of the factor: the sentence of the case". */
+sf_status sf_sweep_check_inputs(const sf_plan *plan, uint64_t *hash, sf_error *err);
+
+/* The case of a row; sf_case_free. */
+sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_error *err);
 
 #endif

@@ -3,8 +3,7 @@
 #ifndef SF_FIT_COMPRESSION_CONFIG_H
 #define SF_FIT_COMPRESSION_CONFIG_H
 
-#include "study/fit/compression/form_request.h"
-#include "study/fit/compression/hyperfoam_request.h"
+#include "study/fit/compression/law_request.h"
 #include "study/config.h"
 #include "study/fit/compression/compression_test.h"
 #include <stdio.h>

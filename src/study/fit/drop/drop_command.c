@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/drop_command.h"
+#include "study/fit/commands.h"
 
 #include "base/program.h"
 #include "io/folder.h"

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The keys of the file of `softfall-fit compression` that names a form of the loading curve (fit/form):
- * the form, its start values, its unknown parameters, and the rate dependence. */
-#ifndef SF_FIT_COMPRESSION_FORM_REQUEST_H
-#define SF_FIT_COMPRESSION_FORM_REQUEST_H
+/* The keys of the file of `softfall-fit compression` that belong to one law: those of a form of the loading
+ * curve (fit/form), which are its start values, its unknown parameters and the rate dependence, and those of
+ * the hyperfoam, which are its terms and the lateral strain of its test. */
+#ifndef SF_FIT_COMPRESSION_LAW_REQUEST_H
+#define SF_FIT_COMPRESSION_LAW_REQUEST_H
 
 #include "study/config.h"
 #include "study/fit/compression/compression_test.h"
@@ -45,5 +46,24 @@ sf_status sf_form_request_read(const sf_config *file, const config_setting_t *ro
                                double damp, double range, int test_count, const sf_compression_test *test,
                                int predicted_count, const sf_compression_test *predicted,
                                sf_form_request *request, sf_error *err);
+
+/* Keys of a file with law = "hyperfoam". */
+#define SF_HYPERFOAM_REQUEST_KEYS "law|name|density|tests|DAMP|terms|nu"
+
+typedef struct sf_hyperfoam_request {
+    int terms;                    /* 0: the hyperfoam was not asked for */
+    double nu;                    /* of every term, if no lateral strain was measured */
+    int lateral_count;            /* 0: no lateral strain was measured */
+    double *lateral_at, *lateral; /* [lateral_count] -, axial strain, ascending, and lateral strain, positive
+                                     outwards; owned */
+} sf_hyperfoam_request;
+
+/* True if the file asks for the hyperfoam. */
+sf_status sf_hyperfoam_request_asked(const sf_config *file, const config_setting_t *root, bool *asked,
+                                     sf_error *err);
+/* Reads terms, nu and the only test. SF_ERR_INPUT also where nu is both given and measured, or neither. */
+sf_status sf_hyperfoam_request_read(const sf_config *file, const config_setting_t *root,
+                                    sf_hyperfoam_request *request, sf_compression_test *test, sf_error *err);
+void sf_hyperfoam_request_free(sf_hyperfoam_request *request);
 
 #endif
