@@ -4,7 +4,7 @@
 
 #include "base/mat3.h"
 #include "solver/missile.h"
-#include "solver/rigid.h"
+#include "base/rigid.h"
 
 #include <math.h>
 #include <setjmp.h>

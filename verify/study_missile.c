@@ -7,7 +7,7 @@
 #include "study.h"
 
 #include "base/mat3.h"
-#include "solver/rigid.h"
+#include "base/rigid.h"
 #include "solver/run/run.h"
 #include "solver/step.h"
 

@@ -7,6 +7,7 @@
 
 #include "base/mat3.h"
 #include "material/laws.h"
+#include "model/flight.h"
 #include "model/model.h"
 
 static sf_status check_guided(const sf_case_reader *reader, sf_error *err) {
@@ -134,16 +135,30 @@ static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
+/* The speed is that of first contact: the missile must have been slower at the start of its fall. */
+static sf_status check_flight(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_missile_card *card = &reader->out->missile_card;
+    if (isfinite(sf_flight_time(card)))
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: missile.gap: in a fall over %g m from rest the missile gets faster (%.4g m/s) than "
+                   "missile.velocity, %g m/s, which is its speed at first contact",
+                   sf_case_where_is(reader, "missile.gap", where), card->gap,
+                   sqrt(-2 * card->gravity * card->direction[2] * card->gap), card->speed);
+}
+
 /* The free missile falls while it travels along its direction. */
 static sf_status check_reach(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
+    SF_TRY(check_flight(reader, err));
     const sf_missile_card *card = &c->missile_card;
     double time = c->run.end_time, reach = 0;
     for (int64_t k = 0; k < c->motion_count; k++)
         reach = fmax(reach, c->motion_displacement[k]);
     if (c->motion_count == 0)
-        reach = card->speed * time - 0.5 * card->gravity * card->direction[2] * time * time;
+        reach = sf_flight_start_speed(card) * time - 0.5 * card->gravity * card->direction[2] * time * time;
     if (reach > card->gap)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,

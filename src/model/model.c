@@ -89,7 +89,7 @@ static const sf_model_field fields[] = {
                     "part of the nodes that lie at a slit, hole or gap narrower than their supports"),
     SCALAR(material_count, I64, "/material/count", "1", "number of materials"),
     SCALAR(missile.mass, F64, "/missile/mass", "kg", "mass of the whole missile"),
-    SCALAR(missile.speed, F64, "/missile/speed", "m s-1", "speed at t = 0"),
+    SCALAR(missile.speed, F64, "/missile/speed", "m s-1", "speed at first contact"),
     SCALAR(missile.direction[0], F64, "/missile/direction_x", "1", "direction of motion, x"),
     SCALAR(missile.direction[1], F64, "/missile/direction_y", "1", "direction of motion, y"),
     SCALAR(missile.direction[2], F64, "/missile/direction_z", "1", "direction of motion, z"),

@@ -42,10 +42,10 @@ enum { SF_MOST_FRAMES = 100000 };
 typedef struct sf_missile_card {
     double mass;             /* kg, of the whole missile, whatever the symmetry; 0 with a prescribed motion */
     double speed;            /* m s-1, at first contact; 0 with a prescribed motion */
-    double direction[3];     /* -, unit vector of motion at t = 0; of a guided missile for good */
+    double direction[3];     /* -, unit vector of motion at first contact; of a guided missile for good */
     double friction;         /* -, Coulomb coefficient against the pad */
     double gravity;          /* m s-2, acts along -z on the missile; 0 with a prescribed motion */
-    double gap;              /* m, distance still to travel along `direction` at t = 0 */
+    double gap;              /* m, distance still to travel along `direction` at t = 0; model/flight.h */
     double clearance;        /* m, height of its lowest point above the top of the undeformed pad, its highest
                                 point, at t = 0; negative over a hole */
     int64_t impact_known;    /* 1: the next line holds; models of older versions do not say */
@@ -59,7 +59,7 @@ typedef struct sf_missile_card {
     double centre[3];         /* m, centre of mass at t = 0 */
     double inertia[6]; /* kg m2, about it, of the whole missile; (xx, yy, zz, xy, yz, xz) of the tensor,
                           base/mat3.h, in the geometry's axes at t = 0 */
-    double angular_velocity[3]; /* rad s-1, at t = 0 */
+    double angular_velocity[3]; /* rad s-1, at first contact */
 } sf_missile_card;
 
 typedef struct sf_anvil_card {
@@ -137,7 +137,7 @@ typedef struct sf_model {
     int32_t *rest_node; /* [rest_count] ascending, on one plane z = constant */
     double *rest_load;  /* [rest_count] N, of the anvil on the pad at t = 0; their sum is the pad's weight */
 
-    /* The missile's surface at t = 0, triangles turned outwards. */
+    /* The missile's surface in the pose of first contact, `gap` away along its direction; triangles turned outwards. */
     int64_t surface_node_count;
     int64_t surface_triangle_count;
     double *surface_position;  /* [surface_node_count][3] m */

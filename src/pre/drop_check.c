@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "model/flight.h"
 #include "model/good_run.h"
 #include "model/model.h"
 #include "pre/mesh/missile_shape.h"
@@ -141,6 +142,54 @@ static sf_status check_outside(const sf_case *c, const sf_model *m, sf_error *er
                 c->contact_group, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], 1e3 * (m->missile.gap - travel));
     }
     return SF_OK;
+}
+
+/* ---- a spinning missile's flight ---- */
+
+/* Moves the surface to where it is `before` (s) its arrival. */
+static void move_surface(const sf_model *m, double before, double *position) {
+    double shift[3], quaternion[4];
+    sf_flight_displacement(&m->missile, before, shift);
+    sf_flight_orientation(&m->missile, before, quaternion);
+    for (int64_t k = 0; k < m->surface_node_count; k++) {
+        double arm[3];
+        for (int c = 0; c < 3; c++)
+            arm[c] = m->surface_position[3 * k + c] - m->missile.centre[c];
+        sf_rotate(quaternion, arm, &position[3 * k]);
+        for (int c = 0; c < 3; c++)
+            position[3 * k + c] += m->missile.centre[c] + shift[c];
+    }
+}
+
+/* A missile that turns while it falls must reach the pad in the pose of its geometry, and not before. */
+static sf_status check_arrival(const sf_model *m, sf_error *err) {
+    enum { POSES = 64 };
+    sf_missile_card card = m->missile;
+    double rate = sqrt(sf_dot3(card.angular_velocity, card.angular_velocity)), flight = sf_flight_time(&card);
+    if (!sf_missile_turns(m) || !(rate * flight > 0))
+        return SF_OK;
+    sf_surface surface = {.node_count = m->surface_node_count,
+                          .triangle_count = m->surface_triangle_count,
+                          .triangle = m->surface_triangle};
+    surface.position =
+        sf_alloc(err, 3 * (unsigned long)surface.node_count, sizeof *surface.position, "missile's flight");
+    card.shape = SF_SHAPE_SURFACE;
+    for (int k = 1; k <= POSES && err->status == SF_OK; k++) {
+        double before = flight * k / POSES, distance = 0;
+        sf_error miss = SF_ERROR_INIT;
+        move_surface(m, before, surface.position);
+        if (sf_missile_distance(&surface, &card, m->position, m->contact_count, m->contact_node, &distance,
+                                &miss) == SF_OK &&
+            distance < -TOUCHING * m->thickness)
+            SF_FAIL(
+                err, SF_ERR_INPUT,
+                "missile.angular_velocity: the missile turns so fast that another part of it is %.3g mm "
+                "inside the pad %.3g ms before it arrives in the pose of its geometry: draw it as it first "
+                "touches the pad",
+                -1e3 * distance, 1e3 * before);
+    }
+    free(surface.position);
+    return err->status;
 }
 
 /* ---- symmetry ---- */
@@ -424,7 +473,8 @@ static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_con
 sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                         sf_error *err) {
     if (check_thickness(m, err) != SF_OK || check_mass(m, err) != SF_OK ||
-        check_outside(c, m, err) != SF_OK || check_symmetry(c, mesh, m, err) != SF_OK)
+        check_outside(c, m, err) != SF_OK || check_arrival(m, err) != SF_OK ||
+        check_symmetry(c, mesh, m, err) != SF_OK)
         return err->status;
     return check_spacing(c, m, zone, err);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/model_report.h"
 
+#include "model/flight.h"
 #include "model/model.h"
 #include "pre/missile_body.h"
 #include "base/units.h"
@@ -66,6 +67,9 @@ static void add_impact(sf_model_report *out, const sf_model *m) {
         m->missile.mass, speed, energy, m->missile.mass * speed);
     add(out, "drop_height", "equivalent drop height", "%.4g m in free fall",
         speed * speed / (2 * SF_STANDARD_GRAVITY));
+    if (m->missile.gap > 0)
+        add(out, "flight", "flight to the pad", "%.4g mm in %.4g ms, from %.4g m/s at the start",
+            1e3 * m->missile.gap, 1e3 * sf_flight_time(&m->missile), sf_flight_start_speed(&m->missile));
 }
 
 static void add_freedom(sf_model_report *out, const sf_model *m) {

@@ -2,6 +2,7 @@
 #include "solver/ledger.h"
 
 #include "base/mat3.h"
+#include "model/flight.h"
 
 double sf_ledger_internal(const sf_ledger *l) {
     return l->stored + l->hysteresis + l->viscous + l->stabilisation;
@@ -17,10 +18,13 @@ static void balance_free(const sf_model *m, sf_state *s, double held, double car
     sf_ledger *l = &s->ledger;
     l->kinetic_missile = sf_missile_kinetic(m, &s->missile, dt_v);
     l->external = sf_missile_gravity_work(m, &s->missile);
-    l->error = (total_energy(l) - l->external - l->weight) / l->reference - 1;
+    const sf_missile_card *card = &m->missile;
+    double gain = sf_flight_energy(card, sf_missile_mass(m)),
+           before = sf_flight_momentum(card, sf_missile_mass(m));
+    l->error = (total_energy(l) - l->external - l->weight + gain) / l->reference - 1;
 
     l->impulse += dt_v * (sf_missile_weight(m) + held);
-    double change = sf_missile_momentum(m, &s->missile) + carried - l->momentum_reference;
+    double change = sf_missile_momentum(m, &s->missile) + carried - (l->momentum_reference - before);
     l->momentum_error = (change - l->impulse) / l->momentum_reference;
 }
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/missile.h"
 
+#include "model/flight.h"
 #include "model/model.h"
 #include "base/mat3.h"
-#include "solver/rigid.h"
+#include "base/rigid.h"
 #include <string.h>
 
 double sf_missile_free_fall(const sf_model *m) {
@@ -47,17 +48,22 @@ static double find_radius(const sf_model *m) {
 
 static void begin_turning(const sf_model *m, sf_missile *missile) {
     const sf_missile_card *card = &m->missile;
-    for (int k = 0; k < 3; k++)
-        missile->rate[k] = missile->rate_now[k] = card->speed * card->direction[k];
+    const double identity[4] = {1, 0, 0, 0}, flight = sf_flight_time(card);
+    sf_flight_start_velocity(card, missile->rate);
+    memcpy(missile->rate_now, missile->rate, sizeof missile->rate);
+    if (flight > 0)
+        sf_flight_displacement(card, flight, missile->translation);
+    sf_flight_orientation(card, flight, missile->quaternion);
     sf_rigid_momentum(card->inertia, card->angular_velocity, missile->spin);
     memcpy(missile->spin_now, missile->spin, sizeof missile->spin);
     missile->radius = find_radius(m);
-    missile->lowest = find_lowest(m, card->centre, missile->quaternion);
+    missile->lowest = find_lowest(m, card->centre, identity);
 }
 
 void sf_missile_begin(const sf_model *m, sf_missile *missile) {
     memset(missile, 0, sizeof *missile);
-    missile->velocity = sf_missile_is_driven(m) ? sf_motion_velocity(m, 0) : m->missile.speed;
+    missile->velocity =
+        sf_missile_is_driven(m) ? sf_motion_velocity(m, 0) : sf_flight_start_speed(&m->missile);
     missile->velocity_now = missile->velocity;
     missile->contact_time = missile->release_time = missile->rim_time = NAN;
     missile->quaternion[0] = 1;
@@ -461,8 +467,12 @@ void sf_missile_outside(const sf_model *m, const sf_missile *missile, double for
 }
 
 double sf_missile_gravity_work(const sf_model *m, const sf_missile *missile) {
+    double start[3] = {0}, flight = sf_flight_time(&m->missile);
+    if (flight > 0)
+        sf_flight_displacement(&m->missile, flight, start);
     if (sf_missile_turns(m))
-        return 0 - sf_missile_mass(m) * m->missile.gravity * missile->translation[2]; /* not -0 */
+        return 0 -
+               sf_missile_mass(m) * m->missile.gravity * (missile->translation[2] - start[2]); /* not -0 */
     return sf_missile_weight(m) * missile->displacement;
 }
 

@@ -7,7 +7,7 @@
  * pulled by gravity and braked by the pad. A driven missile (sf_missile_is_driven, model/model.h) follows its
  * prescribed motion along it: it has zero mobility (infinite mass). A missile that turns
  * (sf_missile_turns, docs/adr/0018) has six: its centre of mass moves in space, and it rotates about it
- * (solver/rigid.h).
+ * (base/rigid.h).
  *
  * Forces, masses, energies and momenta are those of the modelled part, 1/2 or 1/4 of the missile under
  * symmetry; sf_model_whole is the factor to the whole. Points and vectors are in the geometry's frame. A
@@ -32,7 +32,7 @@
     X(double, contact_time, , "s", "first contact; NaN before")                                                        \
     X(double, release_time, , "s", "last time with contact; NaN before")                                               \
     X(double, torque, [3], "N m", "of the pad on the missile, about its centre")                                       \
-    X(double, translation, [3], "m", "of the centre since t = 0; like the next ones of a missile that turns")          \
+    X(double, translation, [3], "m", "of the centre, against the model; like the next ones of a missile that turns")          \
     X(double, translation_old, [3], "m", "one step ago")                                                               \
     X(double, rate, [3], "m s-1", "velocity of the centre at the half step, as `velocity`")                            \
     X(double, rate_now, [3], "m s-1", "at `time`")                                                                     \
@@ -43,7 +43,7 @@
     X(double, spin_now, [3], "kg m2 s-1", "at `time`")                                                                 \
     X(double, rim_time, , "s", "first contact with the rim of its spherical cap lowest; NaN before") \
     X(double, radius, , "m", "largest distance of its surface from the centre")                                        \
-    X(double, lowest, , "m", "height z of its lowest point at t = 0")
+    X(double, lowest, , "m", "height z of its lowest point where the model has it")
 /* clang-format on */
 
 typedef struct sf_missile {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/flight.h"
 #include "model/model.h"
 
 static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy, see start_driven */
@@ -76,8 +77,10 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
 }
 
 static void start_free(const sf_model *m, sf_state *s) {
-    s->ledger.reference = sf_missile_kinetic(m, &s->missile, 0);
-    s->ledger.momentum_reference = sf_missile_momentum(m, &s->missile);
+    double mass = sf_missile_mass(m);
+    s->ledger.reference = sf_missile_kinetic(m, &s->missile, 0) + sf_flight_energy(&m->missile, mass);
+    s->ledger.momentum_reference =
+        sf_missile_momentum(m, &s->missile) + sf_flight_momentum(&m->missile, mass);
     sf_missile_momenta(m, &s->missile, s->ledger.impulse_linear, s->ledger.impulse_angular);
 }
 

@@ -84,7 +84,7 @@ typedef struct sf_partial {
     X(double, external, , "J", "work of gravity on the missile, or of its prescribed motion")                           \
     X(double, weight, , "J", "work of gravity on a resting pad")                                                       \
     X(double, anvil, , "J", "part of `contact` and `friction` that is lost at the anvil")                              \
-    X(double, reference, , "J", "to which errors refer: total at t = 0; see ledger.h")                                 \
+    X(double, reference, , "J", "to which errors refer: total at first contact; see ledger.h")                                 \
     X(double, stabilisation_drift, , "J", "work that changed stiffness put into the pairs, to date")                   \
     X(double, error, , "1", "of the balance, over `reference`")                                                        \
     X(double, largest_error, , "1", "largest |error| so far")                                                          \

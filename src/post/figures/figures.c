@@ -210,7 +210,10 @@ static void compute_rebound(const sf_results *r, sf_figures *f) {
     double initial = r->missile_mass * f->v0 * f->v0 / 2;
     f->absorbed_energy = initial - r->missile_mass * f->v_rebound * f->v_rebound / 2;
     if (r->turns) {
-        initial = h->energy_kinetic_missile[0];
+        int64_t before = 0; /* the last row before contact */
+        while (before + 1 < last && !(h->contact_nodes[before + 1] > 0))
+            before++;
+        initial = h->energy_kinetic_missile[before];
         f->absorbed_energy = initial - h->energy_kinetic_missile[last + 1];
     }
     f->absorbed_energy_fraction = f->absorbed_energy / initial;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/rigid.h"
+#include "base/rigid.h"
 
 #include "base/mat3.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rotation of a rigid body: angular momentum L in space, orientation q (base/mat3.h), and the inertia
  * tensor (kg m2, xx, yy, zz, xy, yz, xz) about the centre of mass in the body's axes. docs/adr/0018 */
-#ifndef SF_SOLVER_RIGID_H
-#define SF_SOLVER_RIGID_H
+#ifndef SF_BASE_RIGID_H
+#define SF_BASE_RIGID_H
 
 /* omega = R I^-1 R^T L (rad s-1). */
 void sf_rigid_angular_velocity(const double inertia[6], const double q[4], const double momentum[3],
