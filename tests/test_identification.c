@@ -374,6 +374,9 @@ static void wrong_files_are_refused_with_their_line(void **state) {
         {"density = \"35 kg/m3\";\ntests = ( { file = \"slow.csv\"; rate = \"0.1 1/min\"; },\n"
          "{ file = \"copy.csv\"; rate = \"10 1/min\"; } );\n",
          "give the same data once", 3},
+        {"density = \"35 kg/m3\";\ntests = ( { file = \"slow.csv\"; rate = \"10 1/min\"; },\n"
+         "{ file = \"stiff.csv\"; rate = \"0.1 1/min\"; } );\n",
+         "are the rates exchanged", 0},
         {"density = \"35 kg/m3\";\ntests = ( { file = \"slow.csv\"; rate = \"0.1 mm\"; } );\n", "a rate", 2},
         {"density = \"35 kg/m3\";\ntests = ( { file = \"slow.csv\"; rate = \"-1 1/min\"; } );\n",
          "must be above 0", 2},
@@ -391,6 +394,8 @@ static void wrong_files_are_refused_with_their_line(void **state) {
     const sheet s = good_sheet(1);
     write_sheet("slow.csv", &s);
     write_sheet("copy.csv", &s);
+    const sheet stiff = good_sheet(1.1);
+    write_sheet("stiff.csv", &stiff);
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         sf_compression_config config;
         sf_error err = SF_ERROR_INIT;

@@ -216,6 +216,27 @@ static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entr
     return read_file(reader, file, value, err);
 }
 
+/* A stress that falls with the rate would create energy. */
+static sf_status check_order(const sf_case_reader *reader, const config_setting_t *list, int k,
+                             sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_law_curves *card = sf_material_curves(reader->material);
+    const config_setting_t *file[2];
+    sf_curve_fall fall;
+    if (k == 0 || !sf_law_curve_falls(card, k, &fall))
+        return SF_OK;
+    for (int i = 0; i < 2; i++)
+        file[i] = config_setting_get_member(config_setting_get_elem(list, (unsigned)(k - 1 + i)), "file");
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "%s: %s.curves: at a strain of %.3g the stress falls with the rate, from %.4g kPa at %g s-1 (%s) "
+        "to %.4g kPa at %g s-1 (%s): are the rates or the files exchanged? Such a foam would create "
+        "energy",
+        sf_case_where(reader, file[1], where), reader->material_group, fall.strain, 1e-3 * fall.slow,
+        card->curve_rate[k - 1], config_setting_get_string(file[0]), 1e-3 * fall.fast, card->curve_rate[k],
+        config_setting_get_string(file[1]));
+}
+
 static void describe(const sf_law_curves *card, char *detail, size_t size) {
     snprintf(detail, size, "%lld point%s, strain to %g", (long long)card->curve_points,
              card->curve_points == 1 ? "" : "s", card->curve_strain[card->curve_points - 1]);
@@ -241,7 +262,8 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
                            sf_case_where(reader, setting, where), reader->material_group,
                            config_setting_length(setting), MOST_CURVES);
         for (int i = 0; i < config_setting_length(setting); i++)
-            if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), err) != SF_OK)
+            if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), err) != SF_OK ||
+                check_order(reader, setting, i, err) != SF_OK)
                 return err->status;
     }
     describe(sf_material_curves(reader->material), detail, size);

@@ -80,6 +80,34 @@ static bool all_finite(const double *value, int64_t count) {
     return true;
 }
 
+static double interpolate(const sf_law_curves *c, int64_t k, double strain) {
+    int64_t low = c->curve_ptr[k], i = c->curve_ptr[k + 1] - 1;
+    while (i - low > 1) {
+        int64_t middle = low + (i - low) / 2;
+        *(c->curve_strain[middle] < strain ? &low : &i) = middle;
+    }
+    double x = (strain - c->curve_strain[i - 1]) / (c->curve_strain[i] - c->curve_strain[i - 1]);
+    return c->curve_stress[i - 1] + x * (c->curve_stress[i] - c->curve_stress[i - 1]);
+}
+
+bool sf_law_curve_falls(const sf_law_curves *c, int64_t k, sf_curve_fall *fall) {
+    static const double SLACK = 0.01; /* of the stress there and halfway: noise where the curves are one */
+    double end = fmin(c->curve_strain[c->curve_ptr[k] - 1], c->curve_strain[c->curve_ptr[k + 1] - 1]),
+           half = interpolate(c, k - 1, 0.5 * end), worst = 0;
+    for (int64_t i = c->curve_ptr[k - 1]; i < c->curve_ptr[k + 1]; i++) { /* the points of both */
+        double strain = c->curve_strain[i];
+        if (strain > end)
+            continue;
+        double slow = interpolate(c, k - 1, strain), fast = interpolate(c, k, strain),
+               excess = (slow - fast) / (slow + half) - SLACK;
+        if (excess > worst) {
+            worst = excess;
+            *fall = (sf_curve_fall){.strain = strain, .slow = slow, .fast = fast};
+        }
+    }
+    return worst > 0;
+}
+
 static sf_status check_curves(const sf_law_curves *c, sf_error *err) {
     if (c->curve_count < 1 || c->curve_ptr[0] != 0 || c->curve_ptr[c->curve_count] != c->curve_points)
         return SF_FAIL(err, SF_ERR_MODEL, "the material has no usable compression curve");
@@ -100,6 +128,13 @@ static sf_status check_curves(const sf_law_curves *c, sf_error *err) {
                 c->curve_strain[i] >= 1)
                 return SF_FAIL(err, SF_ERR_MODEL, "compression curve %lld does not rise at strain %g",
                                (long long)k, c->curve_strain[i]);
+        sf_curve_fall fall;
+        if (k > 0 && sf_law_curve_falls(c, k, &fall))
+            return SF_FAIL(
+                err, SF_ERR_MODEL,
+                "compression curve %lld at %g s-1 falls below that at %g s-1: %g Pa after %g Pa at a "
+                "strain of %g; such a foam would create energy",
+                (long long)k, c->curve_rate[k], c->curve_rate[k - 1], fall.fast, fall.slow, fall.strain);
     }
     return SF_OK;
 }

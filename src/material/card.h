@@ -59,6 +59,16 @@ typedef struct sf_law_curves {
     SF_LAW_CURVES
 } sf_law_curves;
 
+/* A place where a curve lies below that of the next lower rate. */
+typedef struct sf_curve_fall {
+    double strain;     /* - */
+    double slow, fast; /* Pa, stress there of the lower and of the higher rate */
+} sf_curve_fall;
+
+/* True if the stress of curve k >= 1 falls with the rate, beyond noise: such a foam would create energy.
+ * `fall`: the worst place. */
+bool sf_law_curve_falls(const sf_law_curves *curves, int64_t k, sf_curve_fall *fall);
+
 /* A history variable of a point: rows first .. first + components - 1 of sf_law_batch.history. All begin as
  * 0; those that a card does not need are 0 at every update, and take no memory. */
 typedef struct sf_history_variable {

@@ -97,6 +97,13 @@ double sf_foam_overstress(const sf_foam *foam, double strain, double rate, doubl
     sf_curve_evaluate(&foam->curve[0], strain, &base, &base_slope, &energy);
     sf_curve_evaluate(&foam->curve[k], strain, &low, &low_slope, &energy);
     sf_curve_evaluate(&foam->curve[k + 1], strain, &high, &high_slope, &energy);
+    low = fmax(low, base); /* curves that cross, as noise or beyond their data, create no energy */
+    for (int64_t j = 1; j < k; j++) {
+        double between, between_slope;
+        sf_curve_evaluate(&foam->curve[j], strain, &between, &between_slope, &energy);
+        low = fmax(low, between);
+    }
+    high = fmax(high, low);
     double span = log(r[k + 1] / r[k]), x = fmin(1, log(rate / r[k]) / span);
     *slope = fmax(0, low_slope + x * (high_slope - low_slope) - base_slope);
     *rate_slope = x < 1 ? fmax(0, (high - low) / (span * rate)) : 0;

@@ -28,6 +28,8 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "the stabilisation stiffens the pad")                                                                            \
     X(contact, 0.01, 0.05, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
       "contact consumes energy that the foam should take")                                                             \
+    X(dissipation, 1e-3, 0.01, SF_AS_PERCENT, "energy given back by what dissipates", "`negative_dissipation`",         \
+      "hysteresis, viscosity, friction or stabilisation creates energy: the foam's curves or the mesh are wrong")      \
     X(filter, 0.03, 0.25, SF_AS_PERCENT, "raw peak against the filtered one", "`a_max_raw_g` / `a_max_g` - 1; not of a `step_artefact`",                                          \
       "the filter makes the peak, or single steps do")                                                                 \
     X(step_artefact, 0, INFINITY, SF_AS_NUMBER, "raw peak of one or two time steps",                                   \

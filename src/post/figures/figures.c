@@ -184,12 +184,24 @@ static int64_t count_peak_rows(const sf_series *raw) {
     return last - first + 1;
 }
 
+/* Nothing that dissipates may give energy back. */
+static double negative_dissipation(const sf_history *h, double scale) {
+    const double *const dissipated[] = {h->energy_hysteresis, h->energy_viscous, h->energy_friction,
+                                        h->energy_stabilisation};
+    double least = 0;
+    for (size_t k = 0; k < sizeof dissipated / sizeof dissipated[0]; k++)
+        for (int64_t i = 0; i < h->rows; i++)
+            least = fmin(least, dissipated[k][i]);
+    return scale > 0 ? 0 - least / scale : NAN;
+}
+
 static void compute_energies(const sf_results *r, sf_figures *f) {
     sf_internal_energy e = sf_history_internal_energy(&r->history);
     f->internal_energy_peak = e.peak;
     f->internal_energy_peak_time = e.time;
     f->stabilisation_energy_fraction = e.stabilisation;
     f->contact_energy_fraction = e.contact;
+    f->negative_dissipation = negative_dissipation(&r->history, e.peak);
 }
 
 /* Contact has ended if a row without contact follows the last row with it; the speed there is the rebound's.

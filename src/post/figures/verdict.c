@@ -47,6 +47,11 @@ static double contact_value(const sf_results *r, const sf_figures *f) {
     return f->contact_energy_fraction;
 }
 
+static double dissipation_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return f->negative_dissipation;
+}
+
 static bool has_step_artefact(const sf_figures *f) {
     return f->raw_peak_rows > 0 && f->raw_peak_rows < 3;
 }

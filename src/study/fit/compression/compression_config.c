@@ -228,9 +228,42 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
 
 /* ---- requirements on all tests together ---- */
 
+static double loading_stress(const sf_compression_test *t, double strain) {
+    int i = 1;
+    while (i + 1 < t->loading && t->strain[i] < strain)
+        i++;
+    double width = t->strain[i] - t->strain[i - 1], x = width > 0 ? (strain - t->strain[i - 1]) / width : 0;
+    return t->stress[i - 1] + x * (t->stress[i] - t->stress[i - 1]);
+}
+
+/* The tests stand in ascending rate. A test that is softer than one at a lower rate, on the mean of its
+ * plateau, has the other's rate, or both are of different foams: no rate dependence of the laws can be so. */
+static sf_status check_order_of_rates(const sf_compression_config *c, sf_error *err) {
+    enum { PLACES = 32 };
+    static const double FIRST = 0.1, LAST = 0.9; /* of the common range of strain */
+    static const double SOFTER = 0.05;           /* more than specimens of one block scatter */
+    for (int k = 1; k < c->test_count; k++) {
+        const sf_compression_test *slow = &c->test[k - 1], *fast = &c->test[k];
+        double end = fmin(slow->largest_strain, fast->largest_strain), sum = 0;
+        for (int i = 0; i < PLACES; i++) {
+            double strain = end * (FIRST + (LAST - FIRST) * i / (PLACES - 1));
+            sum += log(fmax(loading_stress(fast, strain), 1e-9) / fmax(loading_stress(slow, strain), 1e-9));
+        }
+        double softer = -expm1(sum / PLACES);
+        if (fast->rate > slow->rate && softer > SOFTER)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s at %g 1/s is softer than %s at %g 1/s, by %.3g %% on the mean over its loading: are "
+                "the rates exchanged? The stress of a foam does not fall with the rate",
+                fast->path, fast->rate, slow->path, slow->rate, 100 * softer);
+    }
+    return SF_OK;
+}
+
 static sf_status check_together(const char *path, const sf_compression_config *c, sf_error *err) {
     double shortest = 1;
     int below = 0;
+    SF_TRY(check_order_of_rates(c, err));
     if (c->form.form.curve || c->hyperfoam.terms > 0)
         return SF_OK; /* these need nothing of the tests together */
     for (int k = 0; k < c->test_count; k++)
