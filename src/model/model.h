@@ -137,7 +137,8 @@ typedef struct sf_model {
     int32_t *rest_node; /* [rest_count] ascending, on one plane z = constant */
     double *rest_load;  /* [rest_count] N, of the anvil on the pad at t = 0; their sum is the pad's weight */
 
-    /* The missile's surface in the pose of first contact, `gap` away along its direction; triangles turned outwards. */
+    /* The missile's surface in the pose of first contact, `gap` away along its direction; triangles turned
+     * outwards. */
     int64_t surface_node_count;
     int64_t surface_triangle_count;
     double *surface_position;  /* [surface_node_count][3] m */
@@ -153,8 +154,8 @@ typedef struct sf_model {
     int64_t frame_time_count;
     double *frame_time; /* [frame_time_count] s, ascending */
 
-    int64_t symmetry_factor;    /* 1, 2 or 4: how many times the modelled part makes the whole */
-    double thickness;           /* m, of the pad along z */
+    int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
+    double thickness; /* m, of the foam under the contact, along the missile's path, its vertical part */
     double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; 0 = not estimated */
     double slit_fraction;       /* of the nodes: those at a slit, hole or gap narrower than their supports */
     int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */

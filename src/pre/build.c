@@ -11,6 +11,7 @@
 #include "pre/cloud/domain_store.h"
 #include "pre/cloud/domains.h"
 #include "pre/drop_check.h"
+#include "pre/foam_path.h"
 #include "pre/missile_body.h"
 #include "pre/cloud/dual.h"
 #include "pre/cloud/layers.h"
@@ -478,7 +479,8 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     m->missile.clearance = find_clearance(m);
     m->missile.impact_known = 1;
     sf_impact_point(m, impact);
-    memcpy(m->missile.impact, impact, sizeof m->missile.impact);
+    for (int k = 0; k < 2; k++) /* below a nanometre it is rounding */
+        m->missile.impact[k] = fabs(impact[k]) < 1e-9 ? 0 : impact[k];
     return SF_OK;
 }
 
@@ -486,7 +488,8 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
 static sf_status place(const sf_case *c, const sf_hold *hold, sf_surface *surface, sf_model *m,
                        sf_error *err) {
     sf_base_place_anvil(c, hold, m);
-    return build_missile(c, surface, m, err);
+    SF_TRY(build_missile(c, surface, m, err));
+    return sf_foam_path_measure(m, err);
 }
 
 /* A prescribed motion stays above the plane of the pad's underside: where the anvil is there, it would end

@@ -184,7 +184,7 @@ static int64_t count_peak_rows(const sf_series *raw) {
     return last - first + 1;
 }
 
-/* Nothing that dissipates may give energy back. */
+/* Returns the energy that a dissipation has given back, over `scale`; none may give any. */
 static double negative_dissipation(const sf_history *h, double scale) {
     const double *const dissipated[] = {h->energy_hysteresis, h->energy_viscous, h->energy_friction,
                                         h->energy_stabilisation};

@@ -87,7 +87,7 @@
     X(NUMBER, contact_energy_fraction, "contact_energy_fraction", 1, "energy lost in contact at that time, of that energy", \
       .name = "contact energy", .unit = "% of the internal energy", .format = "%.3f", .shown = 100) \
     X(NUMBER, negative_dissipation, "negative_dissipation", 1, "most that hysteresis, viscosity, friction or stabilisation had given back at any time beyond what it had taken, of that energy") \
-    X(NUMBER, area, "section_mm2", 1e6, "mean cross-section: volume of the whole pad at rest / thickness") \
+    X(NUMBER, area, "section_mm2", 1e6, "mean cross-section: volume of the whole pad at rest / its height") \
     X(NUMBER, peak_force, "peak_force_N", 1, "largest contact force (prescribed motion, like the next four)", \
       .name = "largest force", .unit = "N", .format = "%.2f") \
     X(NUMBER, peak_force_time, "peak_force_time_ms", 1e3, "its time") \
@@ -105,7 +105,7 @@
     X(FLAG, rebounded, "rebounded", 1, "contact had ended before the last row, upwards") \
     X(FACT, contact_time, "contact_time_ms", 1e3, "first contact") \
     X(NUMBER, end_time, "end_time_ms", 1e3, "time of the last row of the history") \
-    X(FACT, thickness, "thickness_mm", 1e3, "of the pad") \
+    X(FACT, thickness, "thickness_mm", 1e3, "of the foam under the contact, along the missile's path, its vertical part") \
     X(FACT, impact_x, "impact_x_mm", 1e3, "x of the impact point: where the missile's lowest point arrives at the pad's top") \
     X(FACT, impact_y, "impact_y_mm", 1e3, "its y") \
     X(NUMBER, missile_mass, "missile_mass_kg", 1, "of the whole missile") \

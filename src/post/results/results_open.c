@@ -31,10 +31,13 @@ double sf_results_whole(const sf_results *r) {
 }
 
 double sf_results_cross_section(const sf_results *r) {
-    double volume = 0;
-    for (int64_t i = 0; i < r->node_count; i++)
+    double volume = 0, low = INFINITY, high = -INFINITY;
+    for (int64_t i = 0; i < r->node_count; i++) {
         volume += r->volume[i];
-    return sf_results_whole(r) * volume / r->thickness;
+        low = fmin(low, r->position[3 * i + 2]);
+        high = fmax(high, r->position[3 * i + 2]);
+    }
+    return sf_results_whole(r) * volume / (high - low);
 }
 
 bool sf_results_touched(const sf_results *results) {

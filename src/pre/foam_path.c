@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/foam_path.h"
+
+#include "base/mat3.h"
+#include "pre/mesh/mesh.h"
+#include "pre/mesh/missile_shape.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_RAYS = 200, MOST_HITS = 256 };
+static const double FACING = 0.1;   /* least cosine between the missile's direction and a face it touches */
+static const double ZONE = 0.5;     /* of the length under the first touch */
+static const double SAME = 1e-6;    /* of the extent: one place; the same thickness */
+static const double AT_EDGE = 1e-9; /* of a triangle: a ray through its edge meets it */
+
+typedef enum node_mark { MARK_TOUCHED = 1, MARK_HELD = 2 } node_mark;
+
+/* A face of a cell: its nodes as they stand in the cell, and ascending. */
+typedef struct face {
+    int32_t node[4], sorted[4]; /* [3] is -1 of a triangle, in `sorted` [0] */
+} face;
+
+typedef struct triangle {
+    int32_t node[3];
+    double travel; /* m, of the missile to its centroid; infinity: it is not touched */
+} triangle;
+
+typedef struct surface_of_pad {
+    int64_t count;
+    triangle *list; /* owned; turned outwards */
+} surface_of_pad;
+
+/* A place where a ray crosses the pad's surface. */
+typedef struct hit {
+    double at, order; /* m, along the ray; by which the places are sorted */
+    bool leaves, held;
+} hit;
+
+/* ---- the pad's surface ---- */
+
+static int by_nodes(const void *a, const void *b) {
+    return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
+}
+
+static void sort4(int32_t v[4]) {
+    for (int i = 1; i < 4; i++)
+        for (int k = i; k > 0 && v[k] < v[k - 1]; k--) {
+            int32_t swap = v[k];
+            v[k] = v[k - 1];
+            v[k - 1] = swap;
+        }
+}
+
+static int64_t list_faces(const sf_model *m, face *list) {
+    int64_t count = 0;
+    for (int64_t c = 0; c < m->cell_count; c++) {
+        const sf_cell_topology *cell = sf_cell_topology_of(m->cell_type[c]);
+        for (int f = 0; f < cell->faces; f++) {
+            face *out = &list[count++];
+            for (int k = 0; k < 4; k++)
+                out->node[k] = k < cell->face_size[f] ? m->cell_node[m->cell_ptr[c] + cell->face[f][k]] : -1;
+            memcpy(out->sorted, out->node, sizeof out->sorted);
+            sort4(out->sorted);
+        }
+    }
+    qsort(list, (size_t)count, sizeof *list, by_nodes);
+    return count;
+}
+
+static sf_status find_surface(const sf_model *m, surface_of_pad *out, sf_error *err) {
+    int64_t most = 0;
+    *out = (surface_of_pad){0};
+    for (int64_t c = 0; c < m->cell_count; c++)
+        most += sf_cell_topology_of(m->cell_type[c])->faces;
+    face *list = sf_alloc(err, (unsigned long)most, sizeof *list, "faces of the pad");
+    int64_t count = list ? list_faces(m, list) : 0, single = 0;
+    for (int64_t i = 0; i < count; i++) { /* two cells share an inner face */
+        bool paired = i + 1 < count && by_nodes(&list[i], &list[i + 1]) == 0;
+        if (!paired)
+            list[single++] = list[i];
+        i += paired;
+    }
+    out->list = sf_alloc(err, 2 * (unsigned long)single, sizeof *out->list, "surface of the pad");
+    for (int64_t i = 0; out->list && i < single; i++) {
+        const int32_t *n = list[i].node;
+        out->list[out->count++] = (triangle){.node = {n[0], n[1], n[2]}};
+        if (n[3] >= 0)
+            out->list[out->count++] = (triangle){.node = {n[0], n[2], n[3]}};
+    }
+    free(list);
+    return err->status;
+}
+
+static uint8_t *mark_nodes(const sf_model *m, sf_error *err) {
+    uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "thickness of the pad");
+    for (int64_t k = 0; mark && k < m->contact_count; k++)
+        mark[m->contact_node[k]] |= MARK_TOUCHED;
+    for (int64_t k = 0; mark && k < m->fixed_count; k++)
+        mark[m->fixed_node[k]] |= m->fixed_base[k] ? MARK_HELD : 0;
+    for (int64_t k = 0; mark && k < m->rest_count; k++)
+        mark[m->rest_node[k]] |= MARK_HELD;
+    return mark;
+}
+
+static bool all_marked(const uint8_t *mark, const triangle *t, node_mark which) {
+    return mark[t->node[0]] & mark[t->node[1]] & mark[t->node[2]] & which;
+}
+
+/* ---- rays ---- */
+
+static void corners(const sf_model *m, const triangle *t, const double *x[3]) {
+    for (int k = 0; k < 3; k++)
+        x[k] = &m->position[3 * (int64_t)t->node[k]];
+}
+
+static void find_centroid(const sf_model *m, const triangle *t, double out[3]) {
+    const double *x[3];
+    corners(m, t, x);
+    for (int k = 0; k < 3; k++)
+        out[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
+}
+
+/* Returns true if the ray meets the triangle, at *at (Moeller and Trumbore 1997). */
+static bool cross(const sf_model *m, const triangle *t, const double from[3], const double along[3],
+                  double *at, bool *leaves) {
+    const double *x[3];
+    double a[3], b[3], r[3], p[3], q[3];
+    corners(m, t, x);
+    for (int k = 0; k < 3; k++) {
+        a[k] = x[1][k] - x[0][k];
+        b[k] = x[2][k] - x[0][k];
+        r[k] = from[k] - x[0][k];
+    }
+    sf_cross3(along, b, p);
+    double det = sf_dot3(a, p), size = sqrt(sf_dot3(a, a) * sf_dot3(b, b));
+    if (!(fabs(det) > AT_EDGE * size))
+        return false;
+    double u = sf_dot3(r, p) / det;
+    if (u < -AT_EDGE || u > 1 + AT_EDGE)
+        return false;
+    sf_cross3(r, a, q);
+    double v = sf_dot3(along, q) / det;
+    if (v < -AT_EDGE || u + v > 1 + AT_EDGE)
+        return false;
+    *at = sf_dot3(b, q) / det;
+    *leaves = det < 0; /* the normal points along the ray */
+    return true;
+}
+
+static int by_place(const void *a, const void *b) {
+    double x = ((const hit *)a)->order, y = ((const hit *)b)->order;
+    return (x > y) - (x < y);
+}
+
+/* Length (m) of foam on the ray from the centroid of triangle `first`. */
+static double foam_length(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark, int64_t first,
+                          double slack) {
+    hit hits[MOST_HITS];
+    int count = 0;
+    double from[3], sum = 0, begin = 0;
+    bool inside = true;
+    find_centroid(m, &pad->list[first], from);
+    for (int64_t i = 0; i < pad->count && count < MOST_HITS; i++) {
+        hit h;
+        if (i == first || !cross(m, &pad->list[i], from, m->missile.direction, &h.at, &h.leaves) ||
+            h.at < slack)
+            continue;
+        h.order = h.at + (h.leaves ? 0 : 0.5 * slack); /* between layers the ray leaves before it enters */
+        h.held = all_marked(mark, &pad->list[i], MARK_HELD);
+        hits[count++] = h;
+    }
+    qsort(hits, (size_t)count, sizeof *hits, by_place);
+    for (int k = 0; k < count; k++) { /* at an edge two triangles meet: the second changes nothing */
+        if (inside && hits[k].leaves) {
+            sum += hits[k].at - begin;
+            if (hits[k].held)
+                break;
+        } else if (!inside && !hits[k].leaves) {
+            begin = hits[k].at;
+        }
+        inside = !hits[k].leaves;
+    }
+    return sum;
+}
+
+/* ---- the zone ---- */
+
+/* Sets the travel of each face that the missile may touch; returns the first touched, or -1. */
+static int64_t find_touched(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark) {
+    const sf_surface missile = {.node_count = m->surface_node_count,
+                                .position = m->surface_position,
+                                .triangle_count = m->surface_triangle_count,
+                                .triangle = m->surface_triangle};
+    int64_t first = -1;
+    for (int64_t i = 0; i < pad->count; i++) {
+        triangle *t = &pad->list[i];
+        const double *x[3];
+        double a[3], b[3], normal[3], centroid[3];
+        t->travel = INFINITY;
+        if (!all_marked(mark, t, MARK_TOUCHED))
+            continue;
+        corners(m, t, x);
+        for (int k = 0; k < 3; k++) {
+            a[k] = x[1][k] - x[0][k];
+            b[k] = x[2][k] - x[0][k];
+        }
+        sf_cross3(a, b, normal);
+        if (sf_dot3(normal, m->missile.direction) > -FACING * sqrt(sf_dot3(normal, normal)))
+            continue;
+        find_centroid(m, t, centroid);
+        t->travel = sf_missile_travel(&missile, &m->missile, centroid);
+        if (isfinite(t->travel) && (first < 0 || t->travel < pad->list[first].travel))
+            first = i;
+    }
+    return first;
+}
+
+static double shortest_length(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark,
+                              int64_t first, double slack) {
+    double least = foam_length(m, pad, mark, first, slack), end = pad->list[first].travel + ZONE * least;
+    int64_t zone = 0, seen = 0;
+    for (int64_t i = 0; i < pad->count; i++)
+        zone += pad->list[i].travel <= end;
+    int64_t stride = 1 + zone / MOST_RAYS;
+    for (int64_t i = 0; i < pad->count; i++) {
+        if (!(pad->list[i].travel <= end) || seen++ % stride != 0)
+            continue;
+        double length = foam_length(m, pad, mark, i, slack);
+        least = length > slack ? fmin(least, length) : least;
+    }
+    return least;
+}
+
+sf_status sf_foam_path_measure(sf_model *m, sf_error *err) {
+    double extent = m->thickness, slack = SAME * extent;
+    surface_of_pad pad;
+    uint8_t *mark = mark_nodes(m, err);
+    if (mark && find_surface(m, &pad, err) == SF_OK) {
+        int64_t first = find_touched(m, &pad, mark);
+        double length = first < 0 ? 0 : shortest_length(m, &pad, mark, first, slack);
+        double upright = -m->missile.direction[2] * length;
+        if (length > slack && fabs(upright - extent) > SAME * extent)
+            m->thickness = upright;
+        free(pad.list);
+    }
+    free(mark);
+    return err->status;
+}
