@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thickness of pads that are no flat blocks: the length of foam on the missile's path. */
+/* The foam on the missile's path: the thickness of pads that are no flat blocks, parts of a missile that pass
+ * between the nodes, missiles that are not symmetric about a plane of the pad. */
 #include "program_fixture.h"
 
 #include "model/model_io.h"
@@ -91,10 +92,61 @@ static void a_motion_through_the_foam_is_refused(void **state) {
     assert_non_null(strstr(r.err, "45 mm deep into a pad that is"));
 }
 
+static const char MISSILE[] =
+    "Physical Volume(\"missile\") = v(); Physical Surface(\"missile_surface\") = Boundary{Volume{v()};};\n"
+    "Mesh.MeshSizeMax = 10; Mesh.MeshSizeMin = 5;\n";
+
+/* A plate of 80 x 80 mm with a prong below it, over a pad of `planes` symmetry planes. */
+static program_result prong(const program_place *p, const char *box, bool quarter) {
+    char text[2048];
+    snprintf(text, sizeof text,
+             "SetFactory(\"OpenCASCADE\");\nBox(1) = {-40, -40, 30, 80, 80, 20}; Box(2) = {%s, 35};\n"
+             "v() = BooleanUnion{ Volume{1}; Delete; }{ Volume{2}; Delete; };\n%s",
+             box, MISSILE);
+    program_write_text(p, "prong.geo", text);
+    snprintf(
+        text, sizeof text,
+        "Point(1) = {%s, %s, 0};\na() = Extrude {%s, 0, 0} { Point{1}; Layers{%s}; };\n"
+        "b() = Extrude {0, %s, 0} { Curve{a(1)}; Layers{%s}; Recombine; };\n"
+        "c() = Extrude {0, 0, 50} { Surface{b(1)}; Layers{5}; Recombine; };\n"
+        "Physical Volume(\"pad\") = {c(1)}; Physical Surface(\"base\") = {b(1)}; Physical Surface(\"top\") = {c(0)};\n%s",
+        quarter ? "0" : "-60", quarter ? "0" : "-60", quarter ? "60" : "120", quarter ? "6" : "12",
+        quarter ? "60" : "120", quarter ? "6" : "12",
+        quarter ? "Physical Surface(\"symmetry_x\") = {c(5)}; Physical Surface(\"symmetry_y\") = {c(2)};\n"
+                : "");
+    program_write_text(p, "pad.geo", text);
+    program_write_text(
+        p, "prong.cfg",
+        "geometry: { file = \"pad.geo\"; missile_file = \"prong.geo\"; length_unit = \"mm\"; };\n"
+        "material: {\n@include \"materials/eva35.cfg\"\n};\npad: { mesh_error_limit = 10.0; };\n"
+        "missile: { mass = \"1 kg\"; velocity = \"2 m/s\"; };\nsolver: { end_time = \"1 ms\"; };\n");
+    return program_run(p, "pre", "prong.cfg -o prong.h5 --force");
+}
+
+static void a_missile_that_is_not_symmetric_needs_the_whole_pad(void **state) {
+    program_result r = prong(*state, "5, 5, 0, 25, 25", true);
+    assert_int_not_equal(r.code, 0);
+    assert_non_null(strstr(r.err, "not symmetric about the plane \"symmetry_x\""));
+    assert_int_equal(prong(*state, "5, 5, 0, 25, 25", false).code, 0);
+    assert_int_equal(prong(*state, "-15, -15, 0, 30, 30", true).code, 0);
+    r = prong(*state, "-15, 5, 0, 30, 25", true);
+    assert_non_null(strstr(r.err, "not symmetric about the plane \"symmetry_y\""));
+}
+
+static void a_part_between_the_nodes_is_refused(void **state) {
+    program_result r = prong(*state, "1.5, 1.5, 0, 7, 7", false);
+    assert_int_not_equal(r.code, 0);
+    assert_non_null(strstr(r.err, "passes between the contact nodes"));
+    assert_non_null(strstr(r.err, "is 30 mm inside the foam"));
+    assert_int_equal(prong(*state, "-1.5, -1.5, 0, 7, 7", false).code, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(thickness_is_the_foam_on_the_missiles_path),
         cmocka_unit_test(a_motion_through_the_foam_is_refused),
+        cmocka_unit_test(a_missile_that_is_not_symmetric_needs_the_whole_pad),
+        cmocka_unit_test(a_part_between_the_nodes_is_refused),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

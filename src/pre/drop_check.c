@@ -230,6 +230,69 @@ static double side_of_pad(const sf_model *m, int axis, double place) {
     return sum < 0 ? -1 : 1;
 }
 
+static double segment_distance(const double x[3], const double a[3], const double b[3]) {
+    double along[3], r[3];
+    for (int k = 0; k < 3; k++) {
+        along[k] = b[k] - a[k];
+        r[k] = x[k] - a[k];
+    }
+    double square = sf_dot3(along, along), t = square > 0 ? sf_dot3(r, along) / square : 0;
+    for (int k = 0; k < 3; k++)
+        r[k] -= fmin(fmax(t, 0), 1) * along[k];
+    return sqrt(sf_dot3(r, r));
+}
+
+static double triangle_distance(const double x[3], const double a[3], const double b[3], const double c[3]) {
+    double u[3], v[3], normal[3], r[3];
+    for (int k = 0; k < 3; k++) {
+        u[k] = b[k] - a[k];
+        v[k] = c[k] - a[k];
+        r[k] = x[k] - a[k];
+    }
+    sf_cross3(u, v, normal);
+    double size = sqrt(sf_dot3(normal, normal));
+    for (int k = 0; k < 3 && size > 0; k++)
+        normal[k] /= size;
+    if (size > 0 && isfinite(sf_triangle_travel(a, b, c, normal, x)))
+        return fabs(sf_dot3(normal, r));
+    return fmin(segment_distance(x, a, b), fmin(segment_distance(x, b, c), segment_distance(x, c, a)));
+}
+
+/* A missile that is drawn on both sides of the plane is its own mirror image: the model has one side alone.
+ * The longest edges of a triangulation, which need not be symmetric, give the slack. */
+static sf_status check_mirror(const sf_model *m, int axis, double place, double extent, const char *name,
+                              sf_error *err) {
+    enum { MOST_POINTS = 2000 };
+    static const double OF_EDGE = 0.25; /* half of the sagitta of a coarse sphere, and more */
+    int64_t stride = 1 + m->surface_node_count / MOST_POINTS;
+    double longest = 0;
+    for (int64_t k = 0; k < 3 * m->surface_triangle_count; k++) {
+        const double *a = &m->surface_position[3 * (int64_t)m->surface_triangle[k]],
+                     *b = &m->surface_position[3 * (int64_t)m->surface_triangle[k % 3 == 2 ? k - 2 : k + 1]];
+        longest = fmax(longest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+    }
+    double slack = SYMMETRIC * extent + OF_EDGE * fmin(longest, 0.1 * extent);
+    for (int64_t v = 0; v < m->surface_node_count; v += stride) {
+        const double *own = &m->surface_position[3 * v];
+        double x[3] = {own[0], own[1], own[2]}, nearest = INFINITY;
+        x[axis] = 2 * place - x[axis];
+        for (int64_t t = 0; t < m->surface_triangle_count && nearest > slack; t++) {
+            const int32_t *n = &m->surface_triangle[3 * t];
+            nearest = fmin(nearest, triangle_distance(x, &m->surface_position[3 * (int64_t)n[0]],
+                                                      &m->surface_position[3 * (int64_t)n[1]],
+                                                      &m->surface_position[3 * (int64_t)n[2]]));
+        }
+        if (nearest > slack)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "the missile is not symmetric about the plane \"%s\" (%c = %g mm), of which the model "
+                "has one side: its point at (%.4g, %.4g, %.4g) mm has its mirror image %.4g mm beside "
+                "the surface; model the whole pad and the whole missile",
+                name, 'x' + axis, 1e3 * place, 1e3 * own[0], 1e3 * own[1], 1e3 * own[2], 1e3 * nearest);
+    }
+    return SF_OK;
+}
+
 /* The contact sees what stands over the modelled part of the pad: that must be half of a symmetric missile,
  * which may be modelled as a half or as a whole. */
 static sf_status check_plane(const sf_model *m, int axis, double place, const char *name, sf_error *err) {
@@ -246,8 +309,10 @@ static sf_status check_plane(const sf_model *m, int axis, double place, const ch
                        1e3 * off, name, 'x' + axis, 1e3 * place);
     }
     double before = side_of_pad(m, axis, place) > 0 ? place - low : high - place, behind = extent - before;
-    if (fabs(before) <= AT_PLANE * extent || fabs(before - behind) <= SYMMETRIC * extent)
+    if (fabs(before) <= AT_PLANE * extent)
         return SF_OK;
+    if (fabs(before - behind) <= SYMMETRIC * extent)
+        return check_mirror(m, axis, place, extent, name, err);
     return SF_FAIL(err, SF_ERR_INPUT,
                    "the missile spans %c = %g to %g mm, neither one side of the symmetry plane \"%s\" (%c = "
                    "%g mm) from that plane on nor both sides alike",

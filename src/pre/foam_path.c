@@ -9,10 +9,9 @@
 #include <string.h>
 
 enum { MOST_RAYS = 200, MOST_HITS = 256 };
-static const double FACING = 0.1;   /* least cosine between the missile's direction and a face it touches */
-static const double ZONE = 0.5;     /* of the length under the first touch */
-static const double SAME = 1e-6;    /* of the extent: one place; the same thickness */
-static const double AT_EDGE = 1e-9; /* of a triangle: a ray through its edge meets it */
+static const double FACING = 0.1; /* least cosine between the missile's direction and a face it touches */
+static const double ZONE = 0.5;   /* of the length under the first touch */
+static const double SAME = 1e-6;  /* of the extent: one place; the same thickness */
 
 typedef enum node_mark { MARK_TOUCHED = 1, MARK_HELD = 2 } node_mark;
 
@@ -121,31 +120,17 @@ static void find_centroid(const sf_model *m, const triangle *t, double out[3]) {
         out[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
 }
 
-/* Returns true if the ray meets the triangle, at *at (Moeller and Trumbore 1997). */
-static bool cross(const sf_model *m, const triangle *t, const double from[3], const double along[3],
-                  double *at, bool *leaves) {
+/* The cosine between the triangle's outward normal and the missile's direction. */
+static double facing(const sf_model *m, const triangle *t) {
     const double *x[3];
-    double a[3], b[3], r[3], p[3], q[3];
+    double a[3], b[3], normal[3];
     corners(m, t, x);
     for (int k = 0; k < 3; k++) {
         a[k] = x[1][k] - x[0][k];
         b[k] = x[2][k] - x[0][k];
-        r[k] = from[k] - x[0][k];
     }
-    sf_cross3(along, b, p);
-    double det = sf_dot3(a, p), size = sqrt(sf_dot3(a, a) * sf_dot3(b, b));
-    if (!(fabs(det) > AT_EDGE * size))
-        return false;
-    double u = sf_dot3(r, p) / det;
-    if (u < -AT_EDGE || u > 1 + AT_EDGE)
-        return false;
-    sf_cross3(r, a, q);
-    double v = sf_dot3(along, q) / det;
-    if (v < -AT_EDGE || u + v > 1 + AT_EDGE)
-        return false;
-    *at = sf_dot3(b, q) / det;
-    *leaves = det < 0; /* the normal points along the ray */
-    return true;
+    sf_cross3(a, b, normal);
+    return sf_dot3(normal, m->missile.direction) / sqrt(sf_dot3(normal, normal));
 }
 
 static int by_place(const void *a, const void *b) {
@@ -162,10 +147,12 @@ static double foam_length(const sf_model *m, const surface_of_pad *pad, const ui
     bool inside = true;
     find_centroid(m, &pad->list[first], from);
     for (int64_t i = 0; i < pad->count && count < MOST_HITS; i++) {
-        hit h;
-        if (i == first || !cross(m, &pad->list[i], from, m->missile.direction, &h.at, &h.leaves) ||
-            h.at < slack)
+        const double *x[3];
+        corners(m, &pad->list[i], x);
+        double at = -sf_triangle_travel(x[0], x[1], x[2], m->missile.direction, from);
+        if (i == first || !isfinite(at) || at < slack)
             continue;
+        hit h = {.at = at, .leaves = facing(m, &pad->list[i]) > 0};
         h.order = h.at + (h.leaves ? 0 : 0.5 * slack); /* between layers the ray leaves before it enters */
         h.held = all_marked(mark, &pad->list[i], MARK_HELD);
         hits[count++] = h;
@@ -195,18 +182,9 @@ static int64_t find_touched(const sf_model *m, const surface_of_pad *pad, const 
     int64_t first = -1;
     for (int64_t i = 0; i < pad->count; i++) {
         triangle *t = &pad->list[i];
-        const double *x[3];
-        double a[3], b[3], normal[3], centroid[3];
+        double centroid[3];
         t->travel = INFINITY;
-        if (!all_marked(mark, t, MARK_TOUCHED))
-            continue;
-        corners(m, t, x);
-        for (int k = 0; k < 3; k++) {
-            a[k] = x[1][k] - x[0][k];
-            b[k] = x[2][k] - x[0][k];
-        }
-        sf_cross3(a, b, normal);
-        if (sf_dot3(normal, m->missile.direction) > -FACING * sqrt(sf_dot3(normal, normal)))
+        if (!all_marked(mark, t, MARK_TOUCHED) || facing(m, t) > -FACING)
             continue;
         find_centroid(m, t, centroid);
         t->travel = sf_missile_travel(&missile, &m->missile, centroid);
@@ -232,6 +210,48 @@ static double shortest_length(const sf_model *m, const surface_of_pad *pad, cons
     return least;
 }
 
+/* ---- between the nodes ---- */
+
+/* How far (m) a point of the missile is inside the foam when the first contact node is touched, if that is
+ * more than the rounding of a missile between nodes. */
+static double depth_inside(const sf_model *m, const surface_of_pad *pad, const double point[3]) {
+    static const double ROUNDING = 0.5; /* of the spacing */
+    double deepest = 0;
+    for (int64_t i = 0; i < pad->count; i++) {
+        const triangle *t = &pad->list[i];
+        const double *x[3];
+        if (!isfinite(t->travel))
+            continue;
+        corners(m, t, x);
+        double spacing = fmax(fmax(m->spacing[t->node[0]], m->spacing[t->node[1]]), m->spacing[t->node[2]]),
+               inside = sf_triangle_travel(x[0], x[1], x[2], m->missile.direction, point) + m->missile.gap;
+        if (isfinite(inside) && inside > ROUNDING * spacing)
+            deepest = fmax(deepest, inside);
+    }
+    return deepest;
+}
+
+/* The contact acts at the nodes of the pad alone: a part of the missile that is narrower than their spacing
+ * passes between them and would start inside the foam. */
+static sf_status check_between(const sf_model *m, const surface_of_pad *pad, sf_error *err) {
+    const double *d = m->missile.direction;
+    double start = INFINITY;
+    for (int64_t k = 0; k < m->contact_count; k++)
+        start = fmin(start, sf_dot3(&m->position[3 * (int64_t)m->contact_node[k]], d));
+    for (int64_t v = 0; v < m->surface_node_count && m->missile.shape != SF_SHAPE_SPHERE; v++) {
+        const double *x = &m->surface_position[3 * v];
+        double depth = sf_dot3(x, d) + m->missile.gap > start ? depth_inside(m, pad, x) : 0;
+        if (depth > 0)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "a part of the missile passes between the contact nodes: when the first of them is "
+                "touched, its point at (%.4g, %.4g) mm is %.4g mm inside the foam; take a mesh whose "
+                "spacing there is below the width of that part",
+                1e3 * x[0], 1e3 * x[1], 1e3 * depth);
+    }
+    return SF_OK;
+}
+
 sf_status sf_foam_path_measure(sf_model *m, sf_error *err) {
     double extent = m->thickness, slack = SAME * extent;
     surface_of_pad pad;
@@ -242,6 +262,7 @@ sf_status sf_foam_path_measure(sf_model *m, sf_error *err) {
         double upright = -m->missile.direction[2] * length;
         if (length > slack && fabs(upright - extent) > SAME * extent)
             m->thickness = upright;
+        check_between(m, &pad, err);
         free(pad.list);
     }
     free(mark);

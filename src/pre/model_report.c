@@ -126,8 +126,8 @@ static void add_masses(sf_model_report *out, const sf_model *m, const sf_build_r
         parts += sf_material_density(&m->material[k]) * volume_of(m, r, k);
     add(out, "pad_mass", "pad mass", "%.6f kg modelled; density x volume = %.6f kg (difference %.1e)", mass,
         parts, mass / parts - 1);
-    add(out, "pad_volume", "pad volume", "%.1f x %.6g cm3, thickness under the missile %.4g mm", whole, 1e6 * volume,
-        1e3 * m->thickness);
+    add(out, "pad_volume", "pad volume", "%.1f x %.6g cm3, thickness under the missile %.4g mm", whole,
+        1e6 * volume, 1e3 * m->thickness);
     if (sf_missile_is_driven(m))
         add_motion(out, m);
     else

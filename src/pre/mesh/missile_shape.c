@@ -472,10 +472,8 @@ static double sphere_travel(const sf_missile_card *card, const double x[3]) {
     return along - sqrt(square);
 }
 
-/* Travel of a triangle until it touches x: intersection with the line through x along the direction (Moeller
- * and Trumbore 1997), or infinity. */
-static double triangle_travel(const double *a, const double *b, const double *c, const double direction[3],
-                              const double x[3]) {
+double sf_triangle_travel(const double *a, const double *b, const double *c, const double direction[3],
+                          const double x[3]) {
     double u[3], v[3], r[3], p[3], q[3];
     for (int k = 0; k < 3; k++) {
         u[k] = b[k] - a[k];
@@ -499,8 +497,8 @@ double sf_missile_travel(const sf_surface *surface, const sf_missile_card *card,
     double travel = INFINITY;
     for (int64_t t = 0; t < surface->triangle_count; t++) {
         const int32_t *v = &surface->triangle[3 * t];
-        travel = fmin(travel, triangle_travel(&surface->position[3 * v[0]], &surface->position[3 * v[1]],
-                                              &surface->position[3 * v[2]], card->direction, x));
+        travel = fmin(travel, sf_triangle_travel(&surface->position[3 * v[0]], &surface->position[3 * v[1]],
+                                                 &surface->position[3 * v[2]], card->direction, x));
     }
     return travel;
 }
