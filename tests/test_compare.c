@@ -348,7 +348,7 @@ static void measurement_is_filtered_with_the_class(void **state) {
         sf_reference reference;
         double away = 0, raw = 0;
         assert_int_equal(sf_reference_read(&options, &reference, &err), SF_OK);
-        assert_int_equal(reference.curve.count, k ? 3001 : 1501); /* 100 kHz, or as it is */
+        assert_int_equal(reference.curve.count, 1501); /* at its own rate */
         for (double t = 0.008; t < 0.017; t += 1e-5) { /* where the pulse itself passes the filter */
             double pulse = 40 * sin(M_PI * (t - 0.005) / 0.015);
             away = larger(away, fabs(sf_series_at(&reference.curve, t) - pulse));

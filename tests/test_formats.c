@@ -6,6 +6,7 @@
 #include "model/good_run.h"
 #include "model/model.h"
 #include "post/figures/figures.h"
+#include "post/figures/record.h"
 #include "study/fit/form/form.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -78,6 +79,17 @@ static void put_good_run(FILE *f) {
         isfinite(r->refuse) ? fprintf(f, "%g", r->refuse) : fputc('-', f);
         fprintf(f, " | %s |\n", r->why);
     }
+}
+
+#define RECORD_ROW(name, remark, refuse, title, how, why)                                                    \
+    fprintf(f, "| `%s` | %s | %g | ", #name, how, (double)(remark));                                         \
+    isfinite(refuse) ? fprintf(f, "%g", (double)(refuse)) : fputc('-', f);                                   \
+    fprintf(f, " | %s |\n", why);
+
+static void put_good_record(FILE *f) {
+    fputs("| check | value | remark beyond | do not use beyond | why it matters |\n|---|---|---|---|---|\n",
+          f);
+    SF_GOOD_RECORD(RECORD_ROW)
 }
 
 /* Path of the scalar that counts the rows of an array. */
@@ -171,6 +183,7 @@ static const struct {
     {"formats", "figures", put_figures},
     {"formats", "layer figures", put_layer_figures},
     {"formats", "good run", put_good_run},
+    {"formats", "good record", put_good_record},
     {"identification", "measured numbers", put_measured},
     {"identification", "forms", put_forms},
     {"identification", "parameters", put_parameters},

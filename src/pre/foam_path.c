@@ -212,8 +212,8 @@ static double shortest_length(const sf_model *m, const surface_of_pad *pad, cons
 
 /* ---- between the nodes ---- */
 
-/* How far (m) a point of the missile is inside the foam when the first contact node is touched, if that is
- * more than the rounding of a missile between nodes. */
+/* Returns the depth (m) of a point of the missile inside the foam when the first contact node is touched, 0
+ * if it is no more than the rounding of a missile between nodes. */
 static double depth_inside(const sf_model *m, const surface_of_pad *pad, const double point[3]) {
     static const double ROUNDING = 0.5; /* of the spacing */
     double deepest = 0;

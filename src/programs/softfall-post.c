@@ -38,7 +38,11 @@ enum {
     KEY_LIMIT_HIC,
     KEY_REFERENCE_FILTER,
     KEY_REFERENCE_COLUMN,
-    KEY_REFERENCE_INVERT
+    KEY_REFERENCE_INVERT,
+    KEY_REFERENCE_ZERO,
+    KEY_FROM,
+    KEY_TO,
+    KEY_IMPACT
 };
 
 typedef struct options {
@@ -81,11 +85,20 @@ static sf_status parse_filter(const char *option, const char *text, double *cfc,
                    option, text, strcmp(option, "--filter") == 0 ? "" : " (none: not filtered)");
 }
 
-static sf_status parse_shift(const char *text, double *shift, sf_error *err) {
-    bool number = sf_decimal_is(text, shift);
-    *shift *= 1e-3;
-    if (!number)
-        return SF_FAIL(err, SF_ERR_INPUT, "--shift %s: not a time in ms", text);
+static sf_status parse_ms(const char *option, const char *text, double *time, sf_error *err) {
+    bool number = sf_decimal_is(text, time);
+    *time *= 1e-3;
+    if (!number || !isfinite(*time))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a time in ms", option, text);
+    return SF_OK;
+}
+
+static sf_status parse_impact(const char *text, int *impact, sf_error *err) {
+    double value = 0;
+    if (!sf_decimal_is(text, &value) || value != floor(value) || value < 1 || value > SF_RECORD_IMPACTS)
+        return SF_FAIL(err, SF_ERR_INPUT, "--impact %s: the number of an impact is expected, from 1 to %d",
+                       text, SF_RECORD_IMPACTS);
+    *impact = (int)value;
     return SF_OK;
 }
 
@@ -134,6 +147,22 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         o->compare.reference.invert = true;
         o->tuned = true;
         break;
+    case KEY_FROM:
+        parse_ms("--from", text, &o->compare.reference.from, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_TO:
+        parse_ms("--to", text, &o->compare.reference.to, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_IMPACT:
+        parse_impact(text, &o->compare.reference.impact, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_REFERENCE_ZERO:
+        o->compare.reference.zero = true;
+        o->tuned = true;
+        break;
     case KEY_WINDOW:
         sf_region_parse(text, &o->compare.window, &o->err);
         o->tuned = true;
@@ -144,7 +173,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         o->tuned = true;
         break;
     case KEY_SHIFT:
-        parse_shift(text, &o->compare.shift, &o->err);
+        parse_ms("--shift", text, &o->compare.shift, &o->err);
         o->tuned = true;
         break;
     case ARGP_KEY_ARG:
@@ -196,6 +225,11 @@ static sf_status parse_command(int argc, char **argv, options *o) {
          "heading of its acceleration, if several columns could be", 1},
         {"reference-invert", KEY_REFERENCE_INVERT, NULL, 0,
          "its channel is inverted: positive must mean that the missile is slowed down", 1},
+        {"from", KEY_FROM, "MS", 0, "use the measured curve from there on, in ms of its time", 1},
+        {"to", KEY_TO, "MS", 0, "use it up to there", 1},
+        {"impact", KEY_IMPACT, "N", 0, "use impact N of a record that has several", 1},
+        {"reference-zero", KEY_REFERENCE_ZERO, NULL, 0,
+         "take the median before contact, an offset of the channel, away from it", 1},
         {"window", KEY_WINDOW, "A,B", 0,
          "compare over A to B ms of the measured time (default: its HIC window); within the data", 1},
         {"regions", KEY_REGIONS, "A-B,C-D,...", 0,
@@ -218,6 +252,8 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     *o = (options){.cfc = 1000,
                    .limits = SF_DEFAULT_LIMITS,
                    .compare = {.reference = {.cfc = NAN,
+                                             .from = -INFINITY,
+                                             .to = INFINITY,
                                              .column_option = "--reference-column",
                                              .unfiltered_option = "--reference-filter none",
                                              .invert_option = "--reference-invert"},
@@ -227,6 +263,9 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
         return SF_FAIL(&o->err, SF_ERR_INPUT, "the command line cannot be read");
     o->compare.regions = o->regions;
+    if (!(o->compare.reference.from < o->compare.reference.to))
+        SF_FAIL(&o->err, SF_ERR_INPUT, "--from %g and --to %g: the part of the measured curve has no length",
+                1e3 * o->compare.reference.from, 1e3 * o->compare.reference.to);
     if (isnan(o->compare.reference.cfc))
         o->compare.reference.cfc = o->cfc;
     if (o->tuned && !o->comparing)

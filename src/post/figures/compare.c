@@ -76,10 +76,29 @@ static sf_status check_sampling(const sf_reference_options *o, const sf_table *t
     return SF_OK;
 }
 
+/* The samples on their own uniform clock, if written times that are rounded are all that speaks against it.
+ */
+static bool take_uniform(const sf_series *raw, sf_series *uniform, sf_error *err) {
+    static const double OFF = 0.05; /* of a step: a time that is rounded */
+    double step = (raw->time[raw->count - 1] - raw->time[0]) / (double)(raw->count - 1);
+    for (int64_t i = 0; i < raw->count; i++)
+        if (fabs(raw->time[i] - raw->time[0] - (double)i * step) > OFF * step)
+            return false;
+    if (sf_series_create(raw->count, uniform, err) != SF_OK)
+        return true;
+    for (int64_t i = 0; i < raw->count; i++)
+        uniform->time[i] = raw->time[0] + (double)i * step;
+    memcpy(uniform->value, raw->value, (size_t)raw->count * sizeof(double));
+    return true;
+}
+
+/* At the record's own rate: interpolation between samples would be a filter of its own. */
 static sf_status filter(const sf_reference_options *o, sf_reference *r, sf_error *err) {
     sf_series uniform = {0};
     if (o->cfc > 0) {
-        if (sf_signal_resample(&r->raw, sf_signal_rate(&r->raw), &uniform, err) == SF_OK)
+        if (!take_uniform(&r->raw, &uniform, err))
+            sf_signal_resample(&r->raw, sf_signal_rate(&r->raw), &uniform, err);
+        if (err->status == SF_OK)
             sf_signal_filter_cfc(&uniform, o->cfc, &r->curve, err);
         sf_series_free(&uniform);
     } else if (sf_series_create(r->raw.count, &r->curve, err) == SF_OK) {
@@ -124,6 +143,82 @@ static void describe(const sf_reference_options *o, const sf_table *table, sf_re
     snprintf(r->interpretation, sizeof r->interpretation, "%.383s, %lld samples %s, %.6g to %.6g ms, %s%s",
              table->interpretation, (long long)s->count, spacing, s->time[0] * 1e3,
              s->time[s->count - 1] * 1e3, class, o->invert ? ", inverted as asked for" : "");
+    size_t used = strlen(r->interpretation);
+    if (r->origin != 0)
+        snprintf(r->interpretation + used, sizeof r->interpretation - used, ", its clock begins at %.6f s",
+                 r->origin);
+    used = strlen(r->interpretation);
+    if (r->impacts[0])
+        snprintf(r->interpretation + used, sizeof r->interpretation - used, ", of the impacts %s",
+                 r->impacts);
+    used = strlen(r->interpretation);
+    if (o->zero)
+        snprintf(r->interpretation + used, sizeof r->interpretation - used, ", less %.4g g before contact",
+                 r->offset);
+}
+
+/* Keeps the samples from `from` to `to` (s). */
+static sf_status cut_out(const sf_reference_options *o, sf_series *raw, double from, double to,
+                         sf_error *err) {
+    int64_t first = 0, last = raw->count - 1;
+    while (first < last && raw->time[first] < from)
+        first++;
+    while (last > first && raw->time[last] > to)
+        last--;
+    if (last - first + 1 < FEWEST_POINTS)
+        return SF_FAIL(
+            err, SF_ERR_INPUT, "%s: fewer than %d samples lie from %g to %g ms; it has %g to %g ms", o->path,
+            FEWEST_POINTS, 1e3 * from, 1e3 * to, 1e3 * raw->time[0], 1e3 * raw->time[raw->count - 1]);
+    raw->count = last - first + 1;
+    memmove(raw->time, raw->time + first, (size_t)raw->count * sizeof(double));
+    memmove(raw->value, raw->value + first, (size_t)raw->count * sizeof(double));
+    return SF_OK;
+}
+
+/* The part or the impact that was asked for, and a list of the impacts if there are several. */
+static sf_status choose_part(const sf_reference_options *o, sf_reference *r, sf_error *err) {
+    sf_record_impact impact[SF_RECORD_IMPACTS];
+    int count = 0;
+    if (o->from < o->to)
+        SF_TRY(cut_out(o, &r->raw, o->from, o->to, err));
+    SF_TRY(sf_record_find_impacts(&r->raw, impact, &count, err));
+    size_t used = 0;
+    for (int k = 0; count > 1 && k < count && used < sizeof r->impacts; k++)
+        used += (size_t)snprintf(r->impacts + used, sizeof r->impacts - used, "%s%d at %.4g ms (%.4g g)",
+                                 k ? ", " : "", k + 1, 1e3 * impact[k].time, impact[k].peak);
+    int chosen = o->impact;
+    for (int k = 0; k < count && o->impact == 0; k++)
+        chosen = chosen == 0 || impact[k].peak > impact[chosen - 1].peak ? k + 1 : chosen;
+    for (int k = 0; k < count && o->impact == 0; k++)
+        r->other = k + 1 == chosen ? r->other : fmax(r->other, impact[k].peak / impact[chosen - 1].peak);
+    if (count < 2 && o->impact <= count)
+        return SF_OK;
+    if (o->impact > count)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: impact %d was asked for; it has %d%s%s", o->path, o->impact,
+                       count, count > 1 ? ": " : "", r->impacts);
+    return cut_out(o, &r->raw, impact[chosen - 1].begin, impact[chosen - 1].end, err);
+}
+
+/* Begins the clock with the record, where it counts from long before, and takes the zero line away. */
+static sf_status set_origins(const sf_reference_options *o, sf_reference *r, sf_error *err) {
+    static const double LONG = 1000; /* s: with it nine digits no longer tell 10 us */
+    if (fabs(r->raw.time[0]) > LONG) {
+        r->origin = r->raw.time[0];
+        for (int64_t i = 0; i < r->raw.count; i++)
+            r->raw.time[i] -= r->origin;
+    }
+    SF_TRY(choose_part(o, r, err));
+    if (!o->zero)
+        return SF_OK;
+    SF_TRY(sf_record_offset(&r->raw, &r->offset, err));
+    if (isnan(r->offset))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: too few samples before contact to take the zero line from: leave --reference-zero out",
+            o->path);
+    for (int64_t i = 0; i < r->raw.count; i++)
+        r->raw.value[i] -= r->offset;
+    return SF_OK;
 }
 
 static sf_status take_table(const sf_reference_options *o, sf_table *table, sf_reference *r, sf_error *err) {
@@ -134,6 +229,7 @@ static sf_status take_table(const sf_reference_options *o, sf_table *table, sf_r
     table->value[0] = table->value[1] = NULL;
     for (int64_t i = 0; o->invert && i < r->raw.count; i++)
         r->raw.value[i] = 0 - r->raw.value[i];
+    SF_TRY(set_origins(o, r, err));
     SF_TRY(check_sampling(o, table, &r->raw, err));
     SF_TRY(filter(o, r, err));
     SF_TRY(check_sign(o, &r->curve, err));
@@ -387,6 +483,9 @@ static sf_status read_measured(const sf_compare_options *options, sf_comparison 
     c->raw = reference.raw;
     c->cfc = options->reference.cfc;
     c->inverted = options->reference.invert;
+    c->origin = reference.origin;
+    c->offset = reference.offset;
+    SF_TRY(sf_record_judge(&c->raw, &c->measured, reference.other, &c->record, err));
     memcpy(c->interpretation, reference.interpretation, sizeof c->interpretation);
     return sf_injury_evaluate(&c->measured, &c->injury, err);
 }

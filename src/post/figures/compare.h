@@ -4,16 +4,16 @@
 #include <stdbool.h>
 
 #include "post/figures/injury.h"
+#include "post/figures/record.h"
 #include "post/figures/signal.h"
 #include "report/row.h"
 
 /* A measured acceleration from a CSV file (io/table_csv.h): a time and an acceleration, positive while the
- * missile is slowed down, in any unit that the heading names. It is treated like the model's curve: sampled
- * uniformly at SF_SIGNAL_RATE or faster by linear interpolation, then filtered with a channel frequency
- * class.
- */
+ * missile is slowed down, in any unit that the heading names. It is filtered with a channel frequency
+ * class at its own rate; samples at uneven times are first put at uniform ones, at SF_SIGNAL_RATE or faster.
+ * A clock that counts from long before the record, such as an epoch, begins with the record. */
 
-enum { SF_REFERENCE_INTERPRETATION = 640 };
+enum { SF_REFERENCE_INTERPRETATION = 1024 };
 
 /* The texts tell the user, in sentences, how to choose otherwise ("--reference-filter none"). All borrowed.
  */
@@ -22,12 +22,19 @@ typedef struct sf_reference_options {
     const char *column; /* heading of the acceleration; NULL: the only one */
     double cfc;         /* channel frequency class; 0: the file is filtered already and used as it is */
     bool invert;        /* the file has the other sign */
+    bool zero;          /* take the median before contact away */
+    double from, to;    /* s, the part to be used, on the record's clock; 0, 0: all of it */
+    int impact;         /* the one to be used, from 1; 0: the highest */
     const char *column_option, *unfiltered_option, *invert_option;
 } sf_reference_options;
 
 typedef struct sf_reference {
-    sf_series raw;   /* the points of the file, s and g, inverted if asked for; owned */
-    sf_series curve; /* sampled and filtered; without a filter the same as raw; owned */
+    sf_series raw;     /* the points of the file, s and g, inverted if asked for; owned */
+    sf_series curve;   /* filtered; without a filter the same as raw; owned */
+    double origin;     /* s, of its clock, that was taken away from the times */
+    double offset;     /* g, that was taken away from the values */
+    char impacts[256]; /* "1 at 12.4 ms (150 g), ..."; empty: there is one */
+    double other;      /* highest of the other impacts, over the peak, if none was asked for; else 0 */
     char interpretation[SF_REFERENCE_INTERPRETATION]; /* how the file was read, for the report */
 } sf_reference;
 
@@ -83,6 +90,8 @@ typedef struct sf_comparison {
     char interpretation[SF_REFERENCE_INTERPRETATION]; /* how the file was read */
     double cfc;                                       /* of the measured curve; 0: not filtered here */
     bool inverted;                                    /* on the user's word */
+    double origin, offset;                            /* s and g, taken away from times and values */
+    sf_record_verdict record;                         /* may it be compared with? */
     sf_injury injury;                                 /* of the measured curve */
     double shift;                                     /* s, as used */
     int shift_given;                                  /* 1 if the caller gave it */

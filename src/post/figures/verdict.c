@@ -215,7 +215,7 @@ void sf_verdict_compute(const sf_results *results, const sf_figures *figures, co
         return;
     verdict->limit_count = SF_LIMITS;
     const sf_injury *injury = &figures->injury;
-    bool whole = !ended_early(verdict, figures);
+    bool whole = !ended_early(verdict, figures) && verdict->grade != SF_GRADE_DO_NOT_USE;
     verdict->limits[0] = limit_of("a_max_g", "a_max", "g", injury->a_max_g, limits->a_max_g, whole);
     verdict->limits[1] = limit_of("hic", "HIC", "1", injury->hic.value, limits->hic, whole);
 }

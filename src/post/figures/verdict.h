@@ -25,7 +25,7 @@ typedef struct sf_limit {
     const char *key, *title, *unit; /* static */
     double value;                   /* NaN: not defined by the run */
     double bound;
-    bool judged; /* the value is that of a whole drop: the run did not end before the rebound */
+    bool judged; /* the value is that of a whole drop, and the verdict lets it be used */
     bool passed; /* value <= bound; false if it is not judged */
 } sf_limit;
 

@@ -379,6 +379,10 @@ static void put_comparison(const page *p) {
         p->file, "%s: a_max %.1f g (model %+.1f %%), HIC %.1f. Model time = measured time %+.3f ms (%s).",
         p->report->summary->reference_path, c->injury.a_max_g, 100 * c->peak_error, c->injury.hic.value,
         c->shift * 1e3, c->shift_given ? "as given" : "contact of both curves");
+    char line[SF_VERDICT_LINE_SIZE];
+    sf_record_line(&c->record, line, sizeof line);
+    sf_html_banner(p->file, kind_of(c->record.grade),
+                   c->record.grade == SF_GRADE_DO_NOT_USE ? "comparison not usable" : "record", "%s.", line);
     sf_rows_html_table(p->file, "dense", sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
     sf_html_block_end(p->file);
 }
