@@ -113,6 +113,13 @@ static void wrong_tests_are_refused_with_their_line(void **state) {
     s = good;
     s.header = "elongation,stress_kPa";
     assert_refused(&s, "no column \"strain\"", 2);
+    static const char *const others[] = {"Log strain (1),Stress (kPa)", "Strain (1),True stress (kPa)",
+                                         "Hencky strain (1),Cauchy stress (kPa)",
+                                         "Wahre Dehnung (1),Spannung (kPa)"};
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+        s.header = others[k];
+        assert_refused(&s, "is not the engineering strain or the nominal stress", 2);
+    }
     s = good;
     s.unloading = 3 - POINTS;
     assert_refused(&s, "points of loading", 0);

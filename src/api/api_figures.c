@@ -46,6 +46,7 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
 static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
     const sf_model *m = &d->model;
     *r = (sf_results){.node_count = m->node_count,
+                      .position = m->position,
                       .volume = m->volume,
                       .symmetry_factor = m->symmetry_factor,
                       .thickness = m->thickness,

@@ -21,6 +21,11 @@ sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
         .name_count = sizeof names / sizeof *names,
         .words = {"strain|*dehnung|*stauchung|deformation|déformation|deformación|deformazione",
                   "stress|*spannung|contrainte|tensión|esfuerzo|sforzo|tensione"},
+        .unfit = {"true|log|ln|logarithmic|hencky|natural|wahre|logarithmische", "true|cauchy|wahre"},
+        .unfit_why =
+            "is not the engineering strain or the nominal stress: of a logarithmic strain e the engineering "
+            "strain is 1 - exp(-e), of a true stress the nominal one is true stress x present area / "
+            "first area, the same for a foam without lateral strain",
         .kind = {SF_TABLE_RATIO, SF_PRESSURE},
         .check = check,
     };

@@ -4,10 +4,12 @@
 #include "io/plain_file.h"
 #include "io/table_heading.h"
 #include <ctype.h>
+#include <iconv.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { PREAMBLE = 200 }; /* lines among which the heading must stand */
 static const char SEPARATORS[] = ";\t, ";
@@ -26,6 +28,7 @@ typedef struct csv {
     bool decimal;      /* a comma that can only be a decimal one */
     int comma_line;    /* first number with a comma */
     char comma_text[32];
+    int lost;        /* rows whose value is NaN: samples that were lost */
     sf_units *units; /* NULL until needed; owned */
     sf_table *table;
 } csv;
@@ -39,14 +42,107 @@ void sf_table_free(sf_table *table) {
 
 /* ---- lines ---- */
 
+/* UTF-16 with a byte order mark, as spreadsheets save "Unicode text", becomes UTF-8. */
+static sf_status convert_utf16(csv *file, size_t *length, sf_error *err) {
+    const char *mark = file->text;
+    bool little = *length > 1 && memcmp(mark, "\xFF\xFE", 2) == 0,
+         big = *length > 1 && memcmp(mark, "\xFE\xFF", 2) == 0;
+    if (!little && !big)
+        return SF_OK;
+    iconv_t converter = iconv_open("UTF-8", little ? "UTF-16LE" : "UTF-16BE");
+    size_t left = *length - 2, room = 2 * *length + 4, whole = room;
+    char *from = file->text + 2, *text = malloc(room + 1), *to = text;
+    if (!text || converter == (iconv_t)-1 || iconv(converter, &from, &left, &to, &room) == (size_t)-1) {
+        SF_FAIL(err, SF_ERR_INPUT, "the %s %s begins like UTF-16, but is not: save it as CSV UTF-8",
+                file->layout->what, file->path);
+        free(text);
+    } else {
+        *length = whole - room;
+        text[*length] = '\0';
+        free(file->text);
+        file->text = text;
+    }
+    if (converter != (iconv_t)-1)
+        iconv_close(converter);
+    return err->status;
+}
+
+/* The value of a line "KEY   :value" of an ISO-MME header; NULL if the line has another key. */
+static const char *mme_value(const char *line, const char *key) {
+    size_t length = strlen(key);
+    const char *colon = strchr(line, ':');
+    if (!colon || strncasecmp(line, key, length) != 0 ||
+        strspn(line + length, " \t") != (size_t)(colon - line) - length)
+        return NULL;
+    return colon + 1 + strspn(colon + 1, " \t");
+}
+
+/* A channel in ISO-MME (ISO/TS 13499: a header of lines "key :value", then a sample a line) becomes a table
+ * of time and channel, each sample in its own line. */
+static sf_status convert_mme(csv *file, sf_error *err) {
+    char name[SF_TABLE_TITLE] = "channel", unit[SF_TABLE_UNIT] = "", *out = NULL, *next = NULL;
+    double step = NAN, first = 0, said = NAN, number;
+    size_t size = 0;
+    int64_t samples = 0;
+    if (strncasecmp(file->text, "Test object number", 18) != 0)
+        return SF_OK;
+    FILE *table = open_memstream(&out, &size);
+    if (!table)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
+    for (char *line = file->text; line && *line; line = next) {
+        const char *value;
+        next = line + strcspn(line, "\r\n");
+        size_t ends = next[0] == '\r' && next[1] == '\n' ? 2 : next[0] != '\0';
+        *next = '\0';
+        next += ends;
+        line += strspn(line, " \t");
+        if (strchr(line, ':')) {
+            if ((value = mme_value(line, "Name of the channel")))
+                snprintf(name, sizeof name, "%.60s", value);
+            else if ((value = mme_value(line, "Unit")))
+                snprintf(unit, sizeof unit, "%.31s", strcmp(value, "m/(s*s)") == 0 ? "m/s2" : value);
+            else if ((value = mme_value(line, "Sampling interval")) && sf_table_number(value, &number))
+                step = number;
+            else if ((value = mme_value(line, "Time of first sample")) && sf_table_number(value, &number))
+                first = number;
+            else if ((value = mme_value(line, "Number of samples")) && sf_table_number(value, &number))
+                said = number;
+            if (!mme_value(line, "Number of samples")) {
+                fputs("#\n", table);
+                continue;
+            }
+            for (char *c = name; *c; c++) /* no separator, no bracket */
+                *c = strchr(";()[]<>,/", *c) ? ' ' : *c;
+            fprintf(table, "Time (s);%s (%s)\n", name, unit);
+        } else if (*line) {
+            fprintf(table, "%.9g;%s\n", first + (double)samples++ * step,
+                    strcasecmp(line, "NOVALUE") == 0 ? "NaN" : line);
+        } else {
+            fputs("\n", table);
+        }
+    }
+    fclose(table);
+    free(file->text);
+    file->text = out;
+    if (!(step > 0) || !unit[0] || said != (double)samples)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: its ISO-MME header gives a sampling interval of %g s, the unit \"%s\" and %g samples; it "
+            "holds %lld samples",
+            file->path, step, unit, said, (long long)samples);
+    return SF_OK;
+}
+
 static sf_status load(csv *file, sf_error *err) {
     const char *what = file->layout->what;
     size_t length = 0;
     SF_TRY(sf_plain_read(file->path, what, SF_PLAIN_TEXT, &file->text, &length, err));
+    SF_TRY(convert_utf16(file, &length, err));
     if (strlen(file->text) < length)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "the %s %s holds zero bytes: it is not a text in UTF-8 (save it as CSV UTF-8)", what,
                        file->path);
+    SF_TRY(convert_mme(file, err));
     file->next = file->text + (strncmp(file->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0); /* byte order mark */
     return SF_OK;
 }
@@ -122,7 +218,7 @@ static char *copy_utf8(const char *text) {
     return copy;
 }
 
-/* Two numbers begin the line: data, which no heading follows. */
+/* Two numbers begin the line: data. */
 static bool is_data(const char *line) {
     bool data = false;
     for (const char *s = SEPARATORS; *s && !data; s++) {
@@ -186,16 +282,20 @@ static sf_status try_line(csv *file, const char *line, const sf_table_layout *la
     return err->status;
 }
 
-/* The first line that is a heading; else what is wrong with the line that is most like one. */
+/* The first line that is a heading; a table of results may stand above it, with an empty line between. Else
+ * what is wrong with the line that is most like one. */
 static sf_status find_heading(csv *file, const sf_table_layout *layouts, int count, int *which,
                               sf_error *err) {
     sf_table_heading best = {.found = -1};
     int best_line = 0, lines = 0;
+    bool below_data = false; /* the line follows on one of numbers */
     char *line;
     while (lines++ < PREAMBLE && (line = next_content(file))) {
         sf_table_heading heading;
         if (try_line(file, line, layouts, count, which, &heading, &file->separator, err) != SF_OK)
             return err->status;
+        if (heading.found == 2 && !heading.problem[0] && below_data)
+            break;
         if (heading.found == 2 && !heading.problem[0]) {
             file->heading = heading;
             file->layout = &layouts[*which];
@@ -206,8 +306,7 @@ static sf_status find_heading(csv *file, const sf_table_layout *layouts, int cou
             best = heading;
             best_line = file->line;
         }
-        if (is_data(line))
-            break;
+        below_data = is_data(line) && file->next && !strchr("\r\n", *file->next);
     }
     return best_line ? SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", file->path, best_line, best.problem) : SF_OK;
 }
@@ -251,7 +350,35 @@ static sf_status check_mark(csv *file, const char *name, const char *text, sf_er
     return SF_OK;
 }
 
+/* "1,017.76" or "1.017,76": groups of three digits and another decimal mark. In a file with decimal points
+ * whose commas separate columns, a quoted "1,017" is of thousands too. Writes the number without the groups.
+ */
+static bool has_thousands(const csv *file, const char *text, char *plain, size_t size) {
+    const char *digits = text + strspn(text, "+-"), *mark = strpbrk(digits, ",.");
+    size_t used = (size_t)(digits - text);
+    if (!mark || mark - digits < 1 || mark - digits > 3 || strlen(text) >= size)
+        return false;
+    char group = *mark, decimal = group == ',' ? '.' : ',';
+    memcpy(plain, text, (size_t)(mark - text));
+    used = (size_t)(mark - text);
+    while (*mark == group) {
+        if (strspn(mark + 1, "0123456789") != 3)
+            return false;
+        memcpy(plain + used, mark + 1, 3);
+        used += 3;
+        mark += 4;
+    }
+    bool known = *mark == decimal || (*mark == '\0' && group == ',' && file->separator == ',' && file->point);
+    if (!known || (*mark && mark[1 + strspn(mark + 1, "0123456789")] != '\0'))
+        return false;
+    snprintf(plain + used, size - used, "%s", mark);
+    return true;
+}
+
 static sf_status read_number(csv *file, const char *name, const char *text, double *value, sf_error *err) {
+    char plain[64];
+    if (has_thousands(file, text, plain, sizeof plain))
+        text = plain;
     if (!sf_table_number(text, value))
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number", file->path, file->line, name,
                        text);
@@ -324,6 +451,10 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
         return SF_OK;
     if (check_count(file, count_cells(file, &cells), err) != SF_OK)
         return err->status;
+    if (file->layout->ragged && strcasecmp(cells.cell[file->heading.place[1]], "nan") == 0) {
+        file->lost++;
+        return SF_OK;
+    }
     for (int c = 0; c < 2; c++) {
         double scale = file->heading.scale[c];
         point.text[c] = cells.cell[file->heading.place[c]];
@@ -341,6 +472,45 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
 }
 
 /* ---- the whole ---- */
+
+static bool holds_point(const csv *file, const char *line) {
+    sf_table_cells cells;
+    double number;
+    const int *place = file->heading.place;
+    char *copy = strdup(line);
+    if (!copy)
+        return true;
+    sf_table_split(copy, file->separator, false, &cells);
+    bool point = cells.count > place[0] && cells.count > place[1] && cells.count <= SF_TABLE_COLUMNS &&
+                 sf_table_number(cells.cell[place[0]], &number) &&
+                 sf_table_number(cells.cell[place[1]], &number);
+    free(copy);
+    return point;
+}
+
+/* A line that begins with a letter, holds no number in the first column, and after which no line holds a
+ * point: results or remarks of the laboratory below the data. */
+static bool ends_table(const csv *file, const char *line) {
+    sf_table_cells cells;
+    double number;
+    char *copy = strdup(line);
+    if (!copy)
+        return false;
+    sf_table_split(copy, file->separator, false, &cells);
+    int place = file->heading.place[0];
+    bool text = cells.count > 0 && cells.count <= SF_TABLE_COLUMNS &&
+                ((unsigned char)cells.cell[0][0] >= 0x80 || isalpha((unsigned char)cells.cell[0][0])) &&
+                (cells.count <= place || !sf_table_number(cells.cell[place], &number));
+    free(copy);
+    for (char *rest = file->next; text && rest && *rest;) {
+        size_t length = strcspn(rest, "\r\n");
+        char *after = strndup(rest, length);
+        text = after && !holds_point(file, after);
+        free(after);
+        rest += length + (rest[length] != '\0');
+    }
+    return text;
+}
 
 static void describe(const csv *file) {
     const sf_table_heading *h = &file->heading;
@@ -368,9 +538,13 @@ static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, 
         next_content(file);
     for (int c = 0; c < 2; c++)
         file->table->scale[c] = file->heading.scale[c];
-    while ((line = next_content(file)))
+    while ((line = next_content(file))) {
+        if (file->table->count > 0 && ends_table(file, line))
+            break;
         if (read_point(file, line, err) != SF_OK)
             return err->status;
+    }
+    int footer = line ? file->line : 0;
     if (file->comma && !file->decimal)
         return SF_FAIL(
             err, SF_ERR_INPUT,
@@ -384,8 +558,14 @@ static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, 
         describe(file);
     size_t used = strlen(file->table->interpretation);
     if (file->passed)
-        snprintf(file->table->interpretation + used, SF_TABLE_INTERPRETATION - used, ", heading in line %d",
-                 heading_line);
+        used += (size_t)snprintf(file->table->interpretation + used, SF_TABLE_INTERPRETATION - used,
+                                 ", heading in line %d", heading_line);
+    if (footer && used < SF_TABLE_INTERPRETATION)
+        used += (size_t)snprintf(file->table->interpretation + used, SF_TABLE_INTERPRETATION - used,
+                                 ", without what stands from line %d on", footer);
+    if (file->lost && used < SF_TABLE_INTERPRETATION)
+        snprintf(file->table->interpretation + used, SF_TABLE_INTERPRETATION - used,
+                 ", %d lost samples (NaN)", file->lost);
     return SF_OK;
 }
 

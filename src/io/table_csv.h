@@ -2,8 +2,11 @@
 /* Tables of two columns in CSV files (curves, motions, measurements), as laboratories write them:
  *
  * - separators comma, semicolon, tab or runs of blanks, found by the heading; UTF-8, with or without a byte
- *   order mark, or Latin-1 in the heading; any line ends; cells may be quoted;
- * - lines that begin with '#' are comments; other lines before the heading are passed over;
+ *   order mark, UTF-16 with one, or Latin-1 in the heading; any line ends; cells may be quoted;
+ * - lines that begin with '#' are comments; other lines before the heading are passed over, numbers only if an
+ *   empty line follows on them; remarks below the data are left out, if no data follow on them;
+ * - groups of thousands where another mark is the decimal one ("1,017.76");
+ * - a channel in ISO-MME (ISO/TS 13499), with its unit, its interval and its first time;
  * - the heading names the two columns exactly ("time_ms"), or by a word with a unit: "Time (ms)", "Zeit
  * [ms]", "t / ms", "acc_m_s2", or the unit in the line below. Other columns are ignored;
  * - decimal point or, unless the comma separates, decimal comma; the same throughout.

@@ -211,8 +211,16 @@ static title read_title(const reading *r, int i, int kind) {
     title t = {.unit = ""};
     if (snprintf(t.name, sizeof t.name, "%s", r->cells->cell[i]) >= (int)sizeof t.name)
         return (title){.unit = ""}; /* a heading of this length is prose */
-    if (take_written_unit(&t))
-        return t;
+    const title whole = t;
+    if (take_written_unit(
+            &t)) { /* "Compressive strain (Displacement)" over "(%)": the line below has the unit */
+        char under[SF_TABLE_TITLE] = "";
+        if (r->below && i < r->below->count)
+            strip_brackets(r->below->cell[i], under, sizeof under);
+        if (unit_value(r, t.unit, kind) > 0 || !(unit_value(r, under, kind) > 0))
+            return t;
+        t = whole;
+    }
     if (r->below && i < r->below->count)
         strip_brackets(r->below->cell[i], t.unit, sizeof t.unit);
     if (!t.unit[0])
@@ -311,6 +319,11 @@ static double scale_of(const reading *r, int c, const char *unit) {
     return unit_value(r, unit, r->layout->kind[c]) / own;
 }
 
+/* True of a heading of another quantity of the same kind: "True stress (MPa)". */
+static bool means_other(const reading *r, int c, int i) {
+    return r->layout->unfit[c] && holds_word(r->cells->cell[i], r->layout->unfit[c]);
+}
+
 /* Takes the only cell that fits: by a word (or the user's choice) and a unit of the kind, or by such a unit
  * alone. False if there is none. */
 static bool find_by_unit(const reading *r, int c, bool by_word) {
@@ -319,7 +332,7 @@ static bool find_by_unit(const reading *r, int c, bool by_word) {
         title t = read_title(r, i, by_word ? kind : SF_TABLE_RATIO);
         bool named = r->layout->chosen[c] ? is_chosen(r, c, i) : holds_word(t.name, r->layout->words[c]);
         double scale = named || !by_word ? scale_of(r, c, t.unit) : 0;
-        if ((by_word && !named) || !(scale > 0) || !is_allowed(r, c, i))
+        if ((by_word && !named) || !(scale > 0) || !is_allowed(r, c, i) || means_other(r, c, i))
             continue;
         if (found >= 0) {
             refuse_two(r, c, found, i);
@@ -341,7 +354,9 @@ static bool find_unfit(const reading *r, int c) {
         const char *cell = r->cells->cell[i];
         if (r->layout->chosen[c] ? !is_chosen(r, c, i) : !holds_word(t.name, r->layout->words[c]))
             continue;
-        if (t.unit[0])
+        if (means_other(r, c, i))
+            complain(r, "\"%.80s\" %s", cell, r->layout->unfit_why);
+        else if (t.unit[0])
             complain(r, "the header has no column %s: \"%s\" is in \"%s\", which is not a unit of %s",
                      r->layout->wanted[c], cell, t.unit,
                      kind == SF_TABLE_RATIO ? "a strain (% or 1)" : sf_quantity_phrase((sf_quantity)kind));

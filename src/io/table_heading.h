@@ -45,6 +45,8 @@ typedef struct sf_table_layout {
                              NULL: exact names only */
     int kind[2];          /* sf_quantity or SF_TABLE_RATIO, with words */
     double unit[2];       /* SI value of the unit of the table's values; 0: SI */
+    const char *unfit[2]; /* words of headings that mean another quantity; NULL: none */
+    const char *unfit_why; /* what such a column is, and how to convert it */
     const char *chosen[2]; /* heading of the column to take; NULL: the only one that fits */
     const char *choice;    /* how the user chooses a column, for messages; NULL: not possible */
     bool ragged;           /* a row may be shorter than the heading as long as it holds both columns */

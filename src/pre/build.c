@@ -485,11 +485,11 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
 }
 
 /* The anvil first: the missile may meet it before the pad. */
-static sf_status place(const sf_case *c, const sf_hold *hold, sf_surface *surface, sf_model *m,
+static sf_status place(const sf_case *c, sf_build_report *report, sf_surface *surface, sf_model *m,
                        sf_error *err) {
-    sf_base_place_anvil(c, hold, m);
+    sf_base_place_anvil(c, &report->hold, m);
     SF_TRY(build_missile(c, surface, m, err));
-    return sf_foam_path_measure(m, err);
+    return sf_foam_path_measure(m, &report->between, err);
 }
 
 /* A prescribed motion stays above the plane of the pad's underside: where the anvil is there, it would end
@@ -625,6 +625,12 @@ static void tell_slits(const sf_build_report *r, const sf_sink *sink) {
             1e3 * r->hidden_position[2]);
 }
 
+/* After the checks that say more of the missile: a sheet on its edge, for one. */
+static sf_status check_between(const sf_build_report *report, sf_error *err) {
+    const sf_error *between = &report->between;
+    return between->status == SF_OK ? SF_OK : SF_FAIL(err, between->status, "%s", between->text);
+}
+
 sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *m, sf_build_report *report,
                          const sf_sink *sink, sf_error *err) {
     memset(m, 0, sizeof *m);
@@ -634,11 +640,11 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     int64_t critical = 0;
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
-        sf_hold_find(m, &report->hold, err) == SF_OK && place(c, &report->hold, surface, m, err) == SF_OK &&
+        sf_hold_find(m, &report->hold, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
         take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
-        if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
-            measure_step(m, &critical, report, err) == SF_OK &&
+        if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
+            sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
             sf_hold_warn(&report->hold, m, sink);

@@ -29,6 +29,7 @@ typedef struct sf_build_report {
     bool contact_held; /* every contact point is held along z: nothing to drop on */
     sf_hold hold;
     sf_contact_zone zone;
+    sf_error between; /* a part of the missile passes between the contact nodes (pre/foam_path.h) */
     sf_invariants invariants;
 } sf_build_report;
 

@@ -252,7 +252,7 @@ static sf_status check_between(const sf_model *m, const surface_of_pad *pad, sf_
     return SF_OK;
 }
 
-sf_status sf_foam_path_measure(sf_model *m, sf_error *err) {
+sf_status sf_foam_path_measure(sf_model *m, sf_error *between, sf_error *err) {
     double extent = m->thickness, slack = SAME * extent;
     surface_of_pad pad;
     uint8_t *mark = mark_nodes(m, err);
@@ -262,7 +262,7 @@ sf_status sf_foam_path_measure(sf_model *m, sf_error *err) {
         double upright = -m->missile.direction[2] * length;
         if (length > slack && fabs(upright - extent) > SAME * extent)
             m->thickness = upright;
-        check_between(m, &pad, err);
+        check_between(m, &pad, between);
         free(pad.list);
     }
     free(mark);

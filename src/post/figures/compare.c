@@ -64,8 +64,12 @@ static double largest_gap(const sf_series *s) {
 
 static sf_status check_sampling(const sf_reference_options *o, const sf_table *table, const sf_series *raw,
                                 sf_error *err) {
+    static const double SHARE = 0.1; /* of the intervals: a gap alone is judged by post/figures/record.h */
     double most = 1 / (SAMPLES_PER_CLASS * o->cfc);
+    int64_t coarse = 0;
     for (int64_t i = 1; o->cfc > 0 && i < raw->count; i++)
+        coarse += gap_before(raw, i) > ROUNDING * most;
+    for (int64_t i = 1; (double)coarse > SHARE * (double)raw->count && i < raw->count; i++)
         if (gap_before(raw, i) > ROUNDING * most)
             return SF_FAIL(
                 err, SF_ERR_INPUT,
