@@ -352,9 +352,9 @@ static void the_state_of_a_job_of_slurm_is_understood(void **state) {
 /* The history of each drop, byte by byte. */
 static void assert_same_curves(const program_place *p, const char *one, const char *other) {
     program_result r = program_shell(p,
-                                     "for d in %s/*-*/; do n=$(basename $d); "
-                                     "'%s/softfall-post' %s/$n/results.h5 -o one --force >/dev/null && "
-                                     "'%s/softfall-post' %s/$n/results.h5 -o other --force >/dev/null && "
+                                     "for d in '%s'/*-*/; do n=$(basename \"$d\"); "
+                                     "'%s/softfall-post' '%s'/$n/results.h5 -o one --force >/dev/null && "
+                                     "'%s/softfall-post' '%s'/$n/results.h5 -o other --force >/dev/null && "
                                      "cmp one/history.csv other/history.csv || exit 1; done",
                                      one, bin, one, bin, other);
     if (r.code != 0)
@@ -370,7 +370,8 @@ static void snakemake_finishes_what_was_begun_here(void **state) {
     const sf_runner_engine local = {0}, snakemake = {.name = "snakemake", .per_job = 2};
     check_programs("snakemake");
     snprintf(here, sizeof here, "%s/here", p->folder);
-    snprintf(there, sizeof there, "%s/there", p->folder);
+    snprintf(there, sizeof there, "%s/a: b {x}/there", p->folder); /* Snakemake's own syntax */
+    program_shell(p, "mkdir 'a: b {x}'");
     list_drops(drop);
     run(here, &local, DROPS, drop, failure);
     run(there, &local, 1, drop, failure);
@@ -388,7 +389,7 @@ static void snakemake_finishes_what_was_begun_here(void **state) {
     assert_int_equal(calls(p, "solve"), 2);
     for (int k = 0; k < DROPS; k++)
         assert_int_equal(failure[k].status, SF_OK);
-    assert_same_curves(p, "here", "there");
+    assert_same_curves(p, "here", "a: b {x}/there");
 }
 
 static void pause_briefly(void) {

@@ -402,6 +402,30 @@ static void run_in_child(const program_place *p, const sf_plan *plan, formula f,
     waitpid(child, NULL, 0);
 }
 
+/* A spreadsheet computes a cell that begins with one of = + - @: an apostrophe stands before such a text. */
+static void no_cell_is_a_formula(void **state) {
+    const program_place *p = *state;
+    static const char *const texts[] = {"=1+2", "+cmd|x", "-rm \"a\"", "@SUM(A1)", "'quoted", "-5.5"};
+    enum { COUNT = sizeof texts / sizeof *texts };
+    sf_plan plan;
+    sf_runs runs, again;
+    sf_error err = SF_ERROR_INIT;
+    uint64_t hash = 0;
+    sweep_read_plan(p, "{ key = \"a.y\"; values = [1, 2, 3, 4, 5, 6]; }", &plan);
+    assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
+    for (int k = 0; k < COUNT; k++)
+        assert_int_equal(sf_runs_failed(&runs, k, texts[k], &err), SF_OK);
+    assert_int_equal(sf_runs_write(&runs, program_path(p, "cells.csv"), &hash, &err), SF_OK);
+    assert_int_equal(program_shell(p, "grep -c \"\\\"'[=+@-]\" cells.csv").out[0], '4');
+    assert_int_equal(sf_runs_create(&plan, &again, &err), SF_OK);
+    assert_int_equal(sf_runs_read(&again, program_path(p, "cells.csv"), hash, &err), SF_OK);
+    for (int k = 0; k < COUNT; k++)
+        assert_string_equal(again.message[k], texts[k]);
+    sf_runs_free(&runs);
+    sf_runs_free(&again);
+    sf_plan_free(&plan);
+}
+
 /* Killed after it has found that what only the engine sees has changed, in the sample or in the first run
  * after it: the sample is there now, the other rows are not. */
 static void a_killed_look_leaves_no_old_figures(void **state) {
@@ -855,6 +879,7 @@ int main(void) {
         cmocka_unit_test(a_geometry_that_changes_while_it_runs_leaves_no_row),
         cmocka_unit_test(a_table_that_was_edited_is_not_believed),
         cmocka_unit_test(a_piece_has_as_many_rows_for_each_job),
+        cmocka_unit_test(no_cell_is_a_formula),
         cmocka_unit_test(a_killed_look_leaves_no_old_figures),
         cmocka_unit_test(a_killed_look_leaves_no_row_by_whose_folder_nothing_would_show),
         cmocka_unit_test(a_table_that_cannot_be_written_is_not_that_of_new_inputs),

@@ -170,6 +170,7 @@ static void start_block_of(fixture *f, bool linear, bool hyper, double stabilisa
     if (hyper)
         make_hyperfoam(&c);
     c.missile_card.gap = 100;
+    c.missile_card.gravity = 0; /* at its speed from there */
     c.run.stabilisation = stabilisation;
     c.run.step_limit = 1;
     fixture_under_plate(&c, &block, 0.5, 0.015, 0.015, f);

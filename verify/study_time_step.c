@@ -392,6 +392,7 @@ static void linear_block(sf_study *s) {
     fixture_make_linear(&c);
     fixture_hold(&c, (const char *const[]){NULL});
     c.missile_card.gap = 100; /* out of the way */
+    c.missile_card.gravity = 0;
     c.run.energy_limit = 1e9; /* an unstable run must not be stopped */
     fixture_under_plate(&c, &block, 1, 0, 0, &f);
     fixture_start(&f);

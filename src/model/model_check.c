@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "model/flight.h"
 #include "model/model.h"
 
 /* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
@@ -162,6 +163,10 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         length += m->missile.direction[c] * m->missile.direction[c];
     if (fabs(length - 1) > 1e-9)
         return SF_FAIL(err, SF_ERR_MODEL, "missile direction has length %g, expected 1", sqrt(length));
+    if (!isfinite(sf_flight_time(&m->missile)))
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "a fall over the missile's gap of %g m makes it faster than its %g m/s",
+                       m->missile.gap, m->missile.speed);
     if (check_motion(m, err) != SF_OK || check_freedom(m, err) != SF_OK)
         return err->status;
     return check_materials(m, err);

@@ -110,7 +110,8 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
         return err->status;
     snprintf(folder, sizeof folder, "%.*s", (int)(strrchr(file, '/') - file), file);
     snprintf(log, sizeof log, "%s/log.txt", folder);
-    snprintf(manifest_word, sizeof manifest_word, "manifest=%s", file);
+    /* Relative to --directory: Snakemake would read braces and ": " of a folder's name as its own syntax. */
+    snprintf(manifest_word, sizeof manifest_word, "manifest=%s", strrchr(file, '/') + 1);
     snprintf(program_word, sizeof program_word, "program=%s", program);
     snprintf(cores, sizeof cores, "%d", processors > 0 ? processors : 1);
     snprintf(threads, sizeof threads, "threads=%d", engine->job_threads > 0 ? engine->job_threads : 1);

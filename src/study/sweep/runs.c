@@ -2,6 +2,7 @@
 #include "study/sweep/runs.h"
 
 #include "base/hash.h"
+#include "base/text.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
 #include <math.h>
@@ -124,12 +125,19 @@ bool sf_runs_usable(const sf_runs *r, int64_t row) {
 
 /* ---- runs.csv ---- */
 
+/* A text that a spreadsheet would compute, and no number: "=1+2", "-rm". An apostrophe stands before it. */
+static bool is_formula(const char *text) {
+    double number;
+    return *text && strchr("=+-@\t", *text) && !sf_decimal_is(text, &number);
+}
+
 static void put_cell(FILE *out, const char *text) {
-    if (!strpbrk(text, ",\"\r\n")) {
+    bool formula = is_formula(text);
+    if (!formula && !strpbrk(text, ",\"\r\n")) {
         fputs(text, out);
         return;
     }
-    fputc('"', out);
+    fputs(formula ? "\"'" : "\"", out);
     for (; *text; text++) {
         if (*text == '"')
             fputc('"', out);
@@ -220,7 +228,7 @@ static char *next_cell(char **at) {
     }
     *at = *from == ',' ? from + 1 : NULL;
     *to = '\0';
-    return cell;
+    return *cell == '\'' && is_formula(cell + 1) ? cell + 1 : cell;
 }
 
 static int find_word(const char *cell, const char *const *words, int count) {
