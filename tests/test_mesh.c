@@ -328,11 +328,25 @@ static void msh_is_taken_as_it_is(void **state) {
     sf_mesh_free(&read);
 }
 
+/* gmsh would scale a file that it writes: a pad of 0.05 mm passed for one of 50 mm. */
+static void scales_and_groups_without_names_are_told(void **state) {
+    write_file(
+        "scaled.geo",
+        "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 30, 20, 10};\nPhysical Volume(\"pad\") = {1};\n"
+        "Mesh.ScalingFactor = 0.001;\n");
+    assert_mesh_refused(*state, source_of(in_folder("scaled.geo"), NULL), "pad",
+                        "Mesh.ScalingFactor is 0.001");
+    write_file("numbers.geo",
+               "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 30, 20, 10};\nPhysical Volume(7) = {1};\n");
+    assert_mesh_refused(*state, source_of(in_folder("numbers.geo"), NULL), "pad",
+                        "its volume groups: number 7 without a name");
+}
+
 static void step_is_meshed_through_a_geo_that_names_groups(void **state) {
     write_file("box.geo", "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 30, 20, 10};\n");
     convert("box.geo", "box.step", false);
     assert_mesh_refused(*state, source_of(in_folder("box.step"), NULL), "pad",
-                        "gmsh reads no groups from a STEP file: name them in a .geo that merges it");
+                        "gmsh reads no groups from such a file: name them in a .geo that merges it");
     write_file("named.geo", "SetFactory(\"OpenCASCADE\");\nMerge \"box.step\";\npad() = Volume{:}; Physical "
                             "Volume(\"pad\") = pad();\n"
                             "base() = Surface In BoundingBox{-1, -1, -0.1, 31, 21, 0.1};\n"
@@ -603,6 +617,7 @@ int main(void) {
         cmocka_unit_test(impact_zone_is_a_lattice_of_cubes),
         cmocka_unit_test(same_mesh_whatever_was_loaded_before),
         cmocka_unit_test(msh_is_taken_as_it_is),
+        cmocka_unit_test(scales_and_groups_without_names_are_told),
         cmocka_unit_test(step_is_meshed_through_a_geo_that_names_groups),
         cmocka_unit_test(wrong_names_are_refused_with_what_exists),
         cmocka_unit_test(parameters_are_found_in_included_files_only_if_defined),

@@ -102,6 +102,8 @@ typedef struct sf_law {
     sf_status (*check_keys)(const void *card, const sf_given *given, const char **place, sf_error *err);
     /* -, compressive strain where the data end; INFINITY: none. */
     double (*data_end)(const void *card);
+    /* -, compressive strain that the law does not let a foam reach, at most 1; NULL: 1. */
+    double (*limit_strain)(const void *card);
     const char *data_end_words; /* before that strain in a sentence: "the compression table ends at" */
     const char *stiffness_keys; /* those of the stiffness at rest: "E, curve" */
     /* -, largest compressive strain about which the data inform, as the card says or data_end. */

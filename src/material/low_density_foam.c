@@ -352,6 +352,16 @@ static double data_end(const void *card) {
     return foam->densification_start > 0 ? fmin(end, foam->densification_start) : end;
 }
 
+static double limit_strain(const void *card) {
+    sf_curve curve;
+    sf_error err = SF_ERROR_INIT;
+    double limit = 1;
+    if (sf_curve_build(card, 0, &curve, &err) == SF_OK)
+        limit = curve.beyond.limit;
+    sf_curve_free(&curve);
+    return limit;
+}
+
 static double informed_strain(const void *card) {
     double informed = ((const sf_foam_card *)card)->informed_strain;
     return informed > 0 ? informed : data_end(card);
@@ -425,6 +435,7 @@ const sf_law sf_low_density_foam = {
     .check = check,
     .check_keys = check_keys,
     .data_end = data_end,
+    .limit_strain = limit_strain,
     .data_end_words = "the compression table ends at",
     .stiffness_keys = "E, curve",
     .informed_strain = informed_strain,

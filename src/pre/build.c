@@ -496,8 +496,18 @@ static sf_status place(const sf_case *c, sf_build_report *report, sf_surface *su
  * the run (solver/run/run.h). */
 static sf_status check_depth(const sf_model *m, sf_error *err) {
     double depth = sf_missile_card_depth(&m->missile, sf_motion_measure(m).displacement);
-    if (!sf_missile_is_driven(m) || depth < m->thickness * (1 - 1e-9)) /* a difference of coordinates */
+    const sf_material *foam = &m->material[0];
+    double limit =
+        m->material_count == 1 && foam->law->limit_strain ? foam->law->limit_strain(foam->card) : 1;
+    if (!sf_missile_is_driven(m) ||
+        depth < m->thickness * (1 - 1e-9) * limit) /* a difference of coordinates */
         return SF_OK;
+    if (depth < m->thickness * (1 - 1e-9))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "missile.motion compresses the pad by %.4g mm of %.4g mm, a strain of %.4g: its foam cannot be "
+            "compressed beyond %.4g, the limit of its densification",
+            1e3 * depth, 1e3 * m->thickness, depth / m->thickness, limit);
     return SF_FAIL(err, SF_ERR_INPUT,
                    "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
                    1e3 * depth, 1e3 * m->thickness);

@@ -89,6 +89,19 @@ static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed)
     return fastest;
 }
 
+/* Returns the likely cause of contact or stabilisation that feeds the pad. */
+static const char *cause_of_feeding(const sf_state *s) {
+    static const double CRUSHED = 0.95;
+    return s->smallest_jacobian <= 0
+               ? "the foam has turned inside out, as where it folds onto itself or passes "
+                 "through the anvil"
+           : s->largest_compression > CRUSHED
+               ? "the foam is crushed beyond a strain of 0.95, as by a motion beyond the limit of its law, or where "
+                 "it passes through the anvil or through itself"
+               : "the missile is pressed in beyond its touching surface, or the contact is unstable (smaller "
+                 "solver.step_safety)";
+}
+
 /* The energy limit is a stop, not a tolerance: beyond it the run has become unstable. */
 static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *err) {
     double least = fmin(s->ledger.contact, s->ledger.stabilisation), speed;
@@ -102,11 +115,11 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
             err, SF_ERR_NUMERIC,
             "at t = %.6g s (step %lld) contact or stabilisation has put %.3g J into the pad (contact %.3g J, "
             "stabilisation %.3g J; limit %.2f %% of the %s); fastest is node %lld at (%.5g, %.5g, %.5g) m, "
-            "%.3g m/s: is the missile pressed in beyond its touching surface?",
+            "%.3g m/s: %s",
             s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
             100 * m->run.energy_limit,
             sf_missile_is_driven(m) ? "largest work of the motion" : "impact energy", (long long)node, x[0],
-            x[1], x[2], speed);
+            x[1], x[2], speed, cause_of_feeding(s));
     return SF_FAIL(err, SF_ERR_NUMERIC,
                    "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step "
                    "%.3g s); fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: the run is unstable or "

@@ -133,7 +133,7 @@ static const char *kind_of(int dimension) {
     return dimension == 3 ? "volume" : "surface";
 }
 
-/* "a", "b": the names of the groups, or "none". */
+/* "a", "b", number 3 without a name: the groups, or "none". */
 static const char *group_names(const sf_geo_data *data, int dimension, char *out, size_t size) {
     size_t used = 0;
     snprintf(out, size, "none");
@@ -141,6 +141,9 @@ static const char *group_names(const sf_geo_data *data, int dimension, char *out
         if (data->group[g].dimension == dimension && *data->group[g].name)
             used +=
                 (size_t)snprintf(out + used, size - used, "%s\"%s\"", used ? ", " : "", data->group[g].name);
+        else if (data->group[g].dimension == dimension)
+            used += (size_t)snprintf(out + used, size - used, "%snumber %d without a name", used ? ", " : "",
+                                     data->group[g].tag);
     return out;
 }
 
@@ -212,11 +215,14 @@ static sf_status find_group(const sf_gmsh *session, int dimension, const char *n
         return SF_OK;
     group_names(data, 3, volumes, sizeof volumes);
     group_names(data, 2, surfaces, sizeof surfaces);
-    bool step = sf_mesher_has_suffix(session->file, ".step") || sf_mesher_has_suffix(session->file, ".stp");
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s has no %s group \"%s\"; its volume groups: %s; its surface groups: %s%s",
-                   session->file, kind_of(dimension), name, volumes, surfaces,
-                   step ? "; gmsh reads no groups from a STEP file: name them in a .geo that merges it" : "");
+    static const char *const shapes[] = {".step", ".stp", ".stl", ".brep", ".iges", ".igs"};
+    bool shape = false;
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++)
+        shape = shape || sf_mesher_has_suffix(session->file, shapes[k]);
+    return SF_FAIL(
+        err, SF_ERR_INPUT, "%s has no %s group \"%s\"; its volume groups: %s; its surface groups: %s%s",
+        session->file, kind_of(dimension), name, volumes, surfaces,
+        shape ? "; gmsh reads no groups from such a file: name them in a .geo that merges it" : "");
 }
 
 /* softfall's code and the vertex count of gmsh's linear element types; 0 for every other type. */

@@ -130,13 +130,30 @@ int sf_work_begin(void) {
     return ierr;
 }
 
+/* gmsh scales a mesh when it writes one, so that its factor would have no effect here. */
+static bool has_plain_scale(void) {
+    int ierr = 0;
+    double factor = 1;
+    char text[200];
+    gmshOptionGetNumber("Mesh.ScalingFactor", &factor, &ierr);
+    if (ierr || factor == 1)
+        return true;
+    snprintf(
+        text, sizeof text,
+        "Mesh.ScalingFactor is %g: it scales files that gmsh writes, not the geometry; leave it at 1 and give "
+        "the unit by geometry.length_unit",
+        factor);
+    write_error(text);
+    return false;
+}
+
 _Bool sf_work_parse(const char *parameters, const char *path) {
     int ierr = 0;
     gmshMerge(parameters, &ierr);
     if (!check(ierr, "setting the parameters"))
         return false;
     gmshMerge(path, &ierr);
-    return check(ierr, "reading");
+    return check(ierr, "reading") && has_plain_scale();
 }
 
 static bool has_elements(int dimension) {
