@@ -133,6 +133,8 @@ static void values_of_a_case(void **state) {
         {"--set material.densification.start=2.0", {"material.densification.start", "2 is", "at most 0.999"}},
         {"--set material.densification.start=0.99", {"material.densification.start", "0.99", "the end of"}},
         {"--set missile.direction='[0.0, 0.0, 1.0]'", {"missile.direction", "[0, 0, 1]", "must be negative"}},
+        {"--set missile.direction='[1.0, 0.0, -0.001]'",
+         {"missile.direction", "89.9 degrees", "grazes the pad"}},
         {"--set missile.direction='[0.0, 0.0, 0.0]'", {"missile.direction", "[0, 0, 0]", "must be negative"}},
         {"--set missile.direction='[0.0, -1.0]'", {"missile.direction", "three plain numbers"}},
         {"--set missile.friction=-1", {"missile.friction", "-1", "at least 0"}},

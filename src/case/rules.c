@@ -123,6 +123,8 @@ sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err) {
     return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), text);
 }
 
+static const double FLATTEST = 0.0871557; /* cosine of 85 degrees */
+
 static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const double *d = reader->out->missile_card.direction;
@@ -130,8 +132,17 @@ static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
     if (!(square > 0.0) || !(d[2] < 0.0) || !isfinite(square))
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: missile.direction: [%g, %g, %g] does not point down to the pad; its third "
-                       "component must be negative",
+                       "component must be negative (for a wall or a post lay the pad flat and set "
+                       "missile.gravity to \"0 m/s2\")",
                        sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
+    if (-d[2] < FLATTEST * sqrt(square))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: missile.direction: [%g, %g, %g] is %.1f degrees from the vertical and grazes the pad; at "
+            "most %.0f degrees are possible (for a wall or a post lay the pad flat and set "
+            "missile.gravity to \"0 m/s2\")",
+            sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2],
+            acos(-d[2] / sqrt(square)) * 180 / M_PI, acos(FLATTEST) * 180 / M_PI);
     return SF_OK;
 }
 
