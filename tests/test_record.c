@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A measured record is judged before it is compared with: what laboratories' records suffer from. */
+#include "extreme.h"
 #include "post/figures/compare.h"
 #include "program_fixture.h"
 
@@ -74,7 +75,7 @@ static void each_fault_is_found(void **state) {
     for (double rail = 0.6; rail < 0.95; rail += 0.1) {
         pulse(time, value);
         for (int i = 0; i < COUNT; i++)
-            value[i] = fmin(value[i], rail * PEAK);
+            value[i] = smaller(value[i], rail * PEAK);
         v = judge(time, value, COUNT);
         assert_true(v.rows[SF_RECORD_saturation].grade > SF_GRADE_VALID);
         assert_close(v.rows[SF_RECORD_saturation].value, 1 / rail - 1,
@@ -175,7 +176,7 @@ static void clock_zero_line_and_impact_are_chosen(void **state) {
         double top = 0;
         r = read_file(path, (sf_reference_options){.cfc = 1000, .impact = impact}, SF_OK, &err);
         for (int64_t i = 0; i < r.raw.count; i++)
-            top = fmax(top, r.raw.value[i]);
+            top = larger(top, r.raw.value[i]);
         assert_close(top, PEAK / (impact ? impact : 1), 0.01);
         assert_close(r.other, impact ? 0 : 0.5, 1e-3);
         if (!strstr(r.interpretation, "3 at 145.9 ms (50 g)"))
