@@ -186,6 +186,10 @@ static void clock_zero_line_and_impact_are_chosen(void **state) {
     read_file(path, (sf_reference_options){.cfc = 1000, .impact = 4}, SF_ERR_INPUT, &err);
     assert_non_null(strstr(err.text, "impact 4 was asked for; it has 3"));
     err = (sf_error)SF_ERROR_INIT;
+    read_file(path, (sf_reference_options){.cfc = 1000, .invert = true, .invert_option = "--turn"},
+              SF_ERR_INPUT, &err);
+    assert_non_null(strstr(err.text, "largest magnitude is negative")); /* and no impact of its overshoot */
+    err = (sf_error)SF_ERROR_INIT;
     r = read_file(path, (sf_reference_options){.cfc = 1000, .from = 0.06, .to = 0.12}, SF_OK, &err);
     assert_close(r.raw.time[0], 0.06, 1e-9);
     sf_reference_free(&r);

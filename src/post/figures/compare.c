@@ -62,8 +62,9 @@ static double largest_gap(const sf_series *s) {
     return gap;
 }
 
-static sf_status check_sampling(const sf_reference_options *o, const sf_table *table, const sf_series *raw,
+static sf_status check_sampling(const sf_reference_options *o, const sf_table *table, const sf_reference *r,
                                 sf_error *err) {
+    const sf_series *raw = &r->raw;
     static const double SHARE = 0.1; /* of the intervals: a gap alone is judged by post/figures/record.h */
     double most = 1 / (SAMPLES_PER_CLASS * o->cfc);
     int64_t coarse = 0;
@@ -75,7 +76,7 @@ static sf_status check_sampling(const sf_reference_options *o, const sf_table *t
                 err, SF_ERR_INPUT,
                 "%s:%d: samples %.4g ms apart are too coarse for CFC %g, which needs %.4g ms (%g kHz) or "
                 "less: choose a lower class, or %s if the curve is filtered already",
-                o->path, table->line[i], gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
+                o->path, table->line[i + r->skipped], gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
                 SAMPLES_PER_CLASS * o->cfc * 1e-3, o->unfiltered_option);
     return SF_OK;
 }
@@ -162,8 +163,9 @@ static void describe(const sf_reference_options *o, const sf_table *table, sf_re
 }
 
 /* Keeps the samples from `from` to `to` (s). */
-static sf_status cut_out(const sf_reference_options *o, sf_series *raw, double from, double to,
+static sf_status cut_out(const sf_reference_options *o, sf_reference *r, double from, double to,
                          sf_error *err) {
+    sf_series *raw = &r->raw;
     int64_t first = 0, last = raw->count - 1;
     while (first < last && raw->time[first] < from)
         first++;
@@ -174,6 +176,7 @@ static sf_status cut_out(const sf_reference_options *o, sf_series *raw, double f
             err, SF_ERR_INPUT, "%s: fewer than %d samples lie from %g to %g ms; it has %g to %g ms", o->path,
             FEWEST_POINTS, 1e3 * from, 1e3 * to, 1e3 * raw->time[0], 1e3 * raw->time[raw->count - 1]);
     raw->count = last - first + 1;
+    r->skipped += first;
     memmove(raw->time, raw->time + first, (size_t)raw->count * sizeof(double));
     memmove(raw->value, raw->value + first, (size_t)raw->count * sizeof(double));
     return SF_OK;
@@ -184,7 +187,7 @@ static sf_status choose_part(const sf_reference_options *o, sf_reference *r, sf_
     sf_record_impact impact[SF_RECORD_IMPACTS];
     int count = 0;
     if (o->from < o->to)
-        SF_TRY(cut_out(o, &r->raw, o->from, o->to, err));
+        SF_TRY(cut_out(o, r, o->from, o->to, err));
     SF_TRY(sf_record_find_impacts(&r->raw, impact, &count, err));
     size_t used = 0;
     for (int k = 0; count > 1 && k < count && used < sizeof r->impacts; k++)
@@ -200,7 +203,7 @@ static sf_status choose_part(const sf_reference_options *o, sf_reference *r, sf_
     if (o->impact > count)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: impact %d was asked for; it has %d%s%s", o->path, o->impact,
                        count, count > 1 ? ": " : "", r->impacts);
-    return cut_out(o, &r->raw, impact[chosen - 1].begin, impact[chosen - 1].end, err);
+    return cut_out(o, r, impact[chosen - 1].begin, impact[chosen - 1].end, err);
 }
 
 /* Begins the clock with the record, where it counts from long before, and takes the zero line away. */
@@ -234,7 +237,7 @@ static sf_status take_table(const sf_reference_options *o, sf_table *table, sf_r
     for (int64_t i = 0; o->invert && i < r->raw.count; i++)
         r->raw.value[i] = 0 - r->raw.value[i];
     SF_TRY(set_origins(o, r, err));
-    SF_TRY(check_sampling(o, table, &r->raw, err));
+    SF_TRY(check_sampling(o, table, r, err));
     SF_TRY(filter(o, r, err));
     SF_TRY(check_sign(o, &r->curve, err));
     describe(o, table, r);

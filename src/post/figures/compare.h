@@ -34,6 +34,7 @@ typedef struct sf_reference {
     double origin;     /* s, of its clock, that was taken away from the times */
     double offset;     /* g, that was taken away from the values */
     char impacts[256]; /* "1 at 12.4 ms (150 g), ..."; empty: there is one */
+    int64_t skipped;   /* points of the file before the first that is used */
     double other;      /* highest of the other impacts, over the peak, if none was asked for; else 0 */
     char interpretation[SF_REFERENCE_INTERPRETATION]; /* how the file was read, for the report */
 } sf_reference;

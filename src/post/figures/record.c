@@ -237,7 +237,13 @@ sf_status sf_record_find_impacts(const sf_series *raw, sf_record_impact impact[S
     if (record_open(raw, raw, &r, err) != SF_OK)
         return err->status;
     bool inside = false;
-    double left = raw->time[0];
+    double left = raw->time[0], lowest = 0;
+    for (int64_t i = 0; i < raw->count; i++)
+        lowest = fmin(lowest, r.median[i]);
+    if (-lowest > r.peak) { /* an inverted channel: its overshoot is no impact */
+        record_free(&r);
+        return SF_OK;
+    }
     for (int64_t i = 0; i < raw->count && r.peak > 0; i++) {
         sf_record_impact *now = &impact[*count - 1];
         bool rises = !inside && r.median[i] > HIGH * r.peak,

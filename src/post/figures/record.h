@@ -57,7 +57,8 @@ typedef struct sf_record_impact {
     double begin, end; /* s: the part of the record that holds this impact alone, up to halfway to the next */
 } sf_record_impact;
 enum { SF_RECORD_IMPACTS = 20 };
-/* Fills `impact` and `*count`, at most SF_RECORD_IMPACTS. */
+/* Fills `impact` and `*count`, at most SF_RECORD_IMPACTS; none in a channel whose largest magnitude is
+ * negative. */
 sf_status sf_record_find_impacts(const sf_series *raw, sf_record_impact impact[SF_RECORD_IMPACTS], int *count,
                                  sf_error *err);
 
