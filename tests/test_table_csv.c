@@ -206,6 +206,7 @@ static void what_looks_like_a_remark_is_refused_before_data(void **state) {
     } cases[] = {
         {"Time (s),Force (N)\n1,2\nPeak,3\n3,4\n", ":3: time \"Peak\" is not a number"},
         {"Time (s),Force (N)\n1,2\n2,x\n", ":3: force \"x\" is not a number"},
+        {"Time (s);Force (N)\n1,5;0.123,4\n", ":2: force \"0.123,4\" is not a number"},
         {"Time (s);Force (N)\n1;2\n2;1,017\n", "could hold a decimal comma or a mark of thousands"},
         {"Test object number :1\nUnit :N\nSampling interval :1E-3\nNumber of samples :3\n1\n2\n",
          "3 samples; it holds 2 samples"},

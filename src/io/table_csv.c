@@ -121,9 +121,11 @@ static sf_status convert_mme(csv *file, sf_error *err) {
             fputs("\n", table);
         }
     }
-    fclose(table);
+    bool whole = fclose(table) == 0 && out;
     free(file->text);
     file->text = out;
+    if (!whole)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
     if (!(step > 0) || !unit[0] || said != (double)samples)
         return SF_FAIL(
             err, SF_ERR_INPUT,
@@ -356,7 +358,7 @@ static sf_status check_mark(csv *file, const char *name, const char *text, sf_er
 static bool has_thousands(const csv *file, const char *text, char *plain, size_t size) {
     const char *digits = text + strspn(text, "+-"), *mark = strpbrk(digits, ",.");
     size_t used = (size_t)(digits - text);
-    if (!mark || mark - digits < 1 || mark - digits > 3 || strlen(text) >= size)
+    if (!mark || *digits == '0' || mark - digits < 1 || mark - digits > 3 || strlen(text) >= size)
         return false;
     char group = *mark, decimal = group == ',' ? '.' : ',';
     memcpy(plain, text, (size_t)(mark - text));
