@@ -80,7 +80,7 @@ static sf_status read_reference(const char *path, sf_error *err) {
     double instant;
     if (sf_reference_read(&options, &reference, err) != SF_OK)
         return err->status;
-    sf_contact_instant(&reference.curve, path, &instant, err);
+    sf_contact_instant(&reference.curve, path, 0, &instant, err);
     sf_reference_free(&reference);
     options.cfc = 60;
     if (sf_reference_read(&options, &reference, &coarse) == SF_OK)

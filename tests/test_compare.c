@@ -98,15 +98,21 @@ static void contact_of_a_ramp_is_where_it_leaves_zero(void **state) {
     sf_error err = SF_ERROR_INIT;
     double time[4] = {0, 0.0101, 0.0201, 0.03}, value[4] = {0, 0, 50, 0}, instant = 0;
     sf_series curve = {4, time, value};
-    assert_int_equal(sf_contact_instant(&curve, "ramp", &instant, &err), SF_OK);
+    assert_int_equal(sf_contact_instant(&curve, "ramp", 0, &instant, &err), SF_OK);
     assert_close(instant, 0.0101, 1e-12);
+    for (int i = 0; i < 4; i++)
+        value[i] += 3; /* an offset of the channel */
+    assert_int_equal(sf_contact_instant(&curve, "shifted ramp", 3, &instant, &err), SF_OK);
+    assert_close(instant, 0.0101, 1e-12);
+    for (int i = 0; i < 4; i++)
+        value[i] -= 3;
     sf_series cut = {3, time + 1, value + 1}; /* cut at 4 % of its peak it still shows where it came from */
     time[1] = 0.0101 + 0.0004;
     value[1] = 2;
-    assert_int_equal(sf_contact_instant(&cut, "cut ramp", &instant, &err), SF_OK);
+    assert_int_equal(sf_contact_instant(&cut, "cut ramp", 0, &instant, &err), SF_OK);
     assert_close(instant, 0.0101, 1e-12);
     value[1] = 20;
-    assert_int_equal(sf_contact_instant(&cut, "late ramp", &instant, &err), SF_ERR_INPUT);
+    assert_int_equal(sf_contact_instant(&cut, "late ramp", 0, &instant, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "--shift"));
 }
 
@@ -395,6 +401,115 @@ static void coarse_or_inverted_measurement_is_refused(void **state) {
     unlink(path);
 }
 
+enum { AXIS_SAMPLES = 1000 };
+
+/* A half sine of 80 g and 14 ms after 10 ms at rest, at 20 kHz. */
+static double axis_pulse(int i) {
+    double x = (i / 20e3 - 0.01) / 0.014;
+    return x > 0 && x < 1 ? 80 * sin(M_PI * x) : 0;
+}
+
+static const double axis_direction[3] = {0.6, -0.64, 0.48};
+static const double axis_offset[3] = {2, 0, -1.5}; /* g */
+
+/* What the rows of a record hold. */
+enum { ROWS_OF_AXES, ROWS_IN_VOLTS, ROWS_ALONE };
+
+static char *write_rows(int kind) {
+    static char text[AXIS_SAMPLES * 80];
+    size_t used = (size_t)snprintf(text, sizeof text, "%s",
+                                   kind == ROWS_OF_AXES    ? "Time (ms);ax (g);ay (g);az (m/s2)\n"
+                                   : kind == ROWS_IN_VOLTS ? "Sample;CH1 (mV)\n"
+                                                           : "");
+    for (int i = 0; i < AXIS_SAMPLES; i++) {
+        double p = axis_pulse(i), a[3];
+        for (int k = 0; k < 3; k++)
+            a[k] = axis_direction[k] * p + axis_offset[k];
+        if (kind == ROWS_OF_AXES)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%.2f;%.6f;%.6f;%.6f\n", 0.05 * i, a[0],
+                                     a[1], 9.80665 * a[2]);
+        else if (kind == ROWS_IN_VOLTS)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%d;%.8f\n", i, 10 * p);
+        else
+            used += (size_t)snprintf(text + used, sizeof text - used, "%.6f\n", p);
+    }
+    return text;
+}
+
+/* Axes with offsets, volts with a sensitivity, rows with a rate: the same pulse each time. */
+static void a_record_in_other_forms_is_the_same(void **state) {
+    (void)state;
+    static const struct {
+        int rows;
+        sf_reference_options options;
+        const char *scale, *told;
+    } cases[] = {
+        {ROWS_OF_AXES, {.columns = "ax, ay,az", .zero = true, .cfc = 1000}, NULL, "resultant of the columns"},
+        {ROWS_IN_VOLTS, {.rate = 20e3, .cfc = 1000}, "10 mV/g", "at a sensitivity of 1.01972 mV/(m/s2)"},
+        {ROWS_ALONE, {.rate = 20e3, .heading = "a (g)", .cfc = 1000}, NULL, "at 20 kHz as given"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char path[256];
+        sf_error err = SF_ERROR_INIT;
+        sf_reference r;
+        sf_reference_options o = cases[k].options;
+        o.path = path;
+        o.heading_option = "--reference-heading";
+        write_text(path, write_rows(cases[k].rows));
+        if (cases[k].scale)
+            assert_int_equal(sf_reference_parse_sensitivity(cases[k].scale, &o.sensitivity, &err), SF_OK);
+        if (sf_reference_read(&o, &r, &err) != SF_OK || !strstr(r.interpretation, cases[k].told))
+            fail_msg("%zu: %s%s", k, err.text, r.interpretation);
+        double away = 0;
+        for (int i = 0; i < AXIS_SAMPLES; i++)
+            away = larger(away, fabs(r.raw.value[i] - axis_pulse(i)));
+        assert_true(r.raw.count == AXIS_SAMPLES && away < 1e-5);
+        assert_close(sf_series_at(&r.curve, 0.017), 80, 0.08);
+        assert_close(r.offset, k == 0 ? 2.5 : 0, 1e-5);
+        sf_reference_free(&r);
+        unlink(path);
+    }
+}
+
+static void contradicting_options_of_a_record_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        int rows;
+        sf_reference_options options;
+        const char *expected;
+    } cases[] = {
+        {ROWS_OF_AXES, {.columns = "ax"}, "not a list of two or three columns"},
+        {ROWS_OF_AXES, {.columns = "ax,,az"}, "not a list of two or three columns"},
+        {ROWS_OF_AXES, {.columns = "ax,ay,aq"}, "the header has no column acceleration_g"},
+        {ROWS_OF_AXES, {.columns = "ax,ay", .invert = true}, "leave --reference-invert out"},
+        {ROWS_OF_AXES, {.column = "ax", .rate = 1e3}, "has a column of time"},
+        {ROWS_IN_VOLTS, {.rate = 1e3}, "the header has no column acceleration_g"},
+        {ROWS_OF_AXES, {.column = "ax", .sensitivity = 1}, "is in \"g\", which is not a unit of a voltage"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char path[256];
+        sf_error err = SF_ERROR_INIT;
+        sf_reference r;
+        sf_reference_options o = cases[k].options;
+        o.path = path;
+        o.invert_option = "--reference-invert";
+        o.column_option = "--reference-column";
+        write_text(path, write_rows(cases[k].rows));
+        if (sf_reference_read(&o, &r, &err) != SF_ERR_INPUT || !strstr(err.text, cases[k].expected))
+            fail_msg("%zu: %s", k, err.text);
+        unlink(path);
+    }
+    static const char *const bad[] = {"10 mV", "10 mm/g", "-10 mV/g", "0,102 mV/(m/s2)", "/g", ""};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        sf_error err = SF_ERROR_INIT;
+        double value;
+        if (sf_reference_parse_sensitivity(bad[k], &value, &err) == SF_OK)
+            fail_msg("\"%s\" is %g", bad[k], value);
+        err = (sf_error)SF_ERROR_INIT;
+        assert_int_equal(sf_reference_parse_rate(bad[k], &value, &err), SF_ERR_INPUT);
+    }
+}
+
 static void bad_references_name_file_and_line(void **state) {
     (void)state;
     const struct {
@@ -418,7 +533,7 @@ static void bad_references_name_file_and_line(void **state) {
          "\"Time (mm)\" is in \"mm\", which is not a unit of a time"},
         {"Time;Acc (g)\n0;1\n", "\"Time\" names no unit"},
         {"Time (ms);Acc (g)\ns;g\n0;1\n", "give different units"},
-        {"0;1\n1;2\n2;3\n", ":1: the header has no column"},
+        {"0;1\n1;2\n2;3\n", ":1: numbers begin here without a heading"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         sf_error err;
@@ -449,6 +564,8 @@ int main(void) {
         cmocka_unit_test(laboratory_forms_are_one_curve),
         cmocka_unit_test(measurement_is_filtered_with_the_class),
         cmocka_unit_test(coarse_or_inverted_measurement_is_refused),
+        cmocka_unit_test(a_record_in_other_forms_is_the_same),
+        cmocka_unit_test(contradicting_options_of_a_record_are_refused),
         cmocka_unit_test(bad_references_name_file_and_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

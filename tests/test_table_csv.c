@@ -138,7 +138,8 @@ static void ambiguous_tables_are_refused(void **state) {
         {"Time (s);Force (N);Force (kN)\n1;2;3\n", "two force columns"},
         {"Time (s);Force (mm)\n1;2\n", "\"Force (mm)\" is in \"mm\", which is not a unit of a force"},
         {"Time;Force\ns;kg\n1;2\n", "is in \"kg\", which is not a unit of a force"},
-        {"1;2\nTime (s);Force (N)\n1;2\n", ":1: the header has no column"},
+        {"1;2\nTime (s);Force (N)\n1;2\n", ":1: numbers begin here without a heading"},
+        {"Rig 7;a\nSensor;b\nMoment;Wert\ns;?\n1;2\n", ":3: the header has no column"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         sf_table table;
@@ -195,6 +196,97 @@ static void exports_of_laboratories_are_read(void **state) {
         assert_int_equal(t.count, cases[k].count);
         for (int c = 0; c < 2; c++)
             assert_true(fabs(t.value[c][t.count - 1] - cases[k].last[c]) < 1e-12 * (1 + cases[k].last[c]));
+        sf_table_free(&t);
+    }
+}
+
+/* Specimens and cycles: in columns, side by side, one below the other. */
+static void parts_are_chosen_and_listed(void **state) {
+    static const struct {
+        const char *text, *specimen, *cycle, *expected; /* a fault, or NULL: the last point is (3 s, 30 N) */
+    } cases[] = {
+        {"Specimen;Time (s);Force (N)\n1;1;1\n1;2;2\n2;1;10\n2;3;30\n", "2", NULL, NULL},
+        {"Specimen No;Time (s);Force (N)\nA-7;1;1\nB;3;30\n", "B", NULL, NULL},
+        {"Specimen;Time (s);Force (N)\n1;1;1\n2;1;10\n", NULL, NULL,
+         "holds the specimens 1, 2: choose one with specimen = N"},
+        {"Specimen;Time (s);Force (N)\n1;1;1\n2;1;10\n", "3", NULL,
+         "\"3\" was asked for; it holds the specimens 1, 2"},
+        {"Time (s);Force (N);Cycle count\n1;1;1\n2;2;1\n2.5;5;2\n3;30;2.0\n", NULL, "2", NULL},
+        {"Time (s);Force (N);Cycle count\n1;1;1\n2;2;2\n", NULL, NULL,
+         "holds the cycles 1, 2: choose one with cycle = N"},
+        {"Specimen;Cycle;Time (s);Force (N)\n1;1;1;1\n1;2;2;2\n2;1;3;30\n2;2;4;40\n", "2", "1", NULL},
+        {"Specimen;Cycle;Time (s);Force (N)\n1;1;1;1\n1;2;2;2\n2;1;3;30\n", "2", NULL, NULL},
+        {"Time (s);Force (N);Time (s);Force (N)\n1;1;3;30\n", "2", NULL, NULL},
+        {"Time (s);Force (N);Force (N)\n3;1;30\n", "2", NULL, NULL},
+        {"Time (s);Force (N);Time (s);Force (N)\n1;1;3;30\n", "3", NULL, "has columns of 2"},
+        {"Time (s);Force (N);Time (s);Force (N)\n1;1;3;30\n", NULL, NULL,
+         "choose a specimen with specimen = N"},
+        {"Test 1\nTime (s);Force (N)\n1;1\n2;2\nTest 2\nTime;Force\n(s);(N)\n1;10\n3;30\n\nMean;9\n\nTest 3\n"
+         "Time (s);Force (N)\n1;5\n",
+         "2", NULL, NULL},
+        {"Time (s);Force (N)\n1;1\nTime (s);Force (N)\n3;30\n", NULL, NULL,
+         ":3: another table begins here, the file holds 2: choose one with specimen = N"},
+        {"Time (s);Force (N)\n1;1\nTime (s);Force (N)\n3;30\n", "4", NULL, "holds 2 tables"},
+        {"Time (s);Force (N);Specimen height (mm);cycle height (mm)\n1;1;50;3\n3;30;49;4\n", NULL, NULL, NULL},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        sf_table t;
+        sf_error err;
+        sf_table_layout layout = measured;
+        layout.part[SF_TABLE_SPECIMEN] = cases[k].specimen;
+        layout.part[SF_TABLE_CYCLE] = cases[k].cycle;
+        layout.part_option[SF_TABLE_SPECIMEN] = "specimen = N";
+        layout.part_option[SF_TABLE_CYCLE] = "cycle = N";
+        read_text(*state, cases[k].text, &layout, &t, &err);
+        bool fault = cases[k].expected != NULL;
+        if (fault ? err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].expected) : err.status != SF_OK)
+            fail_msg("%zu: status %d: %s", k, err.status, err.text);
+        if (fault)
+            continue;
+        if (t.value[0][t.count - 1] != 3 || t.value[1][t.count - 1] != 30)
+            fail_msg("%zu: (%g, %g)", k, t.value[0][t.count - 1], t.value[1][t.count - 1]);
+        assert_true(t.part_taken[SF_TABLE_SPECIMEN] == (cases[k].specimen != NULL));
+        assert_true(t.part_taken[SF_TABLE_CYCLE] == (cases[k].cycle != NULL));
+        sf_table_free(&t);
+    }
+}
+
+/* A heading from the user, and samples that are only numbered. */
+static void what_a_file_does_not_say_can_be_given(void **state) {
+    static const struct {
+        const char *text, *heading;
+        bool counted;
+        const char *expected; /* a fault, or NULL: the last point is (0.003 s, 30 N) */
+    } cases[] = {
+        {"1,10\n3,30\n", "t (ms), F (N)", false, NULL},
+        {"rig 7\n\n1\t10\n3\t30\n", "Time (ms); Force (N)", false, NULL},
+        {"1 10 5\n3 30 6\n", "Time (ms);Force (N);other", false, NULL},
+        {"1;10;5\n3;30;6\n", "Time (ms);Force (N)", false, ":1: 3 values where"},
+        {"Time (s);Force (N)\n1;2\n", "Time (ms);Force (N)", false, ":1: the file has a heading of its own"},
+        {"1;2\n", "Time (ms);Mass (kg)", false,
+         "--heading \"Time (ms);Mass (kg)\": the header has no column"},
+        {"Force (N)\n1\n2\n3\n30\n", NULL, true, NULL},
+        {"1\n2\n3,5\n30\n", "Force (N)", true, NULL},
+        {"Sample no;Force (N);x\n1;5;1\n3;30;1\n", NULL, true, NULL},
+        {"Force (N)\n1\nNaN\n3\n30\nPeak;7\n", NULL, true, NULL},
+        {"1\n2\n", NULL, false, ":1: numbers begin here without a heading"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        sf_table t;
+        sf_error err;
+        sf_table_layout layout = measured;
+        layout.heading = cases[k].heading;
+        layout.heading_option = "--heading";
+        layout.counted = cases[k].counted;
+        layout.unit[0] = cases[k].counted ? 1e-3 : 0;
+        read_text(*state, cases[k].text, &layout, &t, &err);
+        bool fault = cases[k].expected != NULL;
+        if (fault ? err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].expected) : err.status != SF_OK)
+            fail_msg("%zu: status %d: %s", k, err.status, err.text);
+        if (fault)
+            continue;
+        if (fabs(t.value[0][t.count - 1] - 3e-3) > 1e-15 || t.value[1][t.count - 1] != 30)
+            fail_msg("%zu: (%g, %g)", k, t.value[0][t.count - 1], t.value[1][t.count - 1]);
         sf_table_free(&t);
     }
 }
@@ -276,6 +368,8 @@ int main(void) {
         cmocka_unit_test(ambiguous_tables_are_refused),
         cmocka_unit_test(column_can_be_chosen),
         cmocka_unit_test(exports_of_laboratories_are_read),
+        cmocka_unit_test(parts_are_chosen_and_listed),
+        cmocka_unit_test(what_a_file_does_not_say_can_be_given),
         cmocka_unit_test(what_looks_like_a_remark_is_refused_before_data),
         cmocka_unit_test(text_in_utf16_is_read),
         cmocka_unit_test(broken_utf16_is_refused),

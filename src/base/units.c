@@ -30,6 +30,8 @@ static const quantity_info quantities[SF_QUANTITY_COUNT] = {
     [SF_AREA] = {"an area", "m2", "25 cm2"},
     [SF_INERTIA] = {"a moment of inertia", "kg m2", "0.012 kg m2"},
     [SF_ANGULAR_VELOCITY] = {"an angular velocity", "rad s-1", "20 rad/s"},
+    [SF_VOLTAGE] = {"a voltage", "V", "10 mV"},
+    [SF_SENSITIVITY] = {"a sensitivity of an accelerometer", "V s2 m-1", "0.102 mV/(m/s2)"},
     [SF_FORCE] = {"a force", "N", "2.5 kN"},
 };
 
@@ -199,6 +201,11 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     bool fits = snprintf(name, sizeof name, "%s", rest) < (int)sizeof name;
     for (size_t end = strlen(name); end > 0 && strchr(" \t", name[end - 1]);)
         name[--end] = '\0';
+    double fraction;
+    if (*name == ',' && sf_decimal_read(name + 1, &fraction))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "\"%s\" has a decimal comma; write a decimal point, for example \"%s\"", text,
+                       want->example);
     if (name[0] == '\0')
         return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" has no unit; expected %s, for example \"%s\"", text,
                        want->phrase, want->example);
@@ -232,6 +239,7 @@ static const struct {
     {"pressure", "Pa", "hkMG"},
     {"pressure", "pascal|pascals|kilopascal|kilopascals|megapascal|megapascals|psi|ksi", ""},
     {"pressure", "bar", "mk"},
+    {"voltage", "V", "umk"},
     {"angle", "rad|radian|radians", ""},
 };
 enum { UNITS = sizeof units / sizeof *units, DEEPEST = 4 };

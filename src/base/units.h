@@ -29,6 +29,8 @@ typedef enum sf_quantity {
     SF_FORCE,
     SF_AREA,
     SF_INERTIA,
+    SF_VOLTAGE,
+    SF_SENSITIVITY,      /* of an accelerometer */
     SF_ANGULAR_VELOCITY, /* last: UDUNITS takes a radian for 1, so that it has the dimension of a rate */
     SF_QUANTITY_COUNT,
 } sf_quantity;

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/table_csv.h"
 
-#include "io/plain_file.h"
 #include "io/table_heading.h"
 #include <ctype.h>
-#include <iconv.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +18,9 @@ typedef struct csv {
     const sf_table_layout *layout;
     char *text;  /* whole file, zero-terminated; owned */
     char *next;  /* the line that follows */
+    char *end;   /* where the table ends: another one or the end of the file */
     int line;    /* number of the last one */
+    int64_t row; /* rows so far, lost samples too */
     bool passed; /* lines without a column stand before the heading */
     char separator;
     sf_table_heading heading;
@@ -42,117 +42,10 @@ void sf_table_free(sf_table *table) {
 
 /* ---- lines ---- */
 
-/* UTF-16 with a byte order mark, as spreadsheets save "Unicode text", becomes UTF-8. */
-static sf_status convert_utf16(csv *file, size_t *length, sf_error *err) {
-    const char *mark = file->text;
-    bool little = *length > 1 && memcmp(mark, "\xFF\xFE", 2) == 0,
-         big = *length > 1 && memcmp(mark, "\xFE\xFF", 2) == 0;
-    if (!little && !big)
-        return SF_OK;
-    iconv_t converter = iconv_open("UTF-8", little ? "UTF-16LE" : "UTF-16BE");
-    size_t left = *length - 2, room = 2 * *length + 4, whole = room;
-    char *from = file->text + 2, *text = malloc(room + 1), *to = text;
-    if (!text || converter == (iconv_t)-1 || iconv(converter, &from, &left, &to, &room) == (size_t)-1) {
-        SF_FAIL(err, SF_ERR_INPUT, "the %s %s begins like UTF-16, but is not: save it as CSV UTF-8",
-                file->layout->what, file->path);
-        free(text);
-    } else {
-        *length = whole - room;
-        text[*length] = '\0';
-        free(file->text);
-        file->text = text;
-    }
-    if (converter != (iconv_t)-1)
-        iconv_close(converter);
-    return err->status;
-}
-
-/* The value of a line "KEY   :value" of an ISO-MME header; NULL if the line has another key. */
-static const char *mme_value(const char *line, const char *key) {
-    size_t length = strlen(key);
-    const char *colon = strchr(line, ':');
-    if (!colon || strncasecmp(line, key, length) != 0 ||
-        strspn(line + length, " \t") != (size_t)(colon - line) - length)
-        return NULL;
-    return colon + 1 + strspn(colon + 1, " \t");
-}
-
-/* A channel in ISO-MME (ISO/TS 13499: a header of lines "key :value", then a sample a line) becomes a table
- * of time and channel, each sample in its own line. */
-static sf_status convert_mme(csv *file, sf_error *err) {
-    char name[SF_TABLE_TITLE] = "channel", unit[SF_TABLE_UNIT] = "", *out = NULL, *next = NULL;
-    double step = NAN, first = 0, said = NAN, number;
-    size_t size = 0;
-    int64_t samples = 0;
-    if (strncasecmp(file->text, "Test object number", 18) != 0)
-        return SF_OK;
-    FILE *table = open_memstream(&out, &size);
-    if (!table)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
-    for (char *line = file->text; line && *line; line = next) {
-        const char *value;
-        next = line + strcspn(line, "\r\n");
-        size_t ends = next[0] == '\r' && next[1] == '\n' ? 2 : next[0] != '\0';
-        *next = '\0';
-        next += ends;
-        line += strspn(line, " \t");
-        if (strchr(line, ':')) {
-            if ((value = mme_value(line, "Name of the channel")))
-                snprintf(name, sizeof name, "%.60s", value);
-            else if ((value = mme_value(line, "Unit")))
-                snprintf(unit, sizeof unit, "%.31s", strcmp(value, "m/(s*s)") == 0 ? "m/s2" : value);
-            else if ((value = mme_value(line, "Sampling interval")) && sf_table_number(value, &number))
-                step = number;
-            else if ((value = mme_value(line, "Time of first sample")) && sf_table_number(value, &number))
-                first = number;
-            else if ((value = mme_value(line, "Number of samples")) && sf_table_number(value, &number))
-                said = number;
-            if (!mme_value(line, "Number of samples")) {
-                fputs("#\n", table);
-                continue;
-            }
-            for (char *c = name; *c; c++) /* no separator, no bracket */
-                *c = strchr(";()[]<>,/", *c) ? ' ' : *c;
-            fprintf(table, "Time (s);%s (%s)\n", name, unit);
-        } else if (*line) {
-            fprintf(table, "%.9g;%s\n", first + (double)samples++ * step,
-                    strcasecmp(line, "NOVALUE") == 0 ? "NaN" : line);
-        } else {
-            fputs("\n", table);
-        }
-    }
-    bool whole = fclose(table) == 0 && out;
-    free(file->text);
-    file->text = out;
-    if (!whole)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
-    if (!(step > 0) || !unit[0] || said != (double)samples)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: its ISO-MME header gives a sampling interval of %g s, the unit \"%s\" and %g samples; it "
-            "holds %lld samples",
-            file->path, step, unit, said, (long long)samples);
-    return SF_OK;
-}
-
-static sf_status load(csv *file, sf_error *err) {
-    const char *what = file->layout->what;
-    size_t length = 0;
-    SF_TRY(sf_plain_read(file->path, what, SF_PLAIN_TEXT, &file->text, &length, err));
-    SF_TRY(convert_utf16(file, &length, err));
-    if (strlen(file->text) < length)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "the %s %s holds zero bytes: it is not a text in UTF-8 (save it as CSV UTF-8)", what,
-                       file->path);
-    SF_TRY(convert_mme(file, err));
-    file->next = file->text + (strncmp(file->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0); /* byte order mark */
-    return SF_OK;
-}
-
 /* The next line, ended in place; NULL after the last. */
 static char *next_line(csv *file) {
     char *line = file->next;
-    if (!line || !*line)
+    if (!line || !*line || (file->end && line >= file->end))
         return NULL;
     char *end = line + strcspn(line, "\r\n");
     file->next = *end == '\r' && end[1] == '\n' ? end + 2 : *end ? end + 1 : end;
@@ -174,17 +67,22 @@ static char *next_content(csv *file) {
     return line;
 }
 
-/* A copy of the next such line, which stays. */
-static char *peek_content(const csv *file) {
-    for (const char *line = file->next; line && *line;) {
-        size_t length = strcspn(line, "\r\n");
-        char *copy = strndup(line, length);
-        if (!copy || !is_empty(copy))
-            return copy;
+/* A copy of the line at *rest, which is moved behind it; NULL at the end. The text stays as it is. */
+static char *copy_line(const char **rest) {
+    const char *line = *rest;
+    if (!line || !*line)
+        return NULL;
+    size_t length = strcspn(line, "\r\n");
+    *rest = line + length + (line[length] == '\r' && line[length + 1] == '\n' ? 2 : line[length] != '\0');
+    return strndup(line, length);
+}
+
+/* The same of the next line that is neither empty nor a comment. */
+static char *copy_content(const char *rest) {
+    char *copy;
+    while ((copy = copy_line(&rest)) && is_empty(copy))
         free(copy);
-        line += length + (line[length] != '\0');
-    }
-    return NULL;
+    return copy;
 }
 
 /* ---- heading ---- */
@@ -220,21 +118,24 @@ static char *copy_utf8(const char *text) {
     return copy;
 }
 
-/* Two numbers begin the line: data. */
-static bool is_data(const char *line) {
-    bool data = false;
-    for (const char *s = SEPARATORS; *s && !data; s++) {
+/* The separator by which numbers begin the line, one where samples are counted and two elsewhere; 0: it is no
+ * line of data. */
+static char data_separator(const csv *file, const char *line) {
+    char found = 0;
+    for (const char *s = SEPARATORS; *s && !found; s++) {
         sf_table_cells cells;
         double number;
         char *copy = strdup(line);
         if (!copy)
-            return false;
+            return 0;
         sf_table_split(copy, *s, false, &cells);
-        data = cells.count > 1 && cells.count <= SF_TABLE_COLUMNS &&
-               sf_table_number(cells.cell[0], &number) && sf_table_number(cells.cell[1], &number);
+        bool data = cells.count > !file->layout->counted && cells.count <= SF_TABLE_COLUMNS &&
+                    sf_table_number(cells.cell[0], &number) &&
+                    (cells.count < 2 || sf_table_number(cells.cell[1], &number));
+        found = data ? *s : 0;
         free(copy);
     }
-    return data;
+    return found;
 }
 
 /* Reads the line as a heading of the layout, split at the separator. */
@@ -242,7 +143,7 @@ static sf_status try_heading(csv *file, const char *line, const char *below, cha
                              const sf_table_layout *layout, sf_table_heading *heading, sf_error *err) {
     sf_table_cells cells, below_cells = {0};
     char *text = copy_utf8(line), *under = copy_utf8(below);
-    *heading = (sf_table_heading){.place = {-1, -1}};
+    *heading = (sf_table_heading){.place = {-1, -1}, .part = {-1, -1}};
     if (!text || (below && !under)) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
     } else {
@@ -260,10 +161,10 @@ static sf_status try_heading(csv *file, const char *line, const char *below, cha
     return err->status;
 }
 
-/* The best heading that the line can be, of any layout and separator. */
-static sf_status try_line(csv *file, const char *line, const sf_table_layout *layouts, int count, int *which,
-                          sf_table_heading *best, char *separator, sf_error *err) {
-    char *below = peek_content(file);
+/* The best heading that the line can be, of any layout and separator; `rest` is the text below it. */
+static sf_status try_line(csv *file, const char *line, const char *rest, const sf_table_layout *layouts,
+                          int count, int *which, sf_table_heading *best, char *separator, sf_error *err) {
+    char *below = copy_content(rest);
     *best = (sf_table_heading){.found = -1};
     for (const char *s = SEPARATORS; *s && err->status == SF_OK; s++)
         for (int k = 0; k < count && err->status == SF_OK; k++) {
@@ -284,33 +185,227 @@ static sf_status try_line(csv *file, const char *line, const sf_table_layout *la
     return err->status;
 }
 
+static bool is_good(const sf_table_heading *heading) {
+    return heading->found == 2 && !heading->problem[0];
+}
+
+/* Every cell is as short as a unit. */
+static bool is_short(const char *line) {
+    enum { UNIT = 6 };
+    size_t longest = 0;
+    for (; *line; line += strspn(line, ";\t,\"")) {
+        size_t length = strcspn(line, ";\t,\"");
+        longest = length > longest ? length : longest;
+        line += length;
+    }
+    return longest <= UNIT;
+}
+
+static sf_status refuse_headless(const csv *file, sf_error *err) {
+    const char *option = file->layout->heading_option;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s:%d: numbers begin here without a heading, which names the columns %s and %s and their "
+                   "units: write one above them%s%s",
+                   file->path, file->line, file->layout->column[0], file->layout->column[1],
+                   option ? ", or give it with " : "", option ? option : "");
+}
+
 /* The first line that is a heading; a table of results may stand above it, with an empty line between. Else
- * what is wrong with the line that is most like one. */
+ * what is wrong with the line that is most like one: the last before the data among those that hold as many
+ * of the columns. */
 static sf_status find_heading(csv *file, const sf_table_layout *layouts, int count, int *which,
                               sf_error *err) {
     sf_table_heading best = {.found = -1};
     int best_line = 0, lines = 0;
-    bool below_data = false; /* the line follows on one of numbers */
+    bool below_data = false, any_data = false; /* the line follows on one of numbers; on any */
     char *line;
     while (lines++ < PREAMBLE && (line = next_content(file))) {
         sf_table_heading heading;
-        if (try_line(file, line, layouts, count, which, &heading, &file->separator, err) != SF_OK)
-            return err->status;
-        if (heading.found == 2 && !heading.problem[0] && below_data)
+        bool data = data_separator(file, line) != 0;
+        SF_TRY(try_line(file, line, file->next, layouts, count, which, &heading, &file->separator, err));
+        if (is_good(&heading) && below_data)
             break;
-        if (heading.found == 2 && !heading.problem[0]) {
+        if (is_good(&heading) && !data) {
             file->heading = heading;
             file->layout = &layouts[*which];
             file->passed = lines > 1;
+            file->separator = heading.columns == 1 ? ';' : file->separator;
             return SF_OK;
         }
-        if (heading.found > best.found) {
+        double number;
+        if (lines == 1 && heading.found <= 0 && (data || sf_table_number(line, &number)))
+            return refuse_headless(file, err);
+        any_data = any_data || data;
+        if (heading.found > best.found || (heading.found == best.found && !any_data && !is_short(line))) {
             best = heading;
             best_line = file->line;
         }
-        below_data = is_data(line) && file->next && !strchr("\r\n", *file->next);
+        below_data = data && file->next && !strchr("\r\n", *file->next);
     }
     return best_line ? SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", file->path, best_line, best.problem) : SF_OK;
+}
+
+/* The user's heading, of a file that begins with numbers after lines that are none. */
+static sf_status take_heading(csv *file, const sf_table_layout *layouts, int count, int *which,
+                              sf_error *err) {
+    const char *text = layouts[0].heading, *option = layouts[0].heading_option, *at = file->next;
+    SF_TRY(try_line(file, text, NULL, layouts, count, which, &file->heading, &file->separator, err));
+    if (!is_good(&file->heading))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s \"%.200s\": %s", option, text,
+                       file->heading.found < 0 ? "names no columns" : file->heading.problem);
+    file->layout = &layouts[*which];
+    char *copy;
+    for (int lines = 0; lines < PREAMBLE; lines++) {
+        const char *line = at;
+        sf_table_heading own;
+        sf_table_cells cells;
+        char separator = 0;
+        int other;
+        if (!(copy = copy_line(&at)))
+            break;
+        file->separator = is_empty(copy) ? 0 : data_separator(file, copy);
+        if (!file->separator && !is_empty(copy))
+            try_line(file, copy, at, layouts, count, &other, &own, &separator, err);
+        if (file->separator)
+            sf_table_split(copy, file->separator, false, &cells);
+        free(copy);
+        if (separator && is_good(&own))
+            return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: the file has a heading of its own: leave %s out",
+                           file->path, file->line + 1, option);
+        if (file->separator && cells.count != file->heading.columns)
+            return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %d values where %s names %d columns", file->path,
+                           file->line + 1, cells.count, option, file->heading.columns);
+        if (file->separator) {
+            file->next = file->text + (line - file->text);
+            return SF_OK;
+        }
+        file->line++;
+    }
+    return SF_FAIL(err, SF_ERR_INPUT, "%s: no line begins with numbers", file->path);
+}
+
+/* ---- parts of a file that holds several ---- */
+
+enum { MOST_PARTS = 64, PART_TEXT = 24 };
+
+/* A letter begins the line, after a quote perhaps: no number. */
+static bool begins_with_letter(const char *line) {
+    const char *first = line + strspn(line, " \t\"");
+    return (unsigned char)*first >= 0x80 || isalpha((unsigned char)*first);
+}
+
+/* The headings below the first table. Starts the chosen table, and ends it where the next begins. */
+static sf_status choose_table(csv *file, const sf_table_layout *layouts, int count, int *which,
+                              sf_error *err) {
+    const char *chosen = file->layout->part[SF_TABLE_SPECIMEN],
+               *option = file->layout->part_option[SF_TABLE_SPECIMEN];
+    double number = 0;
+    int tables = 1, wanted = chosen && sf_table_number(chosen, &number) ? (int)fmin(number, 1e6) : 0;
+    int line_number = file->line, second = 0, found = 0;
+    bool data = false;
+    const char *start = file->next;
+    char *copy;
+    for (const char *rest = file->next, *line = rest; (copy = copy_line(&rest)); line = rest) {
+        sf_table_heading heading = {.found = -1};
+        char separator;
+        line_number++;
+        if (data && begins_with_letter(copy))
+            try_line(file, copy, rest, layouts, count, &found, &heading, &separator, err);
+        data = data || (!is_empty(copy) && !begins_with_letter(copy) && data_separator(file, copy));
+        free(copy);
+        SF_TRY(err->status);
+        if (!is_good(&heading))
+            continue;
+        data = false;
+        second = second ? second : line_number;
+        if (tables == wanted || (tables == 1 && wanted == 0))
+            file->end = file->text + (line - file->text);
+        if (++tables == wanted) {
+            file->heading = heading;
+            file->separator = heading.columns == 1 ? ';' : separator;
+            *which = found;
+            file->layout = &layouts[found];
+            file->line = line_number;
+            start = rest;
+        }
+    }
+    if (tables == 1)
+        return SF_OK;
+    if (!chosen)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: another table begins here, the file holds %d: %s%s",
+                       file->path, second, tables,
+                       option ? "choose one with " : "give each a file of its own", option ? option : "");
+    if (wanted < 1 || wanted > tables || number != wanted)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: specimen %s was asked for; the file holds %d tables",
+                       file->path, chosen, tables);
+    file->next = file->text + (start - file->text);
+    file->table->part_taken[SF_TABLE_SPECIMEN] = true;
+    return SF_OK;
+}
+
+/* The same text, or the same number. */
+static bool is_part(const char *cell, const char *chosen) {
+    double a, b;
+    return strcmp(cell, chosen) == 0 || (sf_table_number(cell, &a) && sf_table_number(chosen, &b) && a == b);
+}
+
+/* Lists what the column holds, each text once, in the rows of the other chosen part; -1 if numbers in it are
+ * no counts. */
+static int list_parts(const csv *file, int k, char list[MOST_PARTS][PART_TEXT]) {
+    int listed = 0, other = !k, place = file->heading.part[k];
+    const char *chosen = file->layout->part[other];
+    char *copy;
+    for (const char *rest = file->next; (!file->end || rest < file->end) && (copy = copy_line(&rest));) {
+        sf_table_cells cells;
+        double number = 0;
+        bool known = false;
+        sf_table_split(copy, file->separator, false, &cells);
+        bool use = !is_empty(copy) && cells.count <= SF_TABLE_COLUMNS && cells.count > place &&
+                   cells.cell[place][0] &&
+                   (!chosen || file->heading.part[other] < 0 || cells.count <= file->heading.part[other] ||
+                    is_part(cells.cell[file->heading.part[other]], chosen));
+        bool count = !use || !sf_table_number(cells.cell[place], &number) || number == floor(number);
+        for (int i = 0; use && i < listed; i++)
+            known = known || is_part(cells.cell[place], list[i]);
+        if (use && !known && listed < MOST_PARTS)
+            snprintf(list[listed++], PART_TEXT, "%s", cells.cell[place]);
+        free(copy);
+        if (!count)
+            return -1;
+    }
+    return listed;
+}
+
+/* Checks the choice against the columns that number specimens and cycles. */
+static sf_status choose_rows(csv *file, sf_error *err) {
+    static const char *const names[SF_TABLE_PARTS] = {"specimens", "cycles"};
+    char list[MOST_PARTS][PART_TEXT], line[256] = "";
+    for (int k = 0; k < SF_TABLE_PARTS; k++) {
+        const char *chosen = file->layout->part[k], *option = file->layout->part_option[k];
+        int *place = &file->heading.part[k];
+        if (*place < 0 || *place == file->heading.place[0] || *place == file->heading.place[1]) {
+            *place = -1;
+            continue;
+        }
+        int listed = list_parts(file, k, list);
+        bool there = false;
+        size_t used = 0;
+        if (listed < 0)
+            *place = -1;
+        for (int i = 0; i < listed; i++) {
+            there = there || (chosen && is_part(list[i], chosen));
+            if (used < sizeof line)
+                used += (size_t)snprintf(line + used, sizeof line - used, "%s%s", i ? ", " : "", list[i]);
+        }
+        if (listed > 1 && !chosen)
+            return SF_FAIL(err, SF_ERR_INPUT, "%s holds the %s %s: %s%s", file->path, names[k], line,
+                           option ? "choose one with " : "give each a file of its own", option ? option : "");
+        if (listed > 0 && chosen && !there)
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s \"%.40s\" was asked for; it holds the %s %s",
+                           file->path, k == SF_TABLE_CYCLE ? "cycle" : "specimen", chosen, names[k], line);
+        file->table->part_taken[k] = file->table->part_taken[k] || (listed > 0 && chosen);
+    }
+    return SF_OK;
 }
 
 /* ---- numbers and rows ---- */
@@ -382,8 +477,8 @@ static sf_status read_number(csv *file, const char *name, const char *text, doub
     if (has_thousands(file, text, plain, sizeof plain))
         text = plain;
     if (!sf_table_number(text, value))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number", file->path, file->line, name,
-                       text);
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number%s", file->path, file->line, name,
+                       text, *text ? " (a number such as 12.5 is expected)" : " (the cell is empty)");
     if (check_mark(file, name, text, err) != SF_OK)
         return err->status;
     if (!isfinite(*value))
@@ -453,14 +548,22 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
         return SF_OK;
     if (check_count(file, count_cells(file, &cells), err) != SF_OK)
         return err->status;
+    for (int k = 0; k < SF_TABLE_PARTS; k++)
+        if (file->heading.part[k] >= 0 && file->layout->part[k] && cells.count > file->heading.part[k] &&
+            !is_part(cells.cell[file->heading.part[k]], file->layout->part[k]))
+            return SF_OK;
+    int64_t row = file->row++;
     if (file->layout->ragged && strcasecmp(cells.cell[file->heading.place[1]], "nan") == 0) {
         file->lost++;
         return SF_OK;
     }
     for (int c = 0; c < 2; c++) {
         double scale = file->heading.scale[c];
-        point.text[c] = cells.cell[file->heading.place[c]];
-        if (read_number(file, file->layout->column[c], point.text[c], &point.value[c], err) != SF_OK)
+        bool counted = file->heading.place[c] == SF_TABLE_ROW;
+        point.value[c] = (double)row;
+        point.text[c] = counted ? "" : cells.cell[file->heading.place[c]];
+        if (!counted &&
+            read_number(file, file->layout->column[c], point.text[c], &point.value[c], err) != SF_OK)
             return err->status;
         point.value[c] *= scale;
         if (table->count == 0)
@@ -475,42 +578,34 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
 
 /* ---- the whole ---- */
 
-static bool holds_point(const csv *file, const char *line) {
-    sf_table_cells cells;
+/* The cell of column `c` is a number, or the number of its row. */
+static bool holds_number(const csv *file, const sf_table_cells *cells, int c) {
     double number;
-    const int *place = file->heading.place;
-    char *copy = strdup(line);
-    if (!copy)
-        return true;
-    sf_table_split(copy, file->separator, false, &cells);
-    bool point = cells.count > place[0] && cells.count > place[1] && cells.count <= SF_TABLE_COLUMNS &&
-                 sf_table_number(cells.cell[place[0]], &number) &&
-                 sf_table_number(cells.cell[place[1]], &number);
-    free(copy);
-    return point;
+    int place = file->heading.place[c];
+    return place == SF_TABLE_ROW || (cells->count > place && cells->count <= SF_TABLE_COLUMNS &&
+                                     sf_table_number(cells->cell[place], &number));
+}
+
+static bool holds_point(const csv *file, char *line) {
+    sf_table_cells cells;
+    sf_table_split(line, file->separator, false, &cells);
+    return holds_number(file, &cells, 0) && holds_number(file, &cells, 1);
 }
 
 /* A line that begins with a letter, holds no number in the first column, and after which no line holds a
- * point: results or remarks of the laboratory below the data. */
+ * point: results or remarks of the laboratory below the data, or the title of the next table. */
 static bool ends_table(const csv *file, const char *line) {
     sf_table_cells cells;
-    double number;
+    int c = file->heading.place[0] == SF_TABLE_ROW;
     char *copy = strdup(line);
     if (!copy)
         return false;
     sf_table_split(copy, file->separator, false, &cells);
-    int place = file->heading.place[0];
-    bool text = cells.count > 0 && cells.count <= SF_TABLE_COLUMNS &&
-                ((unsigned char)cells.cell[0][0] >= 0x80 || isalpha((unsigned char)cells.cell[0][0])) &&
-                (cells.count <= place || !sf_table_number(cells.cell[place], &number));
+    bool text = cells.count > 0 && begins_with_letter(line) && !holds_number(file, &cells, c);
     free(copy);
-    for (char *rest = file->next; text && rest && *rest;) {
-        size_t length = strcspn(rest, "\r\n");
-        char *after = strndup(rest, length);
-        text = after && !holds_point(file, after);
-        free(after);
-        rest += length + (rest[length] != '\0');
-    }
+    for (const char *rest = file->next; text && (!file->end || rest < file->end) && (copy = copy_line(&rest));
+         free(copy))
+        text = !holds_point(file, copy);
     return text;
 }
 
@@ -533,11 +628,16 @@ static void describe(const csv *file) {
 
 static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, int *which, sf_error *err) {
     char *line;
-    if (load(file, err) != SF_OK || find_heading(file, layouts, count, which, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_table_text_read(file->path, file->layout->what, &file->text, err));
+    file->next = file->text + (strncmp(file->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0); /* byte order mark */
+    SF_TRY((layouts[0].heading ? take_heading : find_heading)(file, layouts, count, which, err));
+    file->table->part_taken[SF_TABLE_SPECIMEN] = file->heading.side_by_side > 1;
+    if (!layouts[0].heading && file->heading.side_by_side < 2 && file->heading.part[SF_TABLE_SPECIMEN] < 0)
+        SF_TRY(choose_table(file, layouts, count, which, err));
     int heading_line = file->line;
     if (file->heading.unit_line)
         next_content(file);
+    SF_TRY(choose_rows(file, err));
     for (int c = 0; c < 2; c++)
         file->table->scale[c] = file->heading.scale[c];
     while ((line = next_content(file))) {
@@ -575,7 +675,7 @@ sf_status sf_table_read_any(const char *path, const sf_table_layout *layouts, in
                             sf_table *table, sf_error *err) {
     memset(table, 0, sizeof *table);
     *which = 0;
-    csv file = {.path = path, .layout = layouts, .table = table};
+    csv file = {.path = path, .layout = layouts, .table = table, .heading = {.part = {-1, -1}}};
     sf_status status = read_all(&file, layouts, count, which, err);
     sf_units_close(&file.units);
     free(file.text);

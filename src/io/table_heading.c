@@ -289,29 +289,39 @@ static void complain(const reading *r, const char *format, ...) {
     va_end(args);
 }
 
-static void refuse_two(const reading *r, int c, int first, int second) {
-    const char *choice = r->layout->choice;
-    complain(r, "two %s columns (\"%.80s\" and \"%.80s\")%s%s", r->layout->column[c], r->cells->cell[first],
-             r->cells->cell[second], choice ? ": name one with " : "", choice ? choice : "");
+/* The cell `i` fits the column as well as `*count` others do: takes it if it is the only one, or that of the
+ * chosen specimen. True if it is taken. */
+static bool is_next(const reading *r, int c, int i, int *count) {
+    const char *specimen = r->layout->part[SF_TABLE_SPECIMEN];
+    double number = 0;
+    ++*count;
+    if (specimen && sf_table_number(specimen, &number)) {
+        if (*count > r->heading->side_by_side)
+            r->heading->side_by_side = *count;
+        return *count == 1 || *count == number;
+    }
+    if (*count == 1)
+        return true;
+    const char *choice = r->layout->choice, *option = r->layout->part_option[SF_TABLE_SPECIMEN];
+    complain(r, "two %s columns (\"%.80s\" and \"%.80s\")%s%s%s%s", r->layout->column[c],
+             r->cells->cell[r->heading->place[c]], r->cells->cell[i], choice ? ": name one with " : "",
+             choice ? choice : "", option ? ": choose a specimen with " : "", option ? option : "");
+    return false;
 }
 
 /* A heading that is one of the exact names. A line of units below it must agree. */
 static bool find_exact(const reading *r, int c) {
-    int found = -1;
+    int count = 0;
     for (int i = 0; i < r->cells->count; i++)
         for (int k = 0; k < r->layout->name_count; k++) {
             const sf_table_name *name = &r->layout->names[k];
-            if (name->column != c || strcmp(r->cells->cell[i], name->name) != 0 || !is_allowed(r, c, i))
+            if (name->column != c || strcmp(r->cells->cell[i], name->name) != 0 || !is_allowed(r, c, i) ||
+                !is_next(r, c, i, &count))
                 continue;
-            if (found >= 0) {
-                refuse_two(r, c, found, i);
-                return true;
-            }
-            found = i;
             r->heading->exact[c] = true;
             take(r, c, i, name->scale, name->unit);
         }
-    return found >= 0;
+    return count > 0;
 }
 
 static double scale_of(const reading *r, int c, const char *unit) {
@@ -327,23 +337,19 @@ static bool means_other(const reading *r, int c, int i) {
 /* Takes the only cell that fits: by a word (or the user's choice) and a unit of the kind, or by such a unit
  * alone. False if there is none. */
 static bool find_by_unit(const reading *r, int c, bool by_word) {
-    int found = -1, kind = r->layout->kind[c];
+    int count = 0, kind = r->layout->kind[c];
     for (int i = 0; i < r->cells->count; i++) {
         title t = read_title(r, i, by_word ? kind : SF_TABLE_RATIO);
         bool named = r->layout->chosen[c] ? is_chosen(r, c, i) : holds_word(t.name, r->layout->words[c]);
         double scale = named || !by_word ? scale_of(r, c, t.unit) : 0;
-        if ((by_word && !named) || !(scale > 0) || !is_allowed(r, c, i) || means_other(r, c, i))
+        if ((by_word && !named) || !(scale > 0) || !is_allowed(r, c, i) || means_other(r, c, i) ||
+            !is_next(r, c, i, &count))
             continue;
-        if (found >= 0) {
-            refuse_two(r, c, found, i);
-            return true;
-        }
-        found = i;
         take(r, c, i, scale, t.unit);
         if (!by_word || r->layout->chosen[c])
             snprintf(r->heading->title[c], sizeof r->heading->title[c], "%s", r->cells->cell[i]);
     }
-    return found >= 0;
+    return count > 0;
 }
 
 /* A column with the word but without a unit of the kind. */
@@ -372,8 +378,53 @@ static bool find_unfit(const reading *r, int c) {
     return false;
 }
 
+/* True if the cell consists of words of the list, at least one of them, and of words that mean a number. */
+static bool is_numbering(const char *cell, const char *list) {
+    bool any = false;
+    for (; *cell; cell++) {
+        size_t length = 0;
+        while (is_word_byte(cell[length]))
+            length++;
+        bool listed = length > 0 && is_listed(cell, length, list);
+        if (length > 0 && !listed &&
+            !is_listed(cell, length, "no|nr|number|id|index|count|total|elapsed|name"))
+            return false;
+        any = any || listed;
+        cell += length;
+        if (!*cell)
+            break;
+    }
+    return any;
+}
+
+static int find_numbering(const reading *r, const char *list) {
+    for (int i = 0; i < r->cells->count; i++)
+        if (is_numbering(r->cells->cell[i], list))
+            return i;
+    return -1;
+}
+
+/* The number of the sample: a column of that name, or the row. */
+static void find_count(const reading *r) {
+    int place = find_numbering(r, "sample|samples|point|points|scan|n|i|index|messpunkt|punkt");
+    take(r, 0, place < 0 ? SF_TABLE_ROW : place, r->layout->unit[0], NULL);
+    r->heading->found++;
+}
+
+static void find_parts(const reading *r) {
+    static const char *const words[SF_TABLE_PARTS] = {
+        "specimen|specimens|probe|probekörper|prüfkörper|éprouvette|probeta|provino",
+        "cycle|cycles|zyklus|ciclo"};
+    for (int k = 0; k < SF_TABLE_PARTS; k++)
+        r->heading->part[k] = find_numbering(r, words[k]);
+}
+
 static void find_column(const reading *r, int c) {
     r->heading->place[c] = -1;
+    if (c == 0 && r->layout->counted) {
+        find_count(r);
+        return;
+    }
     if (find_exact(r, c)) {
         r->heading->found++;
         return;
@@ -403,6 +454,8 @@ static void check_below(const reading *r, const sf_table_cells *below) {
         char unit[SF_TABLE_TITLE] = "";
         if (h->place[c] >= below->count)
             return;
+        if (h->place[c] == SF_TABLE_ROW || (c == 0 && r->layout->counted))
+            continue;
         strip_brackets(below->cell[h->place[c]], unit, sizeof unit);
         double scale = r->layout->words[c] ? scale_of(r, c, unit) : 0;
         if (!(scale > 0) && !(r->layout->kind[c] == SF_TABLE_RATIO && !unit[0]))
@@ -417,12 +470,18 @@ static void check_below(const reading *r, const sf_table_cells *below) {
 sf_status sf_table_heading_read(const sf_table_layout *layout, const sf_table_cells *cells,
                                 const sf_table_cells *below, sf_units **units, sf_table_heading *heading,
                                 sf_error *err) {
-    *heading = (sf_table_heading){.columns = cells->count};
+    *heading = (sf_table_heading){.columns = cells->count, .part = {-1, -1}};
     const reading r = {layout, cells, may_hold_units(cells, below) ? below : NULL, units, heading, err};
     while (heading->columns > 0 && !cells->cell[heading->columns - 1][0])
         heading->columns--;
     for (int c = 0; c < 2; c++)
         find_column(&r, c);
+    find_parts(&r);
+    double specimen = 0;
+    if (heading->side_by_side > 1 && sf_table_number(layout->part[SF_TABLE_SPECIMEN], &specimen) &&
+        (specimen != floor(specimen) || specimen > heading->side_by_side || specimen < 1))
+        complain(&r, "specimen %s was asked for; the heading has columns of %d",
+                 layout->part[SF_TABLE_SPECIMEN], heading->side_by_side);
     if (heading->found == 2 && !heading->problem[0] && heading->place[0] == heading->place[1])
         heading->found = 1;
     for (int c = 0; c < 2 && heading->found < 2 && !heading->problem[0]; c++)

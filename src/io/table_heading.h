@@ -32,6 +32,10 @@ typedef struct sf_table_point {
     double last[2];   /* the same in the file's own units */
 } sf_table_point;
 
+/* A file may hold several specimens or cycles: with their numbers in a column, with columns side by side, or
+ * as tables one below the other. The part is chosen by what its column holds, or by its number, from 1. */
+typedef enum sf_table_part { SF_TABLE_SPECIMEN, SF_TABLE_CYCLE, SF_TABLE_PARTS } sf_table_part;
+
 /* Refuses a point. */
 typedef sf_status sf_table_check(const sf_table_point *point, sf_error *err);
 
@@ -46,10 +50,16 @@ typedef struct sf_table_layout {
     int kind[2];          /* sf_quantity or SF_TABLE_RATIO, with words */
     double unit[2];       /* SI value of the unit of the table's values; 0: SI */
     const char *unfit[2]; /* words of headings that mean another quantity; NULL: none */
-    const char *unfit_why; /* what such a column is, and how to convert it */
-    const char *chosen[2]; /* heading of the column to take; NULL: the only one that fits */
-    const char *choice;    /* how the user chooses a column, for messages; NULL: not possible */
-    bool ragged;           /* a row may be shorter than the heading as long as it holds both columns */
+    const char *unfit_why;            /* what such a column is, and how to convert it */
+    const char *chosen[2];            /* heading of the column to take; NULL: the only one that fits */
+    const char *choice;               /* how the user chooses a column, for messages; NULL: not possible */
+    const char *part[SF_TABLE_PARTS]; /* the specimen and the cycle to take; NULL: the only one */
+    const char *part_option[SF_TABLE_PARTS]; /* how the user chooses them, for messages; NULL: not possible */
+    const char *heading;        /* the user's, of a file without one; NULL: it stands in the file */
+    const char *heading_option; /* how the user gives it, for messages; NULL: not possible */
+    bool counted; /* values of the first column are the numbers of the samples, in their own column or those
+                     of the rows */
+    bool ragged;  /* a row may be shorter than the heading as long as it holds both columns */
     sf_table_check *check; /* NULL: none */
 } sf_table_layout;
 
@@ -57,6 +67,7 @@ typedef struct sf_table_layout {
  * io/table_csv. */
 
 enum { SF_TABLE_COLUMNS = 256, SF_TABLE_TITLE = 96, SF_TABLE_UNIT = 32 };
+enum { SF_TABLE_ROW = -2 }; /* place of a first column that is the number of the row */
 
 /* A line split into cells; points into the line. */
 typedef struct sf_table_cells {
@@ -65,8 +76,10 @@ typedef struct sf_table_cells {
 } sf_table_cells;
 
 typedef struct sf_table_heading {
-    int columns;  /* cells of the heading, without empty ones at its end */
-    int place[2]; /* of the two columns */
+    int columns;              /* cells of the heading, without empty ones at its end */
+    int place[2];             /* of the two columns; SF_TABLE_ROW */
+    int part[SF_TABLE_PARTS]; /* places of the columns that number specimens and cycles; -1: none */
+    int side_by_side;         /* columns of one quantity, of which the specimen chooses one */
     double scale[2];
     char unit[2][SF_TABLE_UNIT];
     char title[2][SF_TABLE_TITLE]; /* of a column found by its unit alone; else empty */
@@ -88,4 +101,9 @@ bool sf_table_number(const char *cell, double *value);
 sf_status sf_table_heading_read(const sf_table_layout *layout, const sf_table_cells *cells,
                                 const sf_table_cells *below, sf_units **units, sf_table_heading *heading,
                                 sf_error *err);
+
+/* Reads a file (io/plain_file.h) as zero-terminated text for the caller to free: UTF-16 with a byte order
+ * mark becomes UTF-8, a channel in ISO-MME a table of two columns whose lines are those of the file. `what`:
+ * the file in messages. */
+sf_status sf_table_text_read(const char *path, const char *what, char **text, sf_error *err);
 #endif

@@ -38,6 +38,10 @@ enum {
     KEY_LIMIT_HIC,
     KEY_REFERENCE_FILTER,
     KEY_REFERENCE_COLUMN,
+    KEY_REFERENCE_COLUMNS,
+    KEY_REFERENCE_HEADING,
+    KEY_REFERENCE_SCALE,
+    KEY_REFERENCE_RATE,
     KEY_REFERENCE_INVERT,
     KEY_REFERENCE_ZERO,
     KEY_FROM,
@@ -143,6 +147,22 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         o->compare.reference.column = text;
         o->tuned = true;
         break;
+    case KEY_REFERENCE_COLUMNS:
+        o->compare.reference.columns = text;
+        o->tuned = true;
+        break;
+    case KEY_REFERENCE_HEADING:
+        o->compare.reference.heading = text;
+        o->tuned = true;
+        break;
+    case KEY_REFERENCE_SCALE:
+        sf_reference_parse_sensitivity(text, &o->compare.reference.sensitivity, &o->err);
+        o->tuned = true;
+        break;
+    case KEY_REFERENCE_RATE:
+        sf_reference_parse_rate(text, &o->compare.reference.rate, &o->err);
+        o->tuned = true;
+        break;
     case KEY_REFERENCE_INVERT:
         o->compare.reference.invert = true;
         o->tuned = true;
@@ -223,6 +243,16 @@ static sf_status parse_command(int argc, char **argv, options *o) {
          "filter of the measured curve: none if the file is filtered already (default: that of --filter)", 1},
         {"reference-column", KEY_REFERENCE_COLUMN, "NAME", 0,
          "heading of its acceleration, if several columns could be", 1},
+        {"reference-columns", KEY_REFERENCE_COLUMNS, "X,Y,Z", 0,
+         "headings of two or three axes: their resultant, each filtered, is the acceleration", 1},
+        {"reference-scale", KEY_REFERENCE_SCALE, "SENSITIVITY", 0,
+         "its column is in volts: sensitivity of the accelerometer, such as \"0.102 mV/(m/s2)\" or \"10 mV/g\"",
+         1},
+        {"reference-rate", KEY_REFERENCE_RATE, "RATE", 0,
+         "it has no time, but a sample in each row, perhaps numbered: the sampling rate, such as \"20 kHz\"",
+         1},
+        {"reference-heading", KEY_REFERENCE_HEADING, "TEXT", 0,
+         "heading of a file without one, such as \"Time (ms), Acceleration (g)\"", 1},
         {"reference-invert", KEY_REFERENCE_INVERT, NULL, 0,
          "its channel is inverted: positive must mean that the missile is slowed down", 1},
         {"from", KEY_FROM, "MS", 0, "use the measured curve from there on, in ms of its time", 1},
@@ -256,7 +286,8 @@ static sf_status parse_command(int argc, char **argv, options *o) {
                                              .to = INFINITY,
                                              .column_option = "--reference-column",
                                              .unfiltered_option = "--reference-filter none",
-                                             .invert_option = "--reference-invert"},
+                                             .invert_option = "--reference-invert",
+                                             .heading_option = "--reference-heading"},
                                .shift = NAN,
                                .window = {NAN, NAN}},
                    .err = SF_ERROR_INIT};

@@ -4,47 +4,8 @@
 #include <stdbool.h>
 
 #include "post/figures/injury.h"
-#include "post/figures/record.h"
-#include "post/figures/signal.h"
+#include "post/figures/reference.h"
 #include "report/row.h"
-
-/* A measured acceleration from a CSV file (io/table_csv.h): a time and an acceleration, positive while the
- * missile is slowed down, in any unit that the heading names. It is filtered with a channel frequency
- * class at its own rate; samples at uneven times are first put at uniform ones, at SF_SIGNAL_RATE or faster.
- * A clock that counts from long before the record, such as an epoch, begins with the record. */
-
-enum { SF_REFERENCE_INTERPRETATION = 1024 };
-
-/* The texts tell the user, in sentences, how to choose otherwise ("--reference-filter none"). All borrowed.
- */
-typedef struct sf_reference_options {
-    const char *path;
-    const char *column; /* heading of the acceleration; NULL: the only one */
-    double cfc;         /* channel frequency class; 0: the file is filtered already and used as it is */
-    bool invert;        /* the file has the other sign */
-    bool zero;          /* take the median before contact away */
-    double from, to;    /* s, the part to be used, on the record's clock; 0, 0: all of it */
-    int impact;         /* the one to be used, from 1; 0: the highest */
-    const char *column_option, *unfiltered_option, *invert_option;
-} sf_reference_options;
-
-typedef struct sf_reference {
-    sf_series raw;     /* the points of the file, s and g, inverted if asked for; owned */
-    sf_series curve;   /* filtered; without a filter the same as raw; owned */
-    double origin;     /* s, of its clock, that was taken away from the times */
-    double offset;     /* g, that was taken away from the values */
-    char impacts[256]; /* "1 at 12.4 ms (150 g), ..."; empty: there is one */
-    int64_t skipped;   /* points of the file before the first that is used */
-    double other;      /* highest of the other impacts, over the peak, if none was asked for; else 0 */
-    char interpretation[SF_REFERENCE_INTERPRETATION]; /* how the file was read, for the report */
-} sf_reference;
-
-/* SF_ERR_INPUT names the file, the line and what was expected: also if the samples are further apart than a
- * tenth of the reciprocal class (SAE J211 asks for a sampling rate of ten times the class), and if the
- * largest magnitude is negative, as of an inverted channel. Release with sf_reference_free; on failure it is
- * zeroed. */
-sf_status sf_reference_read(const sf_reference_options *options, sf_reference *reference, sf_error *err);
-void sf_reference_free(sf_reference *reference);
 
 /* Model against measurement (Penta et al., Appl. Sci. 2018, 8(7), 1174, Table 2): over a region of the
  * measured curve, sampled every 0.25 and every 0.50 ms,
@@ -106,10 +67,11 @@ sf_status sf_region_parse(const char *text, sf_region *region, sf_error *err);
 /* "0-10,10-16,16-30" in ms; `*regions` from sf_alloc, owned by the caller. */
 sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count, sf_error *err);
 
-/* Instant at which contact begins: the straight line through the points where the curve last rises through 2
- * % and 10 % of its peak, before the peak, extrapolated to zero. SF_ERR_INPUT naming `name` if the curve has
+/* Instant at which contact begins: the straight line through the points where the curve, less its value `zero`
+ * (g) before contact, last rises through 2 % and 10 % of its peak, before the peak, extrapolated to that zero. SF_ERR_INPUT naming `name` if the curve has
  * no such rise. */
-sf_status sf_contact_instant(const sf_series *curve, const char *name, double *instant, sf_error *err);
+sf_status sf_contact_instant(const sf_series *curve, const char *name, double zero, double *instant,
+                             sf_error *err);
 
 /* The rows of an sf_fit; static storage. */
 sf_rows sf_fit_rows(void);

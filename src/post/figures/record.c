@@ -121,20 +121,21 @@ static double cut_value(const record *r) {
 }
 
 /* The first half of what precedes the pulse: its foot lies in the other. */
-static double base_before(const record *r) {
+static double base_before(const record *r, const sf_series *series) {
     int64_t count = r->begins ? r->begin / 2 : 0;
-    return count < LEAST_BASE ? NAN : median_of(r->raw->value, count, r->work);
+    return count < LEAST_BASE ? NAN : median_of(series->value, count, r->work);
 }
 
 static double offset_value(const record *r) {
-    return fabs(base_before(r)) / r->peak;
+    return fabs(base_before(r, r->raw)) / r->peak;
 }
 
 static double drift_value(const record *r) {
     int64_t after = r->raw->count - r->end, count = r->ends ? after / 4 : 0;
     if (count < LEAST_BASE)
         return NAN;
-    return fabs(median_of(&r->raw->value[r->raw->count - count], count, r->work) - base_before(r)) / r->peak;
+    return fabs(median_of(&r->raw->value[r->raw->count - count], count, r->work) - base_before(r, r->raw)) /
+           r->peak;
 }
 
 static double gap_value(const record *r) {
@@ -218,12 +219,12 @@ sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double o
     return SF_OK;
 }
 
-sf_status sf_record_offset(const sf_series *raw, double *offset, sf_error *err) {
+sf_status sf_record_offset(const sf_series *raw, const sf_series *axis, double *offset, sf_error *err) {
     record r;
     *offset = NAN;
     if (record_open(raw, raw, &r, err) != SF_OK)
         return err->status;
-    *offset = base_before(&r);
+    *offset = base_before(&r, axis);
     record_free(&r);
     return SF_OK;
 }

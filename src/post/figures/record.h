@@ -47,8 +47,9 @@ typedef struct sf_record_verdict {
 sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double other,
                           sf_record_verdict *verdict, sf_error *err);
 
-/* Median of the samples before contact (g); NaN: there are too few. */
-sf_status sf_record_offset(const sf_series *raw, double *offset, sf_error *err);
+/* Median of the samples of `axis` (g) before the pulse that `raw` has at the same times; NaN: there are too
+ * few. */
+sf_status sf_record_offset(const sf_series *raw, const sf_series *axis, double *offset, sf_error *err);
 
 /* The impacts of a record: pulses above 20 % of the highest, with less than 10 % between them for
  * 5 ms or longer, which no ringing or noise is. */

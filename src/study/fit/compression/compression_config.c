@@ -117,6 +117,14 @@ static sf_status read_keys(const sf_config *file, const config_setting_t *entry,
     SF_TRY(read_rate(file, entry, specimen.thickness, &source->rate, err));
     SF_TRY(sf_config_flag(file, entry, "toe_correction", &source->toe, err));
     SF_TRY(sf_config_choice(file, entry, "invert", "none|strain|stress|both", &invert, err));
+    SF_TRY(sf_config_quantity(file, entry, "contact_force", SF_FORCE, false, 0, &source->contact_force, err));
+    SF_TRY(sf_config_text(file, entry, "specimen_number", false, &source->specimen, err));
+    SF_TRY(sf_config_text(file, entry, "cycle", false, &source->cycle, err));
+    SF_TRY(sf_config_text(file, entry, "heading", false, &source->heading, err));
+    if (source->contact_force > 0 && !(specimen.area > 0))
+        return sf_config_refuse(file, config_setting_get_member(entry, "contact_force"), err,
+                                "contact_force is given: the test must have force and displacement of a "
+                                "specimen with an area");
     source->invert = (sf_inversion)invert;
     source->area = specimen.area;
     source->thickness = specimen.thickness;
@@ -132,7 +140,7 @@ sf_status sf_compression_source_read(const sf_config *file, const config_setting
 static sf_status read_source(const sf_config *file, const config_setting_t *entry,
                              const sf_compression_config *c, sf_compression_source *source, sf_error *err) {
     *source = (sf_compression_source){.toe = c->toe};
-    SF_TRY(sf_config_names(file, entry, "file|rate|specimen|toe_correction|invert", err));
+    SF_TRY(sf_config_names(file, entry, "file|" SF_COMPRESSION_SOURCE_KEYS, err));
     return read_keys(file, entry, c->specimen, source, err);
 }
 

@@ -58,8 +58,9 @@ const char *sf_rate_model_name(sf_rate_model model);
 sf_status sf_compression_config_read(const char *path, sf_compression_config *config, sf_error *err);
 void sf_compression_config_free(sf_compression_config *config);
 
-/* The keys `rate`, `specimen`, `toe_correction` and `invert` of one test, for other files with such tests;
- * `path` is the caller's. */
+/* The keys of one test beside its file, for other files with such tests; `path` is the caller's. */
+#define SF_COMPRESSION_SOURCE_KEYS                                                                           \
+    "rate|specimen|specimen_number|cycle|heading|contact_force|toe_correction|invert"
 sf_status sf_compression_source_read(const sf_config *file, const config_setting_t *entry,
                                      sf_compression_source *source, sf_error *err);
 

@@ -11,18 +11,11 @@
 
 static const double STRAIN_ZERO = 2e-3; /* strains from minus this on are zero with scatter */
 static const double STRESS_ZERO = 0.01; /* stresses likewise, as a part of the largest */
-static const double JITTER = 5e-4;      /* strain by which scatter may turn it back */
 static const double SMALL_STRAIN = 0.1; /* a test must reach it */
 static const double SLACK = 0.005;      /* part of the largest stress that scatter may make */
 static const double FALL = 0.1;         /* part of the stress that may be lost while loading */
 static const double ABOVE = 0.05;       /* part by which unloading may lie above loading */
-
-/* Bounds of the toe correction. */
-static const double TOE_RANGE = 0.15;  /* strain up to which the steepest part is looked for */
-static const double TOE_WIDTH = 0.01;  /* strain of that part, with TOE_POINTS points at least */
-static const double TOE_LARGEST = 0.1; /* strain that it may take away */
-static const double EQUAL = 1e-6;      /* relative difference of slopes that counts as none */
-enum { TOE_POINTS = 5 };
+static const double TENSION = 0.05;     /* part of the largest stress that unloading may end below zero */
 
 void sf_compression_test_free(sf_compression_test *test) {
     free(test->path);
@@ -59,6 +52,17 @@ static sf_table_layout machine_layout(void) {
     };
 }
 
+/* A cycle that no column numbers is one of the strain. */
+static sf_status take_parts(const sf_compression_source *source, const sf_table *table,
+                            sf_compression_test *t, sf_error *err) {
+    if (source->specimen && !table->part_taken[SF_TABLE_SPECIMEN])
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s holds one specimen, not several to choose from: leave specimen_number out",
+                       t->path);
+    t->cycle = source->cycle && table->part_taken[SF_TABLE_CYCLE];
+    return SF_OK;
+}
+
 /* Displacement and force become strain and stress. */
 static sf_status take_terms(const sf_compression_source *source, bool machine, const sf_table *table,
                             table_terms *t, sf_error *err) {
@@ -85,7 +89,9 @@ static sf_status check_row(const sf_compression_test *t, int i, const table_term
                        "%s:%d: strain %g is not below 1; if it is in percent, name the column strain_percent",
                        t->path, t->line[i], written);
     if (strain >= 1)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s %g means a strain of %g %%, which is not below 100 %%",
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s:%d: %s %g means a strain of %g %%, which is not below 100 %% (contact_force = "
+                       "\"2 N\" sets the zero of a crosshead's position)",
                        t->path, t->line[i], name, written, 100 * strain);
     if (strain < -STRAIN_ZERO)
         return SF_FAIL(
@@ -93,6 +99,35 @@ static sf_status check_row(const sf_compression_test *t, int i, const table_term
             "%s:%d: %s %g is negative; compression must be positive (invert = \"...\" in the file that "
             "names the test changes the sign)",
             t->path, t->line[i], name, written);
+    return SF_OK;
+}
+
+/* Displacement counts from where the force first rises to the contact force and stays above it up to its
+ * largest value; what the crosshead did before is left out. */
+static sf_status begin_at_contact(const sf_compression_source *source, sf_compression_test *t,
+                                  sf_error *err) {
+    double contact = source->contact_force / source->area;
+    int top = 0, first = 0;
+    for (int i = 0; i < t->count; i++)
+        top = t->stress[i] > t->stress[top] ? i : top;
+    for (first = top; first > 0 && t->stress[first - 1] >= contact;)
+        first--;
+    if (!(source->area > 0) || first == 0 || t->stress[top] < contact)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: the force does not rise to %g N (contact_force) from below in this file: the "
+                       "displacement has no zero there",
+                       t->path, source->contact_force);
+    double part = (contact - t->stress[first - 1]) / (t->stress[first] - t->stress[first - 1]);
+    double zero = t->strain[first - 1] + part * (t->strain[first] - t->strain[first - 1]);
+    int kept = 0;
+    for (int i = first; i < t->count; i++) {
+        if (i > top && t->strain[i] < zero) /* the crosshead leaves the specimen */
+            continue;
+        t->strain[kept] = t->strain[i] - zero;
+        t->stress[kept] = t->stress[i];
+        t->line[kept++] = t->line[i];
+    }
+    t->count = kept;
     return SF_OK;
 }
 
@@ -111,6 +146,10 @@ static sf_status take_table(const sf_compression_source *source, const table_ter
     for (int i = 0; i < t->count; i++) {
         t->strain[i] *= factor[0];
         t->stress[i] *= factor[1];
+    }
+    if (source->contact_force > 0)
+        SF_TRY(begin_at_contact(source, t, err));
+    for (int i = 0; i < t->count; i++) {
         if (check_row(t, i, terms, err) != SF_OK)
             return err->status;
         t->largest_strain = fmax(t->largest_strain, t->strain[i]);
@@ -119,91 +158,15 @@ static sf_status take_table(const sf_compression_source *source, const table_ter
     return SF_OK;
 }
 
-/* ---- toe ---- */
-
-/* Straight line through the points first to last of a branch: slope, and strain at zero stress. */
-static double line_through(const sf_compression_test *t, int first, int last, double *zero) {
-    double n = last - first + 1, strain = 0, stress = 0, product = 0, square = 0;
-    for (int i = first; i <= last; i++) {
-        strain += t->strain[i] / n;
-        stress += t->stress[i] / n;
-    }
-    for (int i = first; i <= last; i++) {
-        product += (t->strain[i] - strain) * (t->stress[i] - stress);
-        square += (t->strain[i] - strain) * (t->strain[i] - strain);
-    }
-    double slope = square > 0 ? product / square : 0;
-    *zero = slope > 0 ? strain - stress / slope : 0;
-    return slope;
-}
-
-/* The window of loading, below TOE_RANGE, in which the stress rises most steeply. False without a window. */
-static bool steepest(const sf_compression_test *t, int *first, int *last, double *zero, bool *at_end) {
-    double best = 0;
-    for (int i = 0, k = 0; i < t->loading && t->strain[i] <= TOE_RANGE; i++) {
-        double crossing;
-        while (k < t->loading - 1 && (t->strain[k] < t->strain[i] + TOE_WIDTH || k < i + TOE_POINTS - 1))
-            k++;
-        if (k < i + TOE_POINTS - 1 || t->strain[k] > TOE_RANGE)
-            break;
-        double slope = line_through(t, i, k, &crossing);
-        *at_end = slope > (1 + EQUAL) * best;
-        if (*at_end) {
-            best = slope;
-            *first = i;
-            *last = k;
-            *zero = crossing;
-        }
-    }
-    return best > 0;
-}
-
-/* Removes points of the toe and shifts the strain. */
-static void shift_zero(sf_compression_test *t, int first, double zero) {
-    int to = 0, loading = 0;
-    for (int i = first; i < t->count; i++) {
-        if (t->strain[i] < zero)
-            continue;
-        t->strain[to] = t->strain[i] - zero;
-        t->stress[to] = t->stress[i];
-        t->line[to++] = t->line[i];
-        loading += i < t->loading;
-    }
-    t->count = to;
-    t->loading = loading;
-    t->toe = zero;
-    t->largest_strain -= zero;
-}
-
-static sf_status correct_toe(sf_compression_test *t, sf_error *err) {
-    int first = 0, last = 0;
-    double zero = 0;
-    bool at_end = false;
-    if (!steepest(t, &first, &last, &zero, &at_end) || at_end)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: the toe cannot be corrected: loading has no steepest straight part below a strain of "
-            "%g %% (leave toe_correction out)",
-            t->path, 100 * TOE_RANGE);
-    if (zero > TOE_LARGEST)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: the toe correction would be a strain of %.3g %%, more than %g %%: cut the approach off "
-            "the file",
-            t->path, 100 * zero, 100 * TOE_LARGEST);
-    if (zero > 0)
-        shift_zero(t, first, zero);
-    return SF_OK;
-}
-
 /* ---- checks of the whole ---- */
 
-/* A fall of more than JITTER below what was reached, before the largest strain: the strain turns twice. */
+/* A fall of more than SF_COMPRESSION_JITTER below what was reached, before the largest strain: the strain
+ * turns twice. */
 static sf_status check_rise(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
     double highest = t->count > 0 ? t->strain[0] : 0;
     for (int i = 1; i < t->loading; i++) {
         highest = fmax(highest, t->strain[i]);
-        if (t->strain[i] >= highest - JITTER)
+        if (t->strain[i] >= highest - SF_COMPRESSION_JITTER)
             continue;
         int again = i + 1; /* there is one, as the largest strain follows */
         while (again < t->loading - 1 && t->strain[again] <= t->strain[again - 1])
@@ -221,7 +184,7 @@ static sf_status check_fall(const sf_compression_test *t, const table_terms *ter
     double lowest = INFINITY;
     for (int i = t->loading; i < t->count; i++) {
         lowest = fmin(lowest, t->strain[i]);
-        if (t->strain[i] > lowest + JITTER)
+        if (t->strain[i] > lowest + SF_COMPRESSION_JITTER)
             return SF_FAIL(
                 err, SF_ERR_INPUT,
                 "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
@@ -250,10 +213,11 @@ static int sort_branch(sf_compression_test *t, int first, int end, double sign) 
     return moved;
 }
 
-/* Loading lasts until the largest strain. Jitter of the displacement is sorted out. */
+/* Loading lasts until the largest strain, and the largest stress where that stands twice. Jitter of the
+ * displacement is sorted out. */
 static sf_status split_branches(sf_compression_test *t, const table_terms *terms, sf_error *err) {
     for (int i = 0; i < t->count; i++)
-        if (t->strain[i] >= t->largest_strain)
+        if (t->strain[i] >= t->largest_strain && (!t->loading || t->stress[i] > t->stress[t->loading - 1]))
             t->loading = i + 1;
     SF_TRY(check_rise(t, terms, err));
     SF_TRY(check_fall(t, terms, err));
@@ -279,12 +243,16 @@ static sf_status check_size(const sf_compression_test *t, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status check_sign(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
+static sf_status check_sign(sf_compression_test *t, const table_terms *terms, sf_error *err) {
     double size = 0;
     for (int i = 0; i < t->count; i++)
         size = fmax(size, fabs(t->stress[i]));
     if (!(size > 0))
         return SF_FAIL(err, SF_ERR_INPUT, "%s: the stress is zero everywhere", t->path);
+    for (int i = t->count - 1; i >= t->loading && t->stress[i] < 0 && t->stress[i] > -TENSION * size; i--) {
+        t->tension += t->stress[i] < -STRESS_ZERO * size;
+        t->stress[i] = fmax(t->stress[i], -STRESS_ZERO * size);
+    }
     for (int i = 0; i < t->count; i++)
         if (t->stress[i] < -STRESS_ZERO * size)
             return SF_FAIL(
@@ -341,9 +309,13 @@ static sf_status check_unloading(const sf_compression_test *t, const table_terms
 
 static sf_status check_test(const sf_compression_source *source, sf_compression_test *t,
                             const table_terms *terms, sf_error *err) {
+    SF_TRY(sf_compression_take_cycle(t->cycle ? NULL : source->cycle, t, err));
+    sf_compression_leave_rests_out(t);
     SF_TRY(split_branches(t, terms, err));
     if (source->toe)
-        SF_TRY(correct_toe(t, err));
+        SF_TRY(sf_compression_correct_toe(t, err));
+    else
+        sf_compression_note_preload(t);
     SF_TRY(check_size(t, err));
     SF_TRY(check_sign(t, terms, err));
     SF_TRY(check_loading(t, terms, err));
@@ -381,29 +353,60 @@ static void condense(sf_compression_test *t) {
 static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
                      sf_compression_test *t) {
     static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};
-    char specimen[96] = "", toe[64] = "", sorted[64] = "";
+    char specimen[96] = "", toe[64] = "", sorted[64] = "", left_out[320] = "";
+    size_t used = 0, size = sizeof left_out;
+    if (t->cycles > 1)
+        used += (size_t)snprintf(left_out + used, size - used, ", cycle %d of %d", t->cycle, t->cycles);
+    if (source->contact_force > 0)
+        used += (size_t)snprintf(left_out + used, size - used, ", zero at a force of %.4g N",
+                                 source->contact_force);
+    if (t->dwell > 0)
+        used += (size_t)snprintf(
+            left_out + used, size - used,
+            ", without %d points of a rest under strain, during which the stress relaxed", t->dwell);
+    if (t->tension > 0)
+        used += (size_t)snprintf(left_out + used, size - used,
+                                 ", %d points in tension at the end set to zero", t->tension);
+    if (t->preload > 0)
+        snprintf(
+            left_out + used, size - used,
+            ", begins under a load that stands for a strain of %.3g %% (preload or zero of the load cell: "
+            "toe_correction takes it away)",
+            100 * t->preload);
     if (t->sorted > 0)
         snprintf(sorted, sizeof sorted, ", jitter of %d points sorted", t->sorted);
     if (machine)
         snprintf(specimen, sizeof specimen, ", over %.5g mm2 and %.5g mm", 1e6 * source->area,
                  1e3 * source->thickness);
     if (source->toe)
-        snprintf(toe, sizeof toe, ", toe of %.3g %% taken away", 100 * t->toe);
+        snprintf(toe, sizeof toe,
+                 t->toe < 0 ? ", %.3g %% added that a preload had hidden" : ", toe of %.3g %% taken away",
+                 100 * fabs(t->toe));
     snprintf(t->interpretation, sizeof t->interpretation,
-             "%.383s%s, %d points of loading and %d of unloading%s%s%s, %.4g 1/s", table->interpretation,
-             specimen, t->loading, t->count - t->loading, inverted[source->invert], sorted, toe, t->rate);
+             "%.383s%s, %d points of loading and %d of unloading%s%s%s%s, %.4g 1/s", table->interpretation,
+             specimen, t->loading, t->count - t->loading, inverted[source->invert], left_out, sorted, toe,
+             t->rate);
 }
 
 sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,
                                    sf_error *err) {
     *test = (sf_compression_test){.path = strdup(source->path), .rate = source->rate};
-    const sf_table_layout layouts[2] = {sf_case_curve_layout("test", NULL), machine_layout()};
+    sf_table_layout layouts[2] = {sf_case_curve_layout("test", NULL), machine_layout()};
     sf_table table = {0};
     table_terms terms;
     int which;
     if (!test->path)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", source->path);
+    for (int k = 0; k < 2; k++) {
+        layouts[k].part[SF_TABLE_SPECIMEN] = source->specimen;
+        layouts[k].part[SF_TABLE_CYCLE] = source->cycle;
+        layouts[k].part_option[SF_TABLE_SPECIMEN] = "specimen_number = \"N\"";
+        layouts[k].part_option[SF_TABLE_CYCLE] = "cycle = \"N\"";
+        layouts[k].heading = source->heading;
+        layouts[k].heading_option = "heading = \"...\"";
+    }
     if (sf_table_read_any(source->path, layouts, 2, &which, &table, err) == SF_OK &&
+        take_parts(source, &table, test, err) == SF_OK &&
         take_terms(source, which == 1, &table, &terms, err) == SF_OK &&
         take_table(source, &terms, &table, test, err) == SF_OK &&
         check_test(source, test, &terms, err) == SF_OK) {

@@ -7,6 +7,10 @@
  * Toe correction (ISO 844, ASTM D1621): the steepest straight part at small strains is extended to zero
  * stress; strain counts from there. The points before that part are left out.
  *
+ * What is no loading or unloading of the law is left out, and told in `interpretation`: cycles but one, rests
+ * at constant strain during which the stress relaxes, tension at the end of unloading. A stress at the start,
+ * of a preload, is corrected with the toe, and told without.
+ *
  * Of a branch with more than SF_COMPRESSION_BRANCH_POINTS points the means of neighbours are kept: they hold
  * as much about the law, and the fit stays quick. The turn is kept as it is. */
 #ifndef SF_FIT_COMPRESSION_TEST_H
@@ -31,6 +35,10 @@ typedef struct sf_compression_source {
     double thickness; /* m; 0: unknown */
     bool toe;         /* correct the toe */
     sf_inversion invert;
+    double contact_force;         /* N, displacement is zero where the force rises to it; 0: as in the file */
+    const char *specimen, *cycle; /* of a file that holds several (io/table_heading.h); NULL: the only one,
+                                     and the first cycle */
+    const char *heading;          /* of a file without one; NULL */
 } sf_compression_source;
 
 typedef struct sf_compression_test {
@@ -44,16 +52,38 @@ typedef struct sf_compression_test {
     double largest_strain; /* - */
     double largest_stress; /* Pa */
     int sorted;            /* points that jitter of the strain had put out of order */
-    double toe;            /* -, strain that the correction took away */
+    double toe;            /* -, strain that the correction took away; negative: that a preload hid */
+    int cycle, cycles;     /* the cycle that was taken, of those in the strain; 0: there is one */
+    int dwell;             /* points of rests under strain that were left out */
+    int tension;           /* points at the end of unloading whose stress below zero was taken for zero */
+    double preload;        /* -, strain that the stress at the start stands for, if it was not corrected */
     char interpretation[SF_COMPRESSION_INTERPRETATION]; /* how the file was read, for the report */
 } sf_compression_test;
 
 /* Reads and checks a test. SF_ERR_INPUT names file, line and value: negative strain or stress, strain of 1 or
- * more, strain that turns twice, stress that falls by more than a tenth while loading, unloading above
+ * more, a cycle that is not there, stress that falls by more than a tenth while loading, unloading above
  * loading, too few points, too small a compression; displacement and force without area and thickness; a toe
  * that cannot be found or is longer than a tenth of the thickness. On failure `*test` is zeroed. */
 sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,
                                    sf_error *err);
 void sf_compression_test_free(sf_compression_test *test);
+
+/* ---- internal: test_shape.c ---- */
+
+/* Keeps one cycle of the strain: that of the number, or the first of several. SF_ERR_INPUT: there is none of
+ * this number. Needs strain, stress, line and largest strain. */
+sf_status sf_compression_take_cycle(const char *chosen, sf_compression_test *test, sf_error *err);
+
+/* Leaves out the rests: at least three points within the jitter of the strain while the stress falls by 2 %.
+ */
+void sf_compression_leave_rests_out(sf_compression_test *test);
+
+/* The strain counts from where the toe (steepest straight part) or a preload puts its zero. */
+sf_status sf_compression_correct_toe(sf_compression_test *test, sf_error *err);
+
+/* Notes a preload that nobody corrects: a stress at the start that stands for a strain of 0.1 % or more. */
+void sf_compression_note_preload(sf_compression_test *test);
+
+extern const double SF_COMPRESSION_JITTER; /* strain by which scatter may turn it back */
 
 #endif

@@ -57,7 +57,7 @@ static sf_status filter_like_measured(const sf_series *curve, double cfc, sf_ser
 
 static sf_status take_samples(const sf_fit_drop *drop, const sf_series *curve, double *y, sf_error *err) {
     double contact = 0, end = curve->time[curve->count - 1];
-    if (sf_contact_instant(curve, drop->name, &contact, err) != SF_OK)
+    if (sf_contact_instant(curve, drop->name, 0, &contact, err) != SF_OK)
         return err->status;
     for (int k = 0; k < drop->samples; k++) {
         double time = contact + drop->sample_time[k];

@@ -9,6 +9,7 @@
 
 #include "io/plain_file.h"
 #include "post/figures/compare.h"
+#include "post/figures/record.h"
 
 void sf_drop_values_scale(const sf_columns_figures *v, double y[SF_FIT_SAMPLES]) {
     y[SF_FIT_A_MAX] = log(v->a_max_g);
@@ -26,12 +27,21 @@ static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are 
 /* Samples from contact on, where the curve is above the level. */
 static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *drop, sf_error *err) {
     sf_reference reference;
-    double contact = 0, peak = 0;
+    sf_record_verdict record;
+    char line[SF_VERDICT_LINE_SIZE];
+    double contact = 0, peak = 0, zero = NAN;
     if (sf_reference_read(options, &reference, err) != SF_OK)
         return err->status;
     const sf_series *curve = &reference.curve;
-    snprintf(drop->interpretation, sizeof drop->interpretation, "%s", reference.interpretation);
-    if (sf_contact_instant(curve, options->path, &contact, err) != SF_OK)
+    if (sf_record_judge(&reference.raw, curve, reference.other, &record, err) != SF_OK)
+        goto done;
+    sf_record_line(&record, line, sizeof line);
+    snprintf(drop->interpretation, sizeof drop->interpretation, "%.600s; record: %.400s",
+             reference.interpretation, line);
+    if (record.grade == SF_GRADE_DO_NOT_USE)
+        SF_FAIL(err, SF_ERR_INPUT, "%s: a foam cannot be fitted to this record: %s", options->path, line);
+    if (err->status != SF_OK || sf_record_offset(&reference.raw, &reference.raw, &zero, err) != SF_OK ||
+        sf_contact_instant(curve, options->path, isnan(zero) ? 0 : zero, &contact, err) != SF_OK)
         goto done;
     drop->sample_time = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
     drop->sample_value = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
@@ -58,12 +68,22 @@ static sf_status read_curve(const sf_config *config, const config_setting_t *gro
     static const double classes[] = {0, 60, 180, 600, 1000};
     sf_reference_options o = {.column_option = "curve_column = \"...\"",
                               .unfiltered_option = "curve_filter = \"none\"",
-                              .invert_option = "curve_invert = true"};
+                              .invert_option = "curve_invert = true",
+                              .heading_option = "curve_heading = \"...\""};
     sf_error inner = SF_ERROR_INIT;
     int class = 4;
+    const char *scale = NULL, *rate = NULL;
     SF_TRY(sf_config_choice(config, group, "curve_filter", "none|60|180|600|1000", &class, err));
     SF_TRY(sf_config_text(config, group, "curve_column", false, &o.column, err));
     SF_TRY(sf_config_flag(config, group, "curve_invert", &o.invert, err));
+    SF_TRY(sf_config_flag(config, group, "curve_zero", &o.zero, err));
+    SF_TRY(sf_config_text(config, group, "curve_columns", false, &o.columns, err));
+    SF_TRY(sf_config_text(config, group, "curve_heading", false, &o.heading, err));
+    SF_TRY(sf_config_text(config, group, "curve_scale", false, &scale, err));
+    SF_TRY(sf_config_text(config, group, "curve_rate", false, &rate, err));
+    if ((scale && sf_reference_parse_sensitivity(scale, &o.sensitivity, &inner) != SF_OK) ||
+        (rate && sf_reference_parse_rate(rate, &o.rate, &inner) != SF_OK))
+        return sf_config_refuse(config, group, err, "%s", inner.text);
     SF_TRY(sf_config_file(config, group, "curve", false, &drop->curve_path, err));
     if (!drop->curve_path)
         return SF_OK;
@@ -211,7 +231,7 @@ sf_status sf_drop_input_read(const sf_config *config, const config_setting_t *gr
                              int count, sf_fit_drop *drop, sf_error *err) {
     static const char *const names[2] = {
         "name|case|" SF_DROP_KINDS(
-            KIND_KEYS) "HIC_window_resolution_ms|speed_sd|curve|curve_sd|curve_filter|curve_column|curve_invert",
+            KIND_KEYS) "HIC_window_resolution_ms|speed_sd|curve|curve_sd|curve_filter|curve_column|curve_columns|curve_heading|curve_scale|curve_rate|curve_invert|curve_zero",
         "name|case"};
     sf_fit_drop *last = &drop[count];
     *last = (sf_fit_drop){.predicted = predicted};

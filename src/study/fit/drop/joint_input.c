@@ -119,7 +119,7 @@ static sf_status read_test(const sf_config *config, const config_setting_t *entr
     sf_compression_source source;
     char *path = NULL;
     *test = (sf_joint_test){.sd = 0.05};
-    SF_TRY(sf_config_names(config, entry, "name|file|rate|specimen|toe_correction|invert|sd", err));
+    SF_TRY(sf_config_names(config, entry, "name|file|sd|" SF_COMPRESSION_SOURCE_KEYS, err));
     SF_TRY(read_name(config, entry, "compression", joint->test_count + 1, test->name, err));
     SF_TRY(sf_config_number(config, entry, "sd", false, 1e-3, 1, &test->sd, err));
     SF_TRY(sf_compression_source_read(config, entry, &source, err));

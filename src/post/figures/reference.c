@@ -1,0 +1,466 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/figures/reference.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "base/units.h"
+#include "io/table_csv.h"
+
+enum { FEWEST_POINTS = 3 };
+static const double SAMPLES_PER_CLASS = 10; /* least sampling rate over the class (SAE J211) */
+static const double ROUNDING = 1.05;        /* of written times: 0.105 ms counts as 0.1 ms */
+static const double UNEVEN = 1.5; /* largest over mean distance of samples that are told as uneven */
+
+/* The columns of the file while it becomes a reference. */
+typedef struct record {
+    const sf_reference_options *options;
+    int axes;                          /* 1: the acceleration itself */
+    sf_series axis[SF_REFERENCE_AXES]; /* s and g; owned */
+    int *line;                         /* of the samples, in the file; owned */
+    char interpretation[SF_TABLE_INTERPRETATION];
+} record;
+
+static void record_free(record *r) {
+    for (int k = 0; k < SF_REFERENCE_AXES; k++)
+        sf_series_free(&r->axis[k]);
+    free(r->line);
+}
+
+/* ---- options ---- */
+
+/* A number and a unit; a "/g" at the end of the unit means per standard gravity. */
+sf_status sf_reference_parse_sensitivity(const char *text, double *sensitivity, sf_error *err) {
+    size_t length = strlen(text);
+    bool per_g = length > 2 && length < 64 && strcmp(text + length - 2, "/g") == 0;
+    char volts[64];
+    sf_units *units;
+    SF_TRY(sf_units_open(&units, err));
+    snprintf(volts, sizeof volts, "%.*s", (int)(length - 2), per_g ? text : "");
+    if (per_g && sf_units_parse(units, volts, SF_VOLTAGE, sensitivity, err) == SF_OK)
+        *sensitivity /= SF_STANDARD_GRAVITY;
+    else if (!per_g)
+        sf_units_parse(units, text, SF_SENSITIVITY, sensitivity, err);
+    sf_units_close(&units);
+    if (err->status == SF_OK && !(*sensitivity > 0))
+        SF_FAIL(err, SF_ERR_INPUT, "the sensitivity %s is not above 0 (--reference-invert changes a sign)",
+                text);
+    return err->status;
+}
+
+sf_status sf_reference_parse_rate(const char *text, double *rate, sf_error *err) {
+    static const struct {
+        const char *name;
+        double value;
+    } known[] = {{"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"1/s", 1}};
+    const char *unit = sf_decimal_read(text, rate);
+    unit = unit ? unit + strspn(unit, " ") : "";
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (strcmp(unit, known[k].name) == 0 && *rate > 0 && isfinite(*rate)) {
+            *rate *= known[k].value;
+            return SF_OK;
+        }
+    return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" is not a sampling rate: write for example \"20 kHz\"", text);
+}
+
+/* ---- the file ---- */
+
+static const sf_table_name names[] = {
+    {"time_s", 0, 1, "s"},
+    {"time_ms", 0, 1e-3, "ms"},
+    {"time_us", 0, 1e-6, "us"},
+    {"acceleration_g", 1, 1, "g"},
+    {"acceleration_m_s2", 1, 1 / SF_STANDARD_GRAVITY, "m/s2"},
+    {"acceleration_km_s2", 1, 1e3 / SF_STANDARD_GRAVITY, "km/s2"},
+};
+
+static sf_status check_point(const sf_table_point *p, sf_error *err) {
+    if (p->index > 0 && !(p->value[0] > p->before[0]))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: time %g ms does not follow %g ms of the row before",
+                       p->path, p->line, p->value[0] * 1e3, p->before[0] * 1e3);
+    return SF_OK;
+}
+
+static sf_table_layout layout_of(const sf_reference_options *o, const char *column) {
+    sf_table_layout layout = {
+        .what = "reference",
+        .column = {"time", "acceleration"},
+        .wanted = {"time_s, time_ms or time_us (or \"Time (ms)\")",
+                   "acceleration_g, acceleration_m_s2 or acceleration_km_s2 (or \"Acceleration (g)\")"},
+        .names = names,
+        .name_count = sizeof names / sizeof *names,
+        .words = {"time|t|*zeit|temps|tiempo|tempo",
+                  "acceleration|deceleration|accel|acc|a|*beschleunigung|accélération|aceleración|"
+                  "accelerazione"},
+        .kind = {SF_TIME, SF_ACCELERATION},
+        .unit = {1, SF_STANDARD_GRAVITY},
+        .chosen = {NULL, column},
+        .choice = o->column_option,
+        .heading = o->heading,
+        .heading_option = o->heading_option,
+        .ragged = true,
+        .check = check_point,
+    };
+    if (o->sensitivity > 0) {
+        layout.column[1] = "voltage";
+        layout.wanted[1] = "\"Voltage (mV)\"";
+        layout.words[1] = "voltage|volt|volts|u|channel|ch|signal|output|acceleration|accel|acc|a|*spannung|"
+                          "tension|tensión|tensione";
+        layout.kind[1] = SF_VOLTAGE;
+        layout.unit[1] = o->sensitivity * SF_STANDARD_GRAVITY;
+    }
+    return layout;
+}
+
+/* One column; of a file whose rate is given, over the number of the sample. */
+static sf_status read_column(const sf_reference_options *o, const char *column, sf_table *table,
+                             sf_error *err) {
+    sf_table_layout layouts[2] = {layout_of(o, column), layout_of(o, column)};
+    int which = 0;
+    if (!(o->rate > 0))
+        return sf_table_read(o->path, layouts, table, err);
+    sf_error inner = SF_ERROR_INIT;
+    if (sf_table_read(o->path, layouts, table, &inner) == SF_OK) {
+        sf_table_free(table);
+        return SF_FAIL(err, SF_ERR_INPUT, "%s has a column of time: leave its sampling rate out", o->path);
+    }
+    layouts[1].counted = true;
+    layouts[1].column[0] = "sample";
+    layouts[1].unit[0] = 1 / o->rate;
+    return sf_table_read_any(o->path, &layouts[1], 1, &which, table, err);
+}
+
+/* Keeps the samples of the axes before that `table` holds too: others were lost in one of the axes. */
+static void keep_common(record *r, sf_table *table) {
+    int64_t kept = 0, i = 0;
+    for (int64_t k = 0; k < table->count; k++) {
+        while (i < r->axis[0].count && r->line[i] < table->line[k])
+            i++;
+        if (i == r->axis[0].count || r->line[i] != table->line[k])
+            continue;
+        for (int a = 0; a < r->axes; a++) {
+            r->axis[a].time[kept] = r->axis[a].time[i];
+            r->axis[a].value[kept] = r->axis[a].value[i];
+        }
+        r->line[kept] = r->line[i];
+        table->value[0][kept] = table->value[0][k];
+        table->value[1][kept++] = table->value[1][k];
+    }
+    table->count = kept;
+    for (int a = 0; a < r->axes; a++)
+        r->axis[a].count = kept;
+}
+
+static sf_status read_axis(record *r, const char *column, sf_error *err) {
+    sf_table table;
+    SF_TRY(read_column(r->options, column, &table, err));
+    if (r->axes > 0)
+        keep_common(r, &table);
+    r->axis[r->axes++] = (sf_series){.count = table.count, .time = table.value[0], .value = table.value[1]};
+    table.value[0] = table.value[1] = NULL;
+    if (!r->line) {
+        r->line = table.line;
+        table.line = NULL;
+        memcpy(r->interpretation, table.interpretation, sizeof r->interpretation);
+    }
+    sf_table_free(&table);
+    return SF_OK;
+}
+
+static sf_status read_axes(record *r, sf_error *err) {
+    const sf_reference_options *o = r->options;
+    char list[256], *rest = list, *name;
+    if (!o->columns)
+        return read_axis(r, o->column, err);
+    if (snprintf(list, sizeof list, "%s", o->columns) >= (int)sizeof list)
+        return SF_FAIL(err, SF_ERR_INPUT, "the list of columns \"%.40s...\" is too long", o->columns);
+    while ((name = strsep(&rest, ","))) {
+        if (r->axes == SF_REFERENCE_AXES || !name[strspn(name, " ")] || (r->axes == 0 && !rest))
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "\"%s\" is not a list of two or three columns: write their headings, \"x,y,z\"",
+                           o->columns);
+        SF_TRY(read_axis(r, name + strspn(name, " "), err));
+    }
+    return SF_OK;
+}
+
+/* The acceleration itself, or the length of its axes. */
+static sf_status make_resultant(const sf_series *axis, int axes, sf_series *out, sf_error *err) {
+    SF_TRY(sf_series_create(axis->count, out, err));
+    memcpy(out->time, axis->time, (size_t)axis->count * sizeof(double));
+    for (int64_t i = 0; i < axis->count; i++) {
+        double square = 0;
+        for (int k = 0; k < axes; k++)
+            square += axis[k].value[i] * axis[k].value[i];
+        out->value[i] = axes == 1 ? axis->value[i] : sqrt(square);
+    }
+    return SF_OK;
+}
+
+/* ---- the part that is used ---- */
+
+static void cut_series(sf_series *s, int64_t first, int64_t count) {
+    s->count = count;
+    memmove(s->time, s->time + first, (size_t)count * sizeof(double));
+    memmove(s->value, s->value + first, (size_t)count * sizeof(double));
+}
+
+/* Keeps the samples from `from` to `to` (s). */
+static sf_status cut_out(record *r, sf_reference *reference, double from, double to, sf_error *err) {
+    const sf_series *raw = &reference->raw;
+    int64_t first = 0, last = raw->count - 1;
+    while (first < last && raw->time[first] < from)
+        first++;
+    while (last > first && raw->time[last] > to)
+        last--;
+    int64_t count = last - first + 1;
+    if (count < FEWEST_POINTS)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: fewer than %d samples lie from %g to %g ms; it has %g to %g ms", r->options->path,
+                       FEWEST_POINTS, 1e3 * from, 1e3 * to, 1e3 * raw->time[0],
+                       1e3 * raw->time[raw->count - 1]);
+    for (int k = 0; k < r->axes; k++)
+        cut_series(&r->axis[k], first, count);
+    cut_series(&reference->raw, first, count);
+    memmove(r->line, r->line + first, (size_t)count * sizeof *r->line);
+    return SF_OK;
+}
+
+/* The part or the impact that was asked for, and a list of the impacts if there are several. */
+static sf_status choose_part(record *r, sf_reference *reference, sf_error *err) {
+    const sf_reference_options *o = r->options;
+    sf_record_impact impact[SF_RECORD_IMPACTS];
+    char *list = reference->impacts;
+    int count = 0;
+    if (o->from < o->to)
+        SF_TRY(cut_out(r, reference, o->from, o->to, err));
+    SF_TRY(sf_record_find_impacts(&reference->raw, impact, &count, err));
+    size_t used = 0, size = sizeof reference->impacts;
+    for (int k = 0; count > 1 && k < count && used < size; k++)
+        used += (size_t)snprintf(list + used, size - used, "%s%d at %.4g ms (%.4g g)", k ? ", " : "", k + 1,
+                                 1e3 * impact[k].time, impact[k].peak);
+    int chosen = o->impact;
+    for (int k = 0; k < count && o->impact == 0; k++)
+        chosen = chosen == 0 || impact[k].peak > impact[chosen - 1].peak ? k + 1 : chosen;
+    for (int k = 0; k < count && o->impact == 0; k++)
+        if (k + 1 != chosen)
+            reference->other = fmax(reference->other, impact[k].peak / impact[chosen - 1].peak);
+    if (count < 2 && o->impact <= count)
+        return SF_OK;
+    if (o->impact > count)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: impact %d was asked for; it has %d%s%s", o->path, o->impact,
+                       count, count > 1 ? ": " : "", list);
+    return cut_out(r, reference, impact[chosen - 1].begin, impact[chosen - 1].end, err);
+}
+
+/* Begins the clock with the record, where it counts from long before. */
+static void set_clock(record *r, sf_reference *reference) {
+    static const double LONG = 1000; /* s: with it nine digits no longer tell 10 us */
+    double first = reference->raw.time[0];
+    if (fabs(first) < LONG)
+        return;
+    reference->origin = first;
+    for (int64_t i = 0; i < reference->raw.count; i++) {
+        reference->raw.time[i] -= first;
+        for (int k = 0; k < r->axes; k++)
+            r->axis[k].time[i] -= first;
+    }
+}
+
+/* Takes the zero line of each axis away, and forms the resultant anew. */
+static sf_status take_zero_away(record *r, sf_reference *reference, sf_error *err) {
+    sf_series pulse = reference->raw;
+    for (int k = 0; k < r->axes; k++) {
+        double offset = 0;
+        SF_TRY(sf_record_offset(&pulse, &r->axis[k], &offset, err));
+        if (isnan(offset))
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s: too few samples before contact to take the zero line from: leave --reference-zero out",
+                r->options->path);
+        for (int64_t i = 0; i < pulse.count; i++)
+            r->axis[k].value[i] -= offset;
+        reference->offset = r->axes == 1 ? offset : hypot(reference->offset, offset);
+    }
+    reference->raw = (sf_series){0};
+    sf_series_free(&pulse);
+    return make_resultant(r->axis, r->axes, &reference->raw, err);
+}
+
+/* ---- filter ---- */
+
+static double gap_before(const sf_series *s, int64_t i) {
+    return s->time[i] - s->time[i - 1];
+}
+
+static double largest_gap(const sf_series *s) {
+    double gap = 0;
+    for (int64_t i = 1; i < s->count; i++)
+        gap = fmax(gap, gap_before(s, i));
+    return gap;
+}
+
+static sf_status check_sampling(const record *r, const sf_series *raw, sf_error *err) {
+    static const double SHARE = 0.1; /* of the intervals: a gap alone is judged by post/figures/record.h */
+    const sf_reference_options *o = r->options;
+    double most = 1 / (SAMPLES_PER_CLASS * o->cfc);
+    int64_t coarse = 0;
+    for (int64_t i = 1; o->cfc > 0 && i < raw->count; i++)
+        coarse += gap_before(raw, i) > ROUNDING * most;
+    for (int64_t i = 1; (double)coarse > SHARE * (double)raw->count && i < raw->count; i++)
+        if (gap_before(raw, i) > ROUNDING * most)
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s:%d: samples %.4g ms apart are too coarse for CFC %g, which needs %.4g ms (%g kHz) or "
+                "less: choose a lower class, or %s if the curve is filtered already",
+                o->path, r->line[i], gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
+                SAMPLES_PER_CLASS * o->cfc * 1e-3, o->unfiltered_option);
+    return SF_OK;
+}
+
+/* The samples on their own uniform clock, if written times that are rounded are all that speaks against it.
+ */
+static bool take_uniform(const sf_series *raw, sf_series *uniform, sf_error *err) {
+    static const double OFF = 0.05; /* of a step: a time that is rounded */
+    double step = (raw->time[raw->count - 1] - raw->time[0]) / (double)(raw->count - 1);
+    for (int64_t i = 0; i < raw->count; i++)
+        if (fabs(raw->time[i] - raw->time[0] - (double)i * step) > OFF * step)
+            return false;
+    if (sf_series_create(raw->count, uniform, err) != SF_OK)
+        return true;
+    for (int64_t i = 0; i < raw->count; i++)
+        uniform->time[i] = raw->time[0] + (double)i * step;
+    memcpy(uniform->value, raw->value, (size_t)raw->count * sizeof(double));
+    return true;
+}
+
+/* At the record's own rate: interpolation between samples would be a filter of its own. */
+static sf_status filter(double cfc, const sf_series *raw, sf_series *curve, sf_error *err) {
+    sf_series uniform = {0};
+    if (!(cfc > 0))
+        return make_resultant(raw, 1, curve, err); /* as it is */
+    if (!take_uniform(raw, &uniform, err))
+        sf_signal_resample(raw, sf_signal_rate(raw), &uniform, err);
+    if (err->status == SF_OK)
+        sf_signal_filter_cfc(&uniform, cfc, curve, err);
+    sf_series_free(&uniform);
+    return err->status;
+}
+
+static sf_status filter_axes(const record *r, sf_reference *reference, sf_error *err) {
+    sf_series curve[SF_REFERENCE_AXES] = {0};
+    for (int k = 0; k < r->axes && err->status == SF_OK; k++)
+        filter(r->options->cfc, &r->axis[k], &curve[k], err);
+    if (err->status == SF_OK)
+        make_resultant(curve, r->axes, &reference->curve, err);
+    for (int k = 0; k < r->axes; k++)
+        sf_series_free(&curve[k]);
+    return err->status;
+}
+
+/* A braked missile's largest magnitude is positive. */
+static sf_status check_sign(const sf_reference_options *o, const sf_series *curve, sf_error *err) {
+    double high = 0, low = 0;
+    for (int64_t i = 0; i < curve->count; i++) {
+        high = fmax(high, curve->value[i]);
+        low = fmin(low, curve->value[i]);
+    }
+    if (high >= -low)
+        return SF_OK;
+    if (o->invert)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: inverted, the channel's largest magnitude is negative (%.4g g, against %.4g g): the "
+            "file has the right sign, leave %s out",
+            o->path, low, high, o->invert_option);
+    return SF_FAIL(
+        err, SF_ERR_INPUT,
+        "%s: the channel looks inverted: its largest magnitude is negative (%.4g g, against %.4g g), but "
+        "a missile that is slowed down has a positive acceleration; if so, give %s",
+        o->path, low, high, o->invert_option);
+}
+
+/* ---- the whole ---- */
+
+static void add(sf_reference *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void add(sf_reference *r, const char *format, ...) {
+    va_list args;
+    size_t used = strlen(r->interpretation);
+    va_start(args, format);
+    vsnprintf(r->interpretation + used, sizeof r->interpretation - used, format, args);
+    va_end(args);
+}
+
+static void describe(const record *r, sf_reference *reference) {
+    const sf_reference_options *o = r->options;
+    const sf_series *s = &reference->raw;
+    double span = s->time[s->count - 1] - s->time[0], mean = span / (double)(s->count - 1);
+    add(reference, "%s%.383s, %lld samples ", o->heading ? "with a heading that was given for it, " : "",
+        r->interpretation, (long long)s->count);
+    if (largest_gap(s) > UNEVEN * mean)
+        add(reference, "unevenly, up to %.4g ms apart", largest_gap(s) * 1e3);
+    else
+        add(reference, "at %.4g kHz%s", 1e-3 / mean, o->rate > 0 ? " as given" : "");
+    add(reference, ", %.6g to %.6g ms, ", s->time[0] * 1e3, s->time[s->count - 1] * 1e3);
+    if (o->cfc > 0)
+        add(reference, "filtered with CFC %g", o->cfc);
+    else
+        add(reference, "not filtered");
+    if (r->axes > 1)
+        add(reference, ", resultant of the columns %.100s", o->columns);
+    if (o->sensitivity > 0)
+        add(reference, ", at a sensitivity of %.6g mV/(m/s2) as given", 1e3 * o->sensitivity);
+    if (o->invert)
+        add(reference, ", inverted as asked for");
+    if (reference->origin != 0)
+        add(reference, ", its clock begins at %.6f s", reference->origin);
+    if (reference->impacts[0])
+        add(reference, ", of the impacts %s", reference->impacts);
+    if (o->zero)
+        add(reference, ", less %.4g g before contact", reference->offset);
+}
+
+static sf_status make(record *r, sf_reference *reference, sf_error *err) {
+    const sf_reference_options *o = r->options;
+    if (o->columns && (o->column || o->invert))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: columns of axes have a resultant, which has no sign and is the "
+                       "only acceleration: leave %s out",
+                       o->path, o->column ? o->column_option : o->invert_option);
+    SF_TRY(read_axes(r, err));
+    if (r->axis[0].count < FEWEST_POINTS)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s has %lld points, at least %d are needed", o->path,
+                       (long long)r->axis[0].count, FEWEST_POINTS);
+    for (int64_t i = 0; o->invert && i < r->axis[0].count; i++)
+        r->axis[0].value[i] = 0 - r->axis[0].value[i];
+    SF_TRY(make_resultant(r->axis, r->axes, &reference->raw, err));
+    set_clock(r, reference);
+    SF_TRY(choose_part(r, reference, err));
+    if (o->zero)
+        SF_TRY(take_zero_away(r, reference, err));
+    SF_TRY(check_sampling(r, &reference->raw, err));
+    SF_TRY(filter_axes(r, reference, err));
+    SF_TRY(check_sign(o, &reference->curve, err));
+    describe(r, reference);
+    return SF_OK;
+}
+
+sf_status sf_reference_read(const sf_reference_options *options, sf_reference *reference, sf_error *err) {
+    record r = {.options = options};
+    *reference = (sf_reference){0};
+    make(&r, reference, err);
+    record_free(&r);
+    if (err->status != SF_OK)
+        sf_reference_free(reference);
+    return err->status;
+}
+
+void sf_reference_free(sf_reference *reference) {
+    sf_series_free(&reference->raw);
+    sf_series_free(&reference->curve);
+    *reference = (sf_reference){0};
+}
