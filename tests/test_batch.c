@@ -23,7 +23,7 @@
 #include <cmocka.h>
 
 enum { DROPS = 3 };
-static const char *const COARSE = "geometry.parameters.spacing=25", *const SHORT = "solver.end_time=0.1 ms";
+static const char *const COARSE = "geometry.parameters.spacing=25", *const SHORT = "solver.end_time=0.2 ms";
 static const char *const DENSITY[DROPS] = {"material.density=40 kg/m3", "material.density=50 kg/m3",
                                            "material.density=60 kg/m3"};
 static char bin[512], case_path[1024]; /* the programs themselves; the case */

@@ -28,7 +28,7 @@ static int set_up(void **state) {
 }
 
 static bool is_case_finished(const program_place *p, const char *case_path, bool simulate) {
-    static const char *const overrides[] = {"geometry.parameters.spacing=25", "solver.end_time=0.1 ms"};
+    static const char *const overrides[] = {"geometry.parameters.spacing=25", "solver.end_time=0.2 ms"};
     sf_run_folder at;
     sf_error err = SF_ERROR_INIT;
     if (sf_run_folder_name(program_path(p, "runs"), "drop", case_path, 2, overrides, &at, &err) != SF_OK ||
@@ -141,7 +141,7 @@ static void what_an_orphan_left_goes(void **state) {
     const sf_runner_drop drop = {.label = "drop",
                                  .case_path = source,
                                  .override_count = 2,
-                                 .overrides = {"geometry.parameters.spacing=25", "solver.end_time=0.1 ms"}};
+                                 .overrides = {"geometry.parameters.spacing=25", "solver.end_time=0.2 ms"}};
     for (int again = 0; again < 2; again++) {
         sf_error err = SF_ERROR_INIT;
         sf_runner_result result;

@@ -43,7 +43,7 @@ static double read_error(const program_place *p, const char *name) {
 /* A mesh that the case allows is named on stderr, and the files carry the number. */
 static void allowed_coarse_mesh_is_marked(void **state) {
     const program_place *p = *state;
-    program_result r = program_run(p, "pre", "'%s' -o model.h5 %s --set solver.end_time='0.1 ms'",
+    program_result r = program_run(p, "pre", "'%s' -o model.h5 %s --set solver.end_time='0.2 ms'",
                                    fixture_source(EXAMPLE), program_coarse(20));
     assert_int_equal(r.code, 0);
     assert_non_null(
@@ -97,6 +97,29 @@ static void symmetry_leaves_the_zone(void **state) {
     fixture_free(&whole);
 }
 
+/* A plate with a stud of 20 mm that is 10 mm long: the stud's width counts, not that of the plate. */
+static void a_part_that_leads_has_its_own_width(void **state) {
+    const program_place *p = *state;
+    program_write_text(p, "stud.geo",
+                       "SetFactory(\"OpenCASCADE\");\n"
+                       "Box(1) = {-60, -60, 70, 120, 120, 30}; Box(2) = {-10, -10, 60, 20, 20, 20};\n"
+                       "v() = BooleanUnion{ Volume{1}; Delete; }{ Volume{2}; Delete; };\n"
+                       "Physical Volume(\"missile\") = v();\n"
+                       "Physical Surface(\"missile_surface\") = Boundary{ Volume{v()}; };\n"
+                       "Mesh.CharacteristicLengthMax = 10;\n");
+    program_result r = program_succeed(p, "pre",
+                                       "'%s' -o stud.h5 --set geometry.parameters.quarter=0 --set "
+                                       "geometry.missile_file='\"%s\"' --set geometry.parameters.side=200.0 "
+                                       "--set geometry.parameters.zone_side=100.0 --set "
+                                       "'geometry.missile_parameters={}'",
+                                       fixture_source(EXAMPLE), program_path(p, "stud.geo"));
+    const char *at = strstr(r.out, "half width ");
+    double width = at ? strtod(at + strlen("half width "), NULL) : 0;
+    if (!(width > 11 && width < 28))
+        fail_msg("half width %g mm: %s", width, r.out);
+    assert_true(read_error(p, "stud.h5") > 0.01);
+}
+
 /* A prescribed motion has no a_max. */
 static void prescribed_motion_has_no_estimate(void **state) {
     const program_place *p = *state;
@@ -113,6 +136,7 @@ int main(void) {
         cmocka_unit_test(fine_mesh_is_not_named),
         cmocka_unit_test(zone_is_the_disc_of_the_sphere),
         cmocka_unit_test(symmetry_leaves_the_zone),
+        cmocka_unit_test(a_part_that_leads_has_its_own_width),
         cmocka_unit_test(prescribed_motion_has_no_estimate),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

@@ -10,13 +10,13 @@ mkdir "$folder"
 trap 'rm -rf "$folder"' EXIT
 cp -r examples geo "$folder"
 cd "$folder"
-"$bin/softfall-pre" -o m.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.1 ms' examples/compression/case.cfg >/dev/null
+"$bin/softfall-pre" -o m.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' examples/compression/case.cfg >/dev/null
 "$bin/softfall-solve" m.h5 -o r.h5 -t 1 --no-checkpoint >/dev/null 2>&1
 "$bin/softfall-pre" -o h.h5 --set geometry.parameters.spacing=25 examples/compression/vn600.cfg >/dev/null
 "$bin/softfall-pre" -o l.h5 --set 'geometry.parameters={side=50.0; zone_side=50.0; lower=25.0; upper=25.0; cover=25.0; fine_spacing=25.0; quarter=1;}' \
-    --set pad.mesh_error_limit=10 --set 'pad.sliding_interfaces=["cover/upper"]' --set 'solver.end_time=0.1 ms' examples/layers/case.cfg >/dev/null 2>&1
+    --set pad.mesh_error_limit=10 --set 'pad.sliding_interfaces=["cover/upper"]' --set 'solver.end_time=0.2 ms' examples/layers/case.cfg >/dev/null 2>&1
 "$bin/softfall-solve" l.h5 -o lr.h5 -t 1 --no-checkpoint >/dev/null 2>&1
-"$bin/softfall-pre" -o rest.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.1 ms' --set pad.base=resting examples/compression/case.cfg >/dev/null
+"$bin/softfall-pre" -o rest.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set pad.base=resting examples/compression/case.cfg >/dev/null
 cp m.h5 "$corpus/model/cube.h5"
 cp l.h5 "$corpus/model/layers.h5"
 cp lr.h5 "$corpus/results/layers.h5"

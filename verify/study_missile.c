@@ -134,6 +134,7 @@ static void start(const drop *d, fixture *f) {
     c.missile_card.speed = d->speed;
     c.missile_card.friction = d->friction;
     c.missile_card.gravity = d->gravity;
+    c.run.step_limit = 20e-6; /* fine enough for the slowest drops */
     c.shape_rule = d->triangles ? 2 : 0;
     fixture_slant(&c, d->slant);
     fixture_block_mesh(&block, &mesh);

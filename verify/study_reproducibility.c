@@ -210,7 +210,7 @@ int main(int argc, char **argv) {
     static const char *const units[] = {"missile.mass=4600 g",          "missile.velocity=450 cm/s",
                                         "material.density=0.035 g/cm3", "material.E=413.6 kPa",
                                         "material.ED=34.3 bar",         "solver.end_time=0.04 s",
-                                        "solver.step_limit=0.02 ms",    NULL};
+                                        "solver.step_limit=0.05 ms",    NULL};
     sf_study study;
     sf_error err = SF_ERROR_INIT;
     sf_drop drop;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figures of a drop or of a results file, by the one function that softfall-post calls. */
+#include "model/flight.h"
 #include "api/api_drop.h"
 
 #include "post/figures/figures.h"
@@ -63,6 +64,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .kinematic = m->run.kinematic != 0,
                       .driven = sf_missile_is_driven(m),
                       .history = d->recorder.history};
+    sf_flight_gravity(&m->missile, r->gravity);
     if (r->history.rows < 3)
         return SF_FAIL(err, SF_ERR_INPUT, "the drop has %lld steps: figures need 3 at least",
                        (long long)r->history.rows);

@@ -36,6 +36,47 @@ static inline double sf_sym3_largest(const double s[6]) {
     return mean + 2 * p * cos(angle);
 }
 
+/* The rotation, row by row, that takes the unit vector `up` to z, by the shortest way; exact for the axes. */
+static inline void sf_turn_to_z(const double up[3], double r[9]) {
+    const double c = up[2], v[3] = {up[1], -up[0], 0}; /* up x z */
+    if (c < -1 + 1e-12) {                              /* half a turn about x */
+        const double half[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1};
+        for (int k = 0; k < 9; k++)
+            r[k] = half[k];
+        return;
+    }
+    const double cross[9] = {0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double square = 0;
+            for (int k = 0; k < 3; k++)
+                square += cross[3 * i + k] * cross[3 * k + j];
+            r[3 * i + j] = (i == j) + cross[3 * i + j] + square / (1 + c);
+        }
+}
+
+/* v = r v, in place. */
+static inline void sf_mat3_apply(const double r[9], double v[3]) {
+    const double x[3] = {v[0], v[1], v[2]};
+    for (int i = 0; i < 3; i++)
+        v[i] = sf_dot3(&r[3 * i], x);
+}
+
+/* The symmetric tensor s (xx, yy, zz, xy, yz, xz) turned: r s r^T, in place. */
+static inline void sf_sym3_turn(const double r[9], double s[6]) {
+    static const int place[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2}, row[6] = {0, 1, 2, 0, 1, 0},
+                     column[6] = {0, 1, 2, 1, 2, 2};
+    double out[6];
+    for (int k = 0; k < 6; k++) {
+        out[k] = 0;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                out[k] += r[3 * row[k] + i] * s[place[3 * i + j]] * r[3 * column[k] + j];
+    }
+    for (int k = 0; k < 6; k++)
+        s[k] = out[k];
+}
+
 /* Rotations as unit quaternions (w, x, y, z): x_space = q x_body q*. */
 
 /* `v` turned by q. */

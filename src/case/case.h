@@ -30,6 +30,7 @@ typedef struct sf_geo_source {
     char *path; /* NULL: the missile is in the pad's file */
     int parameter_count;
     sf_geo_parameter parameter[SF_CASE_MAX_PARAMETERS];
+    double unit; /* m per unit that it has or is to have; 0: not known */
 } sf_geo_source;
 
 enum { SF_BASE_GLUED, SF_BASE_SMOOTH, SF_BASE_RESTING }; /* pad.base, in the order of its words */
@@ -42,6 +43,7 @@ typedef struct sf_case {
     sf_geo_source pad;
     sf_geo_source missile;
     double length_unit;     /* m per unit of the geometry */
+    double up[3];           /* -, unit vector out of the pad's face, in the geometry; the model has it along z */
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */
     const char *store;    /* folder in which meshes and domains are kept for other drops (io/folder.h); NULL:
                              they are not; borrowed, not of the case file */

@@ -236,12 +236,26 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
+static void normalise(double v[3]) {
+    double length = sqrt(sf_dot3(v, v));
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+}
+
 /* Derives values from those read; the only function that changes values after reading. */
 static void complete(const sf_case_reader *reader, sf_case *c) {
     sf_missile_card *card = &c->missile_card;
-    double length = sqrt(sf_dot3(card->direction, card->direction));
-    for (int i = 0; i < 3; i++)
-        card->direction[i] /= length;
+    double turn[9];
+    normalise(card->direction);
+    normalise(card->down);
+    normalise(c->up);
+    sf_turn_to_z(c->up, turn);
+    sf_mat3_apply(turn, card->direction);
+    sf_mat3_apply(turn, card->down);
+    sf_mat3_apply(turn, c->angular_velocity);
+    sf_mat3_apply(turn, c->centre);
+    sf_sym3_turn(turn, c->inertia);
+    c->pad.unit = c->missile.unit = c->length_unit;
     if (c->motion_count > 0)
         card->gravity = 0.0;
     c->position_given = sf_case_is_given(reader, "missile", "position");

@@ -127,22 +127,31 @@ static const double FLATTEST = 0.0871557; /* cosine of 85 degrees */
 
 static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    const double *d = reader->out->missile_card.direction;
-    double square = sf_dot3(d, d);
-    if (!(square > 0.0) || !(d[2] < 0.0) || !isfinite(square))
+    const sf_case *c = reader->out;
+    const double *d = c->missile_card.direction, *up = c->up, *down = c->missile_card.down;
+    double square = sf_dot3(d, d), length = sqrt(sf_dot3(up, up)), towards = -sf_dot3(d, up) / length;
+    if (!(length > 0) || !isfinite(length) || !(sf_dot3(down, down) > 0) || !isfinite(sf_dot3(down, down)))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.up and missile.gravity_direction must have a length",
+                       sf_case_where_is(reader, "pad.up", where));
+    if (c->base_rule == SF_BASE_RESTING && up[2] < (1 - 1e-9) * length)
         return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: missile.direction: [%g, %g, %g] does not point down to the pad; its third "
-                       "component must be negative (for a wall or a post lay the pad flat and set "
-                       "missile.gravity to \"0 m/s2\")",
-                       sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2]);
-    if (-d[2] < FLATTEST * sqrt(square))
+                       "%s: pad.up: a resting pad lies on the ground, its face upwards; hold this one "
+                       "(pad.base = \"glued\" or \"smooth\")",
+                       sf_case_where_is(reader, "pad.up", where));
+    if (!(square > 0.0) || !(towards > 0.0) || !isfinite(square))
         return SF_FAIL(
             err, SF_ERR_INPUT,
-            "%s: missile.direction: [%g, %g, %g] is %.1f degrees from the vertical and grazes the pad; at "
-            "most %.0f degrees are possible (for a wall or a post lay the pad flat and set "
-            "missile.gravity to \"0 m/s2\")",
+            "%s: missile.direction: [%g, %g, %g] does not point to the pad, whose face looks along "
+            "[%g, %g, %g]; give that by pad.up, for example [-1.0, 0.0, 0.0] of a wall that is "
+            "hit along x",
+            sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2], up[0], up[1], up[2]);
+    if (towards < FLATTEST * sqrt(square))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: missile.direction: [%g, %g, %g] is %.1f degrees from the normal of the pad's face (pad.up) and "
+            "grazes it; at most %.0f degrees are possible",
             sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2],
-            acos(-d[2] / sqrt(square)) * 180 / M_PI, acos(FLATTEST) * 180 / M_PI);
+            acos(towards / sqrt(square)) * 180 / M_PI, acos(FLATTEST) * 180 / M_PI);
     return SF_OK;
 }
 
@@ -156,7 +165,7 @@ static sf_status check_flight(const sf_case_reader *reader, sf_error *err) {
                    "%s: missile.gap: in a fall over %g m from rest the missile gets faster (%.4g m/s) than "
                    "missile.velocity, %g m/s, which is its speed at first contact",
                    sf_case_where_is(reader, "missile.gap", where), card->gap,
-                   sqrt(-2 * card->gravity * card->direction[2] * card->gap), card->speed);
+                   sqrt(2 * sf_flight_pull(card) * card->gap), card->speed);
 }
 
 /* The free missile falls while it travels along its direction. */
@@ -169,7 +178,7 @@ static sf_status check_reach(const sf_case_reader *reader, sf_error *err) {
     for (int64_t k = 0; k < c->motion_count; k++)
         reach = fmax(reach, c->motion_displacement[k]);
     if (c->motion_count == 0)
-        reach = sf_flight_start_speed(card) * time - 0.5 * card->gravity * card->direction[2] * time * time;
+        reach = sf_flight_start_speed(card) * time + 0.5 * sf_flight_pull(card) * time * time;
     if (reach > card->gap)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,
@@ -350,7 +359,7 @@ static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
     static const double SHARE = 0.5; /* of the energy limit: the rest of the run needs some, too */
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
-    double gain = -c->missile_card.gravity * c->missile_card.direction[2] * c->run.step_limit,
+    double gain = fabs(sf_flight_pull(&c->missile_card)) * c->run.step_limit,
            most = SHARE * c->run.energy_limit;
     if (c->motion_count > 0 || 0.5 * gain <= most * c->missile_card.speed)
         return SF_OK;

@@ -8,38 +8,45 @@
 static const double LARGEST_TURN =
     2e-3; /* rad, of one step of the rotation: its error is below 1e-6 rad a turn */
 
-/* Acceleration along the direction (m s-2). */
-static double pull(const sf_missile_card *card) {
-    return -card->gravity * card->direction[2];
+void sf_flight_gravity(const sf_missile_card *card, double g[3]) {
+    bool given = sf_dot3(card->down, card->down) > 0;
+    for (int k = 0; k < 3; k++)
+        g[k] = given ? card->gravity * card->down[k] : k == 2 ? -card->gravity : 0;
+}
+
+double sf_flight_pull(const sf_missile_card *card) {
+    double g[3];
+    sf_flight_gravity(card, g);
+    return sf_dot3(g, card->direction);
 }
 
 double sf_flight_time(const sf_missile_card *card) {
-    double square = card->speed * card->speed - 2 * pull(card) * card->gap;
+    double square = card->speed * card->speed - 2 * sf_flight_pull(card) * card->gap;
     if (!(card->gap > 0) || !(card->speed > 0)) /* no gap, or a prescribed motion */
         return 0;
     return square >= 0 ? 2 * card->gap / (card->speed + sqrt(square)) : NAN;
 }
 
 double sf_flight_start_speed(const sf_missile_card *card) {
-    return card->speed - pull(card) * sf_flight_time(card);
+    return card->speed - sf_flight_pull(card) * sf_flight_time(card);
 }
 
 void sf_flight_start_velocity(const sf_missile_card *card, double velocity[3]) {
     bool free = card->freedom == SF_MISSILE_FREE;
     double speed = free ? card->speed : sf_flight_start_speed(card);
+    double g[3];
+    sf_flight_gravity(card, g);
     for (int k = 0; k < 3; k++)
-        velocity[k] = speed * card->direction[k];
-    if (free)
-        velocity[2] += card->gravity * sf_flight_time(card);
+        velocity[k] = speed * card->direction[k] - (free ? g[k] * sf_flight_time(card) : 0);
 }
 
 void sf_flight_displacement(const sf_missile_card *card, double before, double displacement[3]) {
     bool free = card->freedom == SF_MISSILE_FREE;
     double fallen = 0.5 * before * before,
-           along = card->gap - card->speed * before + (free ? 0 : pull(card) * fallen);
+           along = card->gap - card->speed * before + (free ? 0 : sf_flight_pull(card) * fallen), g[3];
+    sf_flight_gravity(card, g);
     for (int k = 0; k < 3; k++)
-        displacement[k] = along * card->direction[k];
-    displacement[2] -= free ? card->gravity * fallen : 0;
+        displacement[k] = along * card->direction[k] + (free ? g[k] * fallen : 0);
 }
 
 void sf_flight_orientation(const sf_missile_card *card, double before, double quaternion[4]) {
@@ -68,5 +75,5 @@ double sf_flight_energy(const sf_missile_card *card, double mass) {
 }
 
 double sf_flight_momentum(const sf_missile_card *card, double mass) {
-    return mass * pull(card) * sf_flight_time(card);
+    return mass * sf_flight_pull(card) * sf_flight_time(card);
 }

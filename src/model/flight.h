@@ -8,6 +8,10 @@
 
 #include "model/model.h"
 
+/* Acceleration of the missile by gravity (m s-2), and its part along the direction. */
+void sf_flight_gravity(const sf_missile_card *card, double gravity[3]);
+double sf_flight_pull(const sf_missile_card *card);
+
 /* Time of flight (s); NaN: a fall over the gap alone makes the missile faster than its speed. */
 double sf_flight_time(const sf_missile_card *card);
 

@@ -8,14 +8,16 @@
 #include "base/mat3.h"
 
 #define ARRAY(member, type, rows, extra, columns, path, units, text)                                         \
-    { offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text, false }
+    { offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text, false, false }
 #define SCALAR(member, type, path, units, text)                                                              \
-    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, false }
+    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, false, false }
 /* Fields that models of older versions may lack. */
 #define OPTIONAL_ARRAY(member, type, rows, path, units, text)                                                \
-    { offsetof(sf_model, member), type, offsetof(sf_model, rows), 0, 1, path, units, text, true }
+    { offsetof(sf_model, member), type, offsetof(sf_model, rows), 0, 1, path, units, text, true, false }
 #define OPTIONAL_SCALAR(member, type, path, units, text)                                                     \
-    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true }
+    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true, false }
+#define LATER_SCALAR(member, type, path, units, text)                                                        \
+    { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true, true }
 #define F64 SF_MODEL_F64
 #define I32 SF_MODEL_I32
 #define I64 SF_MODEL_I64
@@ -95,7 +97,10 @@ static const sf_model_field fields[] = {
     SCALAR(missile.direction[1], F64, "/missile/direction_y", "1", "direction of motion, y"),
     SCALAR(missile.direction[2], F64, "/missile/direction_z", "1", "direction of motion, z"),
     SCALAR(missile.friction, F64, "/missile/friction", "1", "Coulomb coefficient"),
-    SCALAR(missile.gravity, F64, "/missile/gravity", "m s-2", "along -z"),
+    SCALAR(missile.gravity, F64, "/missile/gravity", "m s-2", "on the missile"),
+    LATER_SCALAR(missile.down[0], F64, "/missile/gravity_x", "1", "its direction, x; without it: -z"),
+    LATER_SCALAR(missile.down[1], F64, "/missile/gravity_y", "1", "its direction, y"),
+    LATER_SCALAR(missile.down[2], F64, "/missile/gravity_z", "1", "its direction, z"),
     SCALAR(missile.gap, F64, "/missile/gap", "m", "distance from the pad at t = 0"),
     SCALAR(missile.clearance, F64, "/missile/clearance", "m",
            "height of its lowest point above the undeformed pad's top at t = 0"),

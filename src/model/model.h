@@ -44,7 +44,8 @@ typedef struct sf_missile_card {
     double speed;            /* m s-1, at first contact; 0 with a prescribed motion */
     double direction[3];     /* -, unit vector of motion at first contact; of a guided missile for good */
     double friction;         /* -, Coulomb coefficient against the pad */
-    double gravity;          /* m s-2, acts along -z on the missile; 0 with a prescribed motion */
+    double gravity;          /* m s-2, acts on the missile; 0 with a prescribed motion */
+    double down[3];          /* -, its direction, a unit vector; all 0, as in older models: -z */
     double gap;              /* m, distance still to travel along `direction` at t = 0; model/flight.h */
     double clearance;        /* m, height of its lowest point above the top of the undeformed pad, its highest
                                 point, at t = 0; negative over a hole */
@@ -71,7 +72,7 @@ typedef struct sf_anvil_card {
 typedef struct sf_run_options {
     double end_time;            /* s */
     double step_safety;         /* -, fraction of the stability limit */
-    double step_limit;          /* s, largest time step: keeps the history at 50 kHz or more */
+    double step_limit;          /* s, largest time step: keeps the history at 20 kHz or more */
     double stabilisation;       /* -, coefficient of the stabilisation stiffness */
     double energy_limit;        /* -, |E/E0 - 1| at which the run stops */
     double frame_interval;      /* s, between frames; frames also at 0 and at the end */
@@ -246,6 +247,7 @@ typedef struct sf_model_field {
     const char *units;
     const char *description;
     bool optional; /* a file may lack it: 0, or no rows */
+    bool later;    /* models of release 1.0.0 lack it: left out of the hash where it is 0 */
 } sf_model_field;
 
 /* The table, and its length. Counts come before the arrays that need them. */

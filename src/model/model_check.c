@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "base/mat3.h"
 #include "model/flight.h"
 #include "model/model.h"
 
@@ -163,6 +164,9 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         length += m->missile.direction[c] * m->missile.direction[c];
     if (fabs(length - 1) > 1e-9)
         return SF_FAIL(err, SF_ERR_MODEL, "missile direction has length %g, expected 1", sqrt(length));
+    double down = sf_dot3(m->missile.down, m->missile.down);
+    if (down != 0 && fabs(down - 1) > 1e-9)
+        return SF_FAIL(err, SF_ERR_MODEL, "the direction of gravity has length %g, expected 1", sqrt(down));
     if (!isfinite(sf_flight_time(&m->missile)))
         return SF_FAIL(err, SF_ERR_MODEL,
                        "a fall over the missile's gap of %g m makes it faster than its %g m/s",
@@ -324,6 +328,9 @@ static uint64_t hash_of(const sf_model *model) {
     uint64_t hash = SF_HASH_START;
     for (size_t k = 0; k < count; k++) {
         const char *member = base + field[k].offset;
+        static const char zero[8];
+        if (field[k].later && memcmp(member, zero, item_size(field[k].type)) == 0)
+            continue;
         if (field[k].rows_offset == SIZE_MAX) {
             hash = sf_hash(hash, member, item_size(field[k].type));
             continue;

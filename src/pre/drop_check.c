@@ -14,6 +14,9 @@
 #include "pre/missile_body.h"
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
+static const double EARLY = 0.1; /* steps of depth before that */
+static const double LEADS =
+    0.7; /* of its width: narrower than that is a part of its own, not a coarse mesh */
 
 /* Sums over the zone's contact points, weighted with their areas. */
 typedef struct zone_sums {
@@ -60,24 +63,46 @@ static double mean_spacing(const sf_model *m, const double centre[2], double rad
     return volume > 0 ? sqrt(sum / volume) : 0;
 }
 
-void sf_contact_zone_measure(const sf_model *m, sf_contact_zone *zone) {
+/* The zone when the missile stands `part` of the thickness deep, by fine x fine points for each contact node.
+ */
+static void measure_at(const sf_model *m, double part, int fine, sf_contact_zone *zone) {
     const sf_surface missile = {.node_count = m->surface_node_count,
                                 .position = m->surface_position,
                                 .triangle_count = m->surface_triangle_count,
                                 .triangle = m->surface_triangle};
-    double centre[2], wide, deepest = m->missile.gap - DEPTH * m->thickness / m->missile.direction[2];
+    double centre[2], wide, deepest = m->missile.gap - part * m->thickness / m->missile.direction[2];
     const bool plane[2] = {sf_symmetry_plane(m, 0, &centre[0]), sf_symmetry_plane(m, 1, &centre[1])};
     zone_sums sums = {0};
-    for (int64_t k = 0; k < m->contact_count; k++) {
-        int64_t i = m->contact_node[k];
-        if (sf_missile_travel(&missile, &m->missile, &m->position[3 * i]) <= deepest)
-            add_point(&sums, &m->position[3 * i], centre, m->contact_area[k], m->spacing[i]);
+    for (int64_t k = 0; k < m->contact_count * fine * fine; k++) {
+        int64_t node = k / (fine * fine), i = m->contact_node[node], at = k % (fine * fine);
+        double step = sqrt(m->contact_area[node]) / fine, x[3];
+        memcpy(x, &m->position[3 * i], sizeof x);
+        x[0] += step * ((double)(at / fine) - 0.5 * (fine - 1));
+        x[1] += step * ((double)(at % fine) - 0.5 * (fine - 1));
+        if (sf_missile_travel(&missile, &m->missile, x) <= deepest)
+            add_point(&sums, x, centre, m->contact_area[node] / (fine * fine), m->spacing[i] / fine);
     }
     *zone = (sf_contact_zone){.area = sf_model_whole(m) * sums.area};
     if (!(sums.area > 0))
         return;
     find_radii(&sums, plane, centre, &zone->half_width, &wide);
     zone->spacing = mean_spacing(m, centre, wide);
+}
+
+/* Under a sphere the width grows with the root of the depth. A part that leads, such as a stud, stays narrow
+ * for longer, and its own width counts. */
+void sf_contact_zone_measure(const sf_model *m, sf_contact_zone *zone) {
+    enum { FINE = 2 };
+    measure_at(m, DEPTH, 1, zone);
+    if (m->missile.shape == SF_SHAPE_SPHERE)
+        return;
+    for (double part = EARLY; part < DEPTH && zone->half_width > 0; part += EARLY) {
+        sf_contact_zone early;
+        measure_at(m, part, FINE, &early);
+        double width = early.half_width * sqrt(DEPTH / part);
+        if (width > 0 && width < LEADS * zone->half_width)
+            zone->half_width = width;
+    }
 }
 
 double sf_mesh_error_expect(const sf_model *m, const sf_contact_zone *zone) {

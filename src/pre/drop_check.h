@@ -16,7 +16,8 @@
 /* The part of the pad that the missile touches when it stands half a thickness deep in it. */
 typedef struct sf_contact_zone {
     double area;       /* m2, of the whole pad's surface */
-    double half_width; /* m, across its narrow direction: the radius of a round zone */
+    double half_width; /* m, across its narrow direction: the radius of a round zone; of a part that leads,
+                          its own as it grows to that depth */
     double spacing;    /* m, root mean square of the pad below it */
 } sf_contact_zone;
 

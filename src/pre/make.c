@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/make.h"
 
+#include "base/mat3.h"
 #include "io/h5.h"
 #include "pre/mesh/gmsh_session.h"
 #include <stdio.h>
@@ -17,6 +18,23 @@ static sf_status read_pad(sf_gmsh *session, const sf_case *c, sf_mesh *mesh, sf_
                               : sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err);
 }
 
+static void turn_points(const double turn[9], int64_t count, double *position) {
+    for (int64_t i = 0; i < count; i++)
+        sf_mat3_apply(turn, &position[3 * i]);
+}
+
+/* Turns the pad's face upwards. */
+static void turn_up(const double up[3], sf_mesh *mesh, sf_surface *surface) {
+    double turn[9];
+    if (up[2] == 1)
+        return;
+    sf_turn_to_z(up, turn);
+    turn_points(turn, mesh->node_count, mesh->position);
+    turn_points(turn, surface->node_count, surface->position);
+    turn_points(turn, surface->hull_node_count, surface->hull_position);
+    turn_points(turn, 1, surface->origin);
+}
+
 /* Pad mesh and missile surface, from one geometry or two. */
 static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
                                char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
@@ -30,6 +48,8 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
     if (err->status == SF_OK && c->freedom == SF_MISSILE_FREE)
         sf_gmsh_read_hull(session, c->surface_group, c->length_unit, surface, err);
+    if (err->status == SF_OK)
+        turn_up(c->up, mesh, surface);
     free(c->geometry_files);
     c->geometry_files = NULL;
     if (err->status == SF_OK && !(c->geometry_files = strdup(sf_gmsh_files(session))))

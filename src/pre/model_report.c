@@ -61,6 +61,26 @@ static void add_neighbours(sf_model_report *out, const sf_model *m) {
         (long long)high, (double)m->domain_nnz / (double)m->node_count - 1);
 }
 
+/* The lengths of the box that holds the points [count][3] (mm). */
+static void find_size(int64_t count, const double *x, double size[3]) {
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t i = 0; i < count; i++) {
+            low = fmin(low, x[3 * i + k]);
+            high = fmax(high, x[3 * i + k]);
+        }
+        size[k] = 1e3 * (high - low);
+    }
+}
+
+static void add_size(sf_model_report *out, const sf_model *m) {
+    double pad[3], missile[3];
+    find_size(m->node_count, m->position, pad);
+    find_size(m->surface_node_count, m->surface_position, missile);
+    add(out, "size", "size as modelled", "pad %.4g x %.4g x %.4g mm, missile's surface %.4g x %.4g x %.4g mm",
+        pad[0], pad[1], pad[2], missile[0], missile[1], missile[2]);
+}
+
 static void add_impact(sf_model_report *out, const sf_model *m) {
     double speed = m->missile.speed, energy = 0.5 * m->missile.mass * speed * speed;
     add(out, "missile", "missile", "%.4g kg at %.4g m/s: kinetic energy %.4g J, momentum %.4g kg m/s",
@@ -188,6 +208,7 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
         (long long)r->cells[SF_CELL_PRISM], (long long)r->cells[SF_CELL_TETRAHEDRON]);
     if (r->orphan_count > 0)
         add(out, "left_out", "left out", "%lld nodes that no cell uses", (long long)r->orphan_count);
+    add_size(out, m);
     add_spacing(out, m);
     add_neighbours(out, m);
     add(out, "conditioning", "worst conditioning", "%.3g at (%.4g, %.4g, %.4g) mm", r->worst_condition,

@@ -8,7 +8,7 @@
 #include <string.h>
 
 double sf_missile_free_fall(const sf_model *m) {
-    return -m->missile.gravity * m->missile.direction[2];
+    return sf_flight_pull(&m->missile);
 }
 
 static double mobility(const sf_model *m) {
@@ -196,10 +196,12 @@ bool sf_missile_gap(const sf_model *m, const sf_missile *missile, const sf_missi
 static void predict_turning(const sf_model *m, const sf_missile *missile, double dt, double dt_v,
                             sf_missile_response *response) {
     const sf_missile_card *card = &m->missile;
+    double gravity[3];
+    sf_flight_gravity(card, gravity);
     response->turns = true;
     find_centre(m, missile, response->centre);
     for (int r = 0; r < 3; r++)
-        response->step[r] = dt * (missile->rate[r] - (r == 2 ? dt_v * card->gravity : 0));
+        response->step[r] = dt * (missile->rate[r] + dt_v * gravity[r]);
     sf_rigid_turn(card->inertia, missile->quaternion, missile->spin, dt, response->turn);
     sf_rigid_mobility(card->inertia, missile->quaternion, response->angular);
 }
@@ -358,8 +360,10 @@ void sf_missile_accelerate(const sf_model *m, sf_missile *missile) {
         sf_missile_is_driven(m)
             ? 0
             : sf_missile_free_fall(m) + mobility(m) * sf_dot3(missile->force, m->missile.direction);
+    double gravity[3];
+    sf_flight_gravity(&m->missile, gravity);
     for (int r = 0; r < 3 && sf_missile_turns(m); r++)
-        missile->pull[r] = mobility(m) * missile->force[r] - (r == 2 ? m->missile.gravity : 0);
+        missile->pull[r] = mobility(m) * missile->force[r] + gravity[r];
 }
 
 static void kick_turning(const sf_model *m, sf_missile *missile, double dt, double dt_old) {
@@ -458,8 +462,10 @@ void sf_missile_momenta(const sf_model *m, const sf_missile *missile, double lin
 void sf_missile_outside(const sf_model *m, const sf_missile *missile, double force[3], double moment[3]) {
     double centre[3];
     bool turns = sf_missile_turns(m);
+    double gravity[3];
+    sf_flight_gravity(&m->missile, gravity);
     for (int r = 0; r < 3; r++)
-        force[r] = !turns ? -missile->force[r] : r == 2 ? -sf_missile_mass(m) * m->missile.gravity : 0;
+        force[r] = turns ? sf_missile_mass(m) * gravity[r] : -missile->force[r];
     find_centre(m, missile, centre);
     sf_cross3(centre, force, moment);
     for (int r = 0; r < 3 && !turns; r++)
@@ -470,9 +476,12 @@ double sf_missile_gravity_work(const sf_model *m, const sf_missile *missile) {
     double start[3] = {0}, flight = sf_flight_time(&m->missile);
     if (flight > 0)
         sf_flight_displacement(&m->missile, flight, start);
+    double gravity[3], moved[3];
+    sf_flight_gravity(&m->missile, gravity);
+    for (int r = 0; r < 3; r++)
+        moved[r] = missile->translation[r] - start[r];
     if (sf_missile_turns(m))
-        return 0 -
-               sf_missile_mass(m) * m->missile.gravity * (missile->translation[2] - start[2]); /* not -0 */
+        return sf_missile_mass(m) * sf_dot3(gravity, moved) + 0; /* not -0 */
     return sf_missile_weight(m) * missile->displacement;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/figures.h"
 
+#include "base/mat3.h"
 #include "base/units.h"
 #include "post/results/results_check.h"
 #include "post/figures/strain_field.h"
@@ -97,10 +98,10 @@ static sf_status filter_resultant(const sf_results *r, const double *const chann
     return err->status;
 }
 
-/* Returns the acceleration that is added to the specific force along z, and against the direction of a
+/* Returns the acceleration that is added to the specific force along an axis, and against the direction of a
  * guided missile. */
-static double shift_of_z(const sf_results *r) {
-    return r->kinematic ? r->gravity_along / r->missile_direction[2] : 0;
+static double shift_of(const sf_results *r, int axis) {
+    return r->kinematic ? r->gravity[axis] : 0;
 }
 
 static double shift_along(const sf_results *r) {
@@ -111,8 +112,8 @@ double sf_figures_reading(const sf_results *r, int64_t row) {
     const sf_history *h = &r->history;
     if (!r->turns)
         return h->acceleration[row] / SF_STANDARD_GRAVITY + shift_along(r);
-    double x = h->specific_force_x[row], y = h->specific_force_y[row],
-           z = h->specific_force_z[row] + shift_of_z(r);
+    double x = h->specific_force_x[row] + shift_of(r, 0), y = h->specific_force_y[row] + shift_of(r, 1),
+           z = h->specific_force_z[row] + shift_of(r, 2);
     return sqrt(x * x + y * y + z * z) / SF_STANDARD_GRAVITY;
 }
 
@@ -120,8 +121,8 @@ static sf_status compute_resultant(const sf_results *r, sf_figures *f, sf_error 
     const sf_history *h = &r->history;
     const double *const channel[3] = {h->specific_force_x, h->specific_force_y, h->specific_force_z};
     static const double none[3] = {0};
-    const double shift[3] = {0, 0, shift_of_z(r)};
-    f->free_flight = fabs(shift[2]) / SF_STANDARD_GRAVITY;
+    const double shift[3] = {shift_of(r, 0), shift_of(r, 1), shift_of(r, 2)};
+    f->free_flight = sqrt(sf_dot3(shift, shift)) / SF_STANDARD_GRAVITY;
     f->rate = sf_signal_rate(&f->raw);
     return filter_resultant(r, channel, none, shift, SF_STANDARD_GRAVITY, f, &f->filtered, err);
 }

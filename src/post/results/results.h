@@ -76,6 +76,7 @@ typedef struct sf_results {
     double missile_mass;       /* kg; 0 with a prescribed motion, like the speed */
     double missile_speed;      /* m s-1 */
     double gravity_along;      /* m s-2, acceleration of the missile in free flight, along its direction */
+    double gravity[3];         /* m s-2, the whole of it */
     bool kinematic;            /* figures of the kinematic acceleration; else as an accelerometer reads */
     bool driven;               /* the missile had a prescribed motion; else it was free */
     bool turns;                /* it had six degrees of freedom */

@@ -122,8 +122,9 @@ sf_status sf_results_check_model(const sf_results *r, sf_error *err) {
     if (check_positive(r->thickness, "/model/thickness", err) != SF_OK ||
         check_positive(r->density, "/model/density", err) != SF_OK)
         return err->status;
-    if (!(r->gravity_along >= 0) || !isfinite(r->gravity_along))
-        return SF_FAIL(err, SF_ERR_IO, "/model/gravity_along is %g m/s2", r->gravity_along);
+    if (!(fabs(r->gravity_along - sf_results_along(r, r->gravity)) <= 1e-9 * (1 + fabs(r->gravity_along))))
+        return SF_FAIL(err, SF_ERR_IO, "/model/gravity_along is %g m/s2, and /model/gravity (%g, %g, %g)",
+                       r->gravity_along, r->gravity[0], r->gravity[1], r->gravity[2]);
     if (r->driven)
         return SF_OK;
     if (check_positive(r->missile_mass, "/model/missile_mass", err) != SF_OK ||

@@ -106,6 +106,15 @@ static sf_status read_optional(const sf_results *r, const char *path, double *va
     return err->status;
 }
 
+/* Files of earlier versions have it along -z only. */
+static sf_status read_gravity(sf_results *r, sf_error *err) {
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/gravity_along", &r->gravity_along, err));
+    if (sf_h5_exists(r->file, "/model/gravity"))
+        return read_vector(r, "/model/gravity", r->gravity, err);
+    r->gravity[2] = r->gravity_along / r->missile_direction[2];
+    return SF_OK;
+}
+
 /* The exact sphere that contact takes for the missile, if it does. */
 static sf_status read_sphere(sf_results *r, sf_error *err) {
     if (read_optional(r, "/model/sphere_radius", &r->sphere_radius, err) != SF_OK)
@@ -202,8 +211,7 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err) != SF_OK ||
         read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK ||
-        sf_h5_read_scalar(r->file, "/model/gravity_along", &r->gravity_along, err) != SF_OK ||
-        read_flag(r, "/model/kinematic", &r->kinematic, err) != SF_OK ||
+        read_gravity(r, err) != SF_OK || read_flag(r, "/model/kinematic", &r->kinematic, err) != SF_OK ||
         read_flag(r, "/model/missile_driven", &r->driven, err) != SF_OK ||
         read_flag(r, "/model/missile_free", &r->turns, err) != SF_OK ||
         read_vector(r, "/model/missile_centre", r->missile_centre, err) != SF_OK ||

@@ -206,7 +206,13 @@ static double now(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The .geo text that sets the parameters; from malloc. The decimal point is a point in any locale. */
+/* Units in which gmsh can hand out STEP and IGES files, which know their own; without a target it is mm. */
+static const struct {
+    const char *name;
+    double size; /* m */
+} targets[] = {{"CM", 1e-2}, {"M", 1}, {"INCH", 0.0254}, {"FT", 0.3048}};
+
+/* The .geo text that sets the parameters, and the unit; from malloc. The decimal point is a point in any locale. */
 static char *parameter_text(const sf_geo_source *source) {
     char *text = NULL;
     size_t size = 0;
@@ -214,6 +220,9 @@ static char *parameter_text(const sf_geo_source *source) {
     FILE *out = c ? open_memstream(&text, &size) : NULL;
     if (out)
         fputs("Delete Variables;\n", out);
+    for (size_t k = 0; out && k < sizeof targets / sizeof *targets; k++)
+        if (fabs(source->unit / targets[k].size - 1) < 1e-9)
+            fprintf(out, "Geometry.OCCTargetUnit = \"%s\";\n", targets[k].name);
     for (int k = 0; out && k < source->parameter_count; k++)
         fprintf(out, "%s = %.17g;\n", source->parameter[k].name, source->parameter[k].value);
     if (out)

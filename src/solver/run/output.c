@@ -12,6 +12,7 @@
 #include "io/folder.h"
 #include "io/seal.h"
 #include "model/columns.h"
+#include "model/flight.h"
 #include "model/model.h"
 #include "solver/missile.h"
 #include "solver/run/frame.h"
@@ -26,6 +27,8 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     int64_t driven = sf_missile_is_driven(m), turns = sf_missile_turns(m);
     const double unknown = NAN, *impact = m->missile.impact_known ? m->missile.impact : NULL;
     const double informed = sf_model_informed_strain(m);
+    double pull[3];
+    sf_flight_gravity(&m->missile, pull);
     const double gravity = sf_missile_free_fall(m), density = sf_model_density(m);
     const double plane[2] = {find_plane(m, 0), find_plane(m, 1)};
     const double radius = m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0;
@@ -63,6 +66,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/sphere_radius", "m", "of the missile's exact sphere, 0: contact with its triangles"}, SF_H5_F64, 0, {0}, &radius},
         {{"/model/sphere_centre", "m", "of the missile's exact sphere at t = 0"}, SF_H5_F64, 1, {3, 0}, m->missile.sphere_centre},
         {{"/model/gravity_along", "m s-2", "acceleration of the missile in free flight, along its direction"}, SF_H5_F64, 0, {0}, &gravity},
+        {{"/model/gravity", "m s-2", "acceleration of the missile by gravity"}, SF_H5_F64, 1, {3, 0}, pull},
         {{"/model/kinematic", "1", "figures of 0: the specific force; 1: the kinematic acceleration"}, SF_H5_I64, 0, {0}, &m->run.kinematic},
         {{"/model/missile_direction", "1", "direction of motion"}, SF_H5_F64, 1, {3, 0}, sf_missile_direction(m)},
         /* clang-format on */
