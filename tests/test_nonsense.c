@@ -134,7 +134,7 @@ static void values_of_a_case(void **state) {
         {"--set material.densification.start=0.99", {"material.densification.start", "0.99", "the end of"}},
         {"--set missile.direction='[0.0, 0.0, 1.0]'", {"missile.direction", "[0, 0, 1]", "does not point to the pad"}},
         {"--set missile.direction='[1.0, 0.0, -0.001]'",
-         {"missile.direction", "89.9 degrees", "grazes the pad"}},
+         {"missile.direction", "89.9 degrees", "grazes it"}},
         {"--set missile.direction='[0.0, 0.0, 0.0]'", {"missile.direction", "[0, 0, 0]", "does not point to the pad"}},
         {"--set missile.direction='[0.0, -1.0]'", {"missile.direction", "three plain numbers"}},
         {"--set missile.friction=-1", {"missile.friction", "-1", "at least 0"}},
