@@ -157,7 +157,7 @@ typedef struct coverage {
 } coverage;
 
 static void set_truths(const truth *t, const laboratory *lab, coverage c[QUANTITIES]) {
-    const double values[SF_ESTIMATES] = {true_modulus(lab), t->hu,       t->shape, t->log_rate, t->ed,
+    const double values[SF_ESTIMATES] = {true_modulus(lab), t->hu,       t->shape, 1, t->log_rate, t->ed,
                                          t->beta,           t->exponent, t->limit};
     memset(c, 0, QUANTITIES * sizeof *c);
     for (int k = 0; k < SF_ESTIMATES; k++)
@@ -200,7 +200,7 @@ static sf_status repeat(laboratory *lab, gsl_rng *random, coverage c[QUANTITIES]
         }
         count_curve(&fit, &c[SF_ESTIMATES]);
         misfit[0] += fit.misfit / REPETITIONS;
-        misfit[1] += (fit.serial > 1) / (double)REPETITIONS;
+        misfit[1] += (fit.side[0].serial > 1) / (double)REPETITIONS;
         sf_compression_fit_free(&fit);
     }
     return SF_OK;
@@ -218,13 +218,20 @@ static void binomial_bounds(double bounds[2]) {
 }
 
 static void report_coverage(sf_study *s, const coverage c[QUANTITIES]) {
-    static const char *const names[SF_ESTIMATES] = {
-        "E", "HU", "SHAPE", "c of the rate", "ED", "BETA1", "densification exponent", "densification limit"};
+    static const char *const names[SF_ESTIMATES] = {"E",
+                                                    "HU",
+                                                    "SHAPE",
+                                                    "ALPHA",
+                                                    "c of the rate",
+                                                    "ED",
+                                                    "BETA1",
+                                                    "densification exponent",
+                                                    "densification limit"};
     double bounds[2];
     binomial_bounds(bounds);
     for (int k = 0; k < QUANTITIES; k++) {
         char name[64];
-        if (!c[k].counted)
+        if (!c[k].counted || k == SF_ESTIMATE_ALPHA) /* of the few fits that take it */
             continue;
         if (k < SF_ESTIMATES)
             snprintf(name, sizeof name, "%s", names[k]);

@@ -351,14 +351,16 @@ static double predict_unloading(const sf_compression_model *model, const gsl_vec
     const sf_compression_data *d = model->data;
     const sf_compression_test *t = &d->config->test[d->test[i]];
     int count = model->spline.count;
-    double hu = n->value[SF_NUMBER_HU], shape = n->value[SF_NUMBER_SHAPE];
+    double hu = n->value[SF_NUMBER_HU], shape = n->value[SF_NUMBER_SHAPE], alpha = n->value[SF_NUMBER_ALPHA];
     ordinate o, peak;
     evaluate(model, n->coefficient[0], n, d->strain[i], &model->value_row[i * count],
              &model->area_row[i * count], &o);
     evaluate(model, n->coefficient[0], n, t->largest_strain, model->peak_row[d->test[i]][0],
              model->peak_row[d->test[i]][1], &peak);
     double ratio = fmax(1e-12, fmin(1, o.energy / peak.energy)), power = pow(ratio, shape);
-    double factor = sf_unloading_factor(hu, shape, 1, ratio), bend = (1 - hu) * shape * power * o.stress;
+    double rest = fmax(1e-9, 1 - power), loss = pow(rest, alpha),
+           slope = (1 - hu) * alpha * loss / rest * power;
+    double factor = sf_unloading_factor(hu, shape, alpha, ratio), bend = shape * slope * o.stress;
     if (gradient) {
         double by_energy = bend / fmax(o.energy, 1e-12 * peak.energy), by_peak = -bend / peak.energy;
         add_coefficients(model, n, 0, o.stress_by, factor, gradient);
@@ -370,8 +372,9 @@ static double predict_unloading(const sf_compression_model *model, const gsl_vec
                           factor * o.stress_by_limit + by_energy * o.energy_by_limit +
                               by_peak * peak.energy_by_limit,
                           gradient);
-        add_number(model, parameters, SF_NUMBER_HU, (1 - power) * o.stress, gradient);
-        add_number(model, parameters, SF_NUMBER_SHAPE, (1 - hu) * power * log(ratio) * o.stress, gradient);
+        add_number(model, parameters, SF_NUMBER_HU, loss * o.stress, gradient);
+        add_number(model, parameters, SF_NUMBER_SHAPE, slope * log(ratio) * o.stress, gradient);
+        add_number(model, parameters, SF_NUMBER_ALPHA, -(1 - hu) * loss * log(rest) * o.stress, gradient);
     }
     return factor * o.stress;
 }
@@ -450,6 +453,7 @@ static void set_ranges(sf_compression_model *model) {
     const sf_number_range range[SF_NUMBERS] = {
         [SF_NUMBER_HU] = {hysteresis, false, 1e-4, 1, 1},
         [SF_NUMBER_SHAPE] = {hysteresis, true, 0.05, 50, 1},
+        [SF_NUMBER_ALPHA] = {hysteresis && model->form.alpha, true, 0.05, 20, 1},
         [SF_NUMBER_LOG_RATE] = {model->form.rate == SF_RATE_LOG, false, 0, INFINITY, 0},
         [SF_NUMBER_ED] = {maxwell, true, 1e-5 * size, 1e3 * size, 0},
         [SF_NUMBER_BETA1] = {maxwell, true, 0.01 / longest, 100 / shortest, 5000},
@@ -458,8 +462,11 @@ static void set_ranges(sf_compression_model *model) {
     };
     memcpy(model->range, range, sizeof range);
     int index = model->curve_count * (model->spline.count - 1);
-    for (int k = 0; k < SF_NUMBERS; k++)
+    for (int k = 0; k < SF_NUMBERS; k++) {
+        if (k == SF_NUMBER_HU)
+            model->loading_count = index;
         model->range[k].index = model->range[k].index ? index++ : -1;
+    }
     model->parameter_count = index;
 }
 
@@ -556,6 +563,7 @@ void sf_compression_guess(const sf_compression_model *model, double decay, gsl_v
     const double start[SF_NUMBERS] = {
         [SF_NUMBER_HU] = 0.1,
         [SF_NUMBER_SHAPE] = 2,
+        [SF_NUMBER_ALPHA] = 1,
         [SF_NUMBER_LOG_RATE] = 0.03,
         [SF_NUMBER_ED] = 0.1 * smoothed(model->data, 0, model->data->start),
         [SF_NUMBER_BETA1] =

@@ -41,21 +41,23 @@ void sf_compression_branch(const sf_compression_data *data, int test, bool unloa
 
 typedef enum sf_rule { SF_H1_AUTO, SF_H1_FREE, SF_H2, SF_RULES } sf_rule; /* theory, "Densification" */
 
-/* Parameters beside the curve. */
+/* Parameters beside the curve: those of loading, then those of unloading, which only its points depend on. */
 typedef enum sf_number {
-    SF_NUMBER_HU,       /* - */
-    SF_NUMBER_SHAPE,    /* - */
     SF_NUMBER_LOG_RATE, /* -, factor 1 + c ln(rate/slowest rate) */
     SF_NUMBER_ED,       /* Pa */
     SF_NUMBER_BETA1,    /* s-1 */
     SF_NUMBER_EXPONENT, /* - */
     SF_NUMBER_LIMIT,    /* - */
+    SF_NUMBER_HU,       /* - */
+    SF_NUMBER_SHAPE,    /* - */
+    SF_NUMBER_ALPHA,    /* - */
     SF_NUMBERS
 } sf_number;
 
 typedef struct sf_compression_form {
     sf_rate_model rate;
     sf_rule rule;
+    bool alpha; /* ALPHA is fitted; else it is 1 */
 } sf_compression_form;
 
 /* A bounded parameter: logarithmic between positive bounds, else linear; high = INFINITY: not bounded. */
@@ -71,6 +73,7 @@ typedef struct sf_compression_model {
     sf_compression_form form;
     int curve_count;
     int parameter_count;
+    int loading_count; /* the first of them; the rest is of unloading */
     sf_number_range range[SF_NUMBERS];
     sf_spline spline;                            /* on [0, data->start] */
     double *value_row;                           /* [data->count][spline.count] up to the start; owned */

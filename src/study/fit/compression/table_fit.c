@@ -16,37 +16,72 @@ static const double RANK_TOLERANCE = 1e-7; /* columns of the Jacobian below it d
 
 /* ---- one search ---- */
 
+/* One side of the tests: loading with its parameters, or unloading with its own, given the loading. A law of
+ * unloading that does not fit so cannot bend the loading curve. */
 typedef struct problem {
     const sf_compression_model *model;
-    double *stress; /* scratch */
+    bool unloading;
+    gsl_vector *all;    /* every parameter; those of the side are searched */
+    double *stress;     /* scratch */
+    gsl_matrix *change; /* [points][all parameters], scratch */
 } problem;
+
+static size_t first_of(const sf_compression_model *model, bool unloading) {
+    return unloading ? (size_t)model->loading_count : 0;
+}
+
+static size_t count_of(const sf_compression_model *model, bool unloading) {
+    return (size_t)(unloading ? model->parameter_count - model->loading_count : model->loading_count);
+}
+
+static int points_of(const sf_compression_data *d, bool unloading) {
+    int count = 0;
+    for (int i = 0; i < d->count; i++)
+        count += d->unloading[i] == unloading;
+    return count;
+}
+
+static void take(const problem *p, const gsl_vector *x) {
+    gsl_vector_view own =
+        gsl_vector_subvector(p->all, first_of(p->model, p->unloading), count_of(p->model, p->unloading));
+    gsl_vector_memcpy(&own.vector, x);
+}
 
 static int deviations(const gsl_vector *x, void *context, gsl_vector *out) {
     const problem *p = context;
     const sf_compression_data *d = p->model->data;
-    sf_compression_predict(p->model, x, p->stress, NULL);
-    for (int i = 0; i < d->count; i++)
-        gsl_vector_set(out, (size_t)i, (p->stress[i] - d->stress[i]) / d->sigma[i]);
+    take(p, x);
+    sf_compression_predict(p->model, p->all, p->stress, NULL);
+    gsl_vector_set_zero(out);
+    for (int i = 0, k = 0; i < d->count; i++)
+        if (d->unloading[i] == p->unloading)
+            gsl_vector_set(out, (size_t)k++, (p->stress[i] - d->stress[i]) / d->sigma[i]);
     return GSL_SUCCESS;
 }
 
 static int derivatives(const gsl_vector *x, void *context, gsl_matrix *out) {
     const problem *p = context;
     const sf_compression_data *d = p->model->data;
-    sf_compression_predict(p->model, x, p->stress, out);
-    for (int i = 0; i < d->count; i++) {
-        gsl_vector_view row = gsl_matrix_row(out, (size_t)i);
-        gsl_vector_scale(&row.vector, 1 / d->sigma[i]);
-    }
+    const size_t first = first_of(p->model, p->unloading);
+    take(p, x);
+    sf_compression_predict(p->model, p->all, p->stress, p->change);
+    for (int i = 0, k = 0; i < d->count; i++)
+        if (d->unloading[i] == p->unloading) {
+            for (size_t j = 0; j < out->size2; j++)
+                gsl_matrix_set(out, (size_t)k, j,
+                               gsl_matrix_get(p->change, (size_t)i, first + j) / d->sigma[i]);
+            k++;
+        }
     return GSL_SUCCESS;
 }
 
-/* Searches from `x`, into which the minimum goes; returns chi2, INFINITY if the search fails. `covariance`
- * may be NULL. */
-static double search(const sf_compression_model *model, gsl_vector *x, gsl_matrix *covariance,
+/* Searches the side's parameters from those in `x`, into which the minimum goes; returns chi2, INFINITY if
+ * the search fails. `covariance` [side's parameters] may be NULL. */
+static double search(const sf_compression_model *model, bool unloading, gsl_vector *x, gsl_matrix *covariance,
                      sf_error *err) {
-    size_t n = (size_t)model->data->count, p = (size_t)model->parameter_count;
-    problem context = {model, malloc(n * sizeof(double))};
+    size_t n = (size_t)points_of(model->data, unloading), p = count_of(model, unloading), all = x->size;
+    problem context = {model, unloading, x, malloc((size_t)model->data->count * sizeof(double)),
+                       gsl_matrix_alloc((size_t)model->data->count, all)};
     gsl_multifit_nlinear_fdf fdf = {.f = deviations, .df = derivatives, .n = n, .p = p, .params = &context};
     gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
     how.solver = gsl_multifit_nlinear_solver_cholesky;
@@ -54,26 +89,34 @@ static double search(const sf_compression_model *model, gsl_vector *x, gsl_matri
         gsl_multifit_nlinear_scale_levenberg; /* parameters are logarithms: a flat one stays where it is */
     gsl_multifit_nlinear_workspace *w =
         n > p ? gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, n, p) : NULL;
+    gsl_vector *start = gsl_vector_alloc(p);
     double chi2 = INFINITY;
     int info;
-    if (!context.stress || (n > p && !w)) {
+    if (!context.stress || !context.change || !start || (n > p && !w)) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a fit of %zu parameters to %zu points", p, n);
-    } else if (w && gsl_multifit_nlinear_init(x, &fdf, w) == GSL_SUCCESS) {
-        gsl_multifit_nlinear_driver(ITERATIONS, STEP_TOLERANCE, GRADIENT_TOLERANCE, 0, NULL, NULL, &info, w);
-        gsl_blas_ddot(gsl_multifit_nlinear_residual(w), gsl_multifit_nlinear_residual(w), &chi2);
-        if (isfinite(chi2))
-            gsl_vector_memcpy(x, gsl_multifit_nlinear_position(w));
-        if (covariance)
-            gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), RANK_TOLERANCE, covariance);
+    } else if (w) {
+        gsl_vector_view own = gsl_vector_subvector(x, first_of(model, unloading), p);
+        gsl_vector_memcpy(start, &own.vector);
+        if (gsl_multifit_nlinear_init(start, &fdf, w) == GSL_SUCCESS) {
+            gsl_multifit_nlinear_driver(ITERATIONS, STEP_TOLERANCE, GRADIENT_TOLERANCE, 0, NULL, NULL, &info,
+                                        w);
+            gsl_blas_ddot(gsl_multifit_nlinear_residual(w), gsl_multifit_nlinear_residual(w), &chi2);
+            take(&context, isfinite(chi2) ? gsl_multifit_nlinear_position(w) : start);
+            if (covariance)
+                gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), RANK_TOLERANCE, covariance);
+        }
     }
     gsl_multifit_nlinear_free(w);
+    gsl_vector_free(start);
+    gsl_matrix_free(context.change);
     free(context.stress);
     return isfinite(chi2) ? chi2 : INFINITY;
 }
 
-/* Searches from the guess; the Maxwell branch from several decay rates, of which the best is gone on with. */
-static sf_status search_form(const sf_compression_model *model, gsl_vector *best, double *chi2,
-                             sf_error *err) {
+/* Searches the loading from the guess; the Maxwell branch from several decay rates, of which the best is gone
+ * on with. `best` has the guess of unloading. */
+static sf_status search_loading(const sf_compression_model *model, gsl_vector *best, double *chi2,
+                                sf_error *err) {
     int starts = model->form.rate == SF_RATE_MAXWELL ? MAXWELL_STARTS : 1;
     gsl_vector *x = gsl_vector_alloc((size_t)model->parameter_count);
     *chi2 = INFINITY;
@@ -81,8 +124,8 @@ static sf_status search_form(const sf_compression_model *model, gsl_vector *best
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", model->parameter_count);
     for (int k = 0; k < starts && err->status == SF_OK; k++) {
         sf_compression_guess(model, (k + 1.0) / (starts + 1), x);
-        double value = search(model, x, NULL, err);
-        if (value < *chi2) {
+        double value = search(model, false, x, NULL, err);
+        if (value < *chi2 || k == 0) {
             *chi2 = value;
             gsl_vector_memcpy(best, x);
         }
@@ -99,12 +142,12 @@ static sf_status try_form(const sf_compression_data *data, sf_compression_form f
     if (sf_compression_model_init(data, form, &model, err) != SF_OK)
         return err->status;
     gsl_vector *x = gsl_vector_alloc((size_t)model.parameter_count);
-    double n = data->count;
+    double n = points_of(data, false);
     if (!x)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", model.parameter_count);
-    else if (search_form(&model, x, &candidate->chi2, err) == SF_OK)
-        *candidate = (sf_candidate){true, model.parameter_count, candidate->chi2,
-                                    n * log(candidate->chi2 / n) + model.parameter_count * log(n)};
+    else if (search_loading(&model, x, &candidate->chi2, err) == SF_OK)
+        *candidate = (sf_candidate){true, model.loading_count, candidate->chi2,
+                                    n * log(candidate->chi2 / n) + model.loading_count * log(n)};
     gsl_vector_free(x);
     sf_compression_model_free(&model);
     return err->status;
@@ -127,18 +170,20 @@ static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_e
                                          [SF_RULE_H1_AUTOMATIC] = SF_H1_AUTO,
                                          [SF_RULE_H2] = SF_H2};
     const sf_compression_config *c = fit->data.config;
-    *form = (sf_compression_form){c->test_count == 1 ? SF_RATE_NONE : c->rate_model, prescribed[c->rule]};
+    *form =
+        (sf_compression_form){c->test_count == 1 ? SF_RATE_NONE : c->rate_model, prescribed[c->rule], false};
     if (form->rate == SF_RATE_AUTO) {
         for (int k = 0; k < SF_RATE_MODELS; k++)
-            if (try_form(&fit->data, (sf_compression_form){(sf_rate_model)k, form->rule}, &fit->rate[k],
-                         err) != SF_OK)
+            if (try_form(&fit->data, (sf_compression_form){(sf_rate_model)k, form->rule, false},
+                         &fit->rate[k], err) != SF_OK)
                 return err->status;
         form->rate = (sf_rate_model)lowest(fit->rate, SF_RATE_MODELS, SF_RATE_NONE);
     }
     if (c->rule != SF_RULE_AUTO)
         return SF_OK;
     for (int k = 0; k < SF_RULES; k++)
-        if (try_form(&fit->data, (sf_compression_form){form->rate, (sf_rule)k}, &fit->rule[k], err) != SF_OK)
+        if (try_form(&fit->data, (sf_compression_form){form->rate, (sf_rule)k, false}, &fit->rule[k], err) !=
+            SF_OK)
             return err->status;
     form->rule = fit->rule[SF_H2].bic < fit->rule[SF_H1_FREE].bic ? SF_H2 : SF_H1_FREE;
     return SF_OK;
@@ -147,11 +192,13 @@ static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_e
 /* ---- estimates with their intervals ---- */
 
 /* Correlation of neighbouring deviations of a branch. Independent ones have 0 +- 1/sqrt(count). */
-static double neighbour_correlation(const sf_compression_fit *fit) {
+static double neighbour_correlation(const sf_compression_fit *fit, bool unloading) {
     const sf_compression_data *d = &fit->data;
     double product = 0, square = 0;
     for (int i = 0; i < d->count; i++) {
         double r = (d->stress[i] - fit->stress[i]) / d->sigma[i];
+        if (d->unloading[i] != unloading)
+            continue;
         square += r * r;
         if (i > 0 && d->test[i] == d->test[i - 1] && d->unloading[i] == d->unloading[i - 1])
             product += r * (d->stress[i - 1] - fit->stress[i - 1]) / d->sigma[i - 1];
@@ -255,21 +302,22 @@ static void estimate_modulus(const sf_compression_fit *fit, sf_estimate *e) {
     gsl_fit_wlinear(&d->strain[first], 1, weight, 1, &d->stress[first], 1, (size_t)used, &c0, &e->value, &c00,
                     &c01, &c11, &chi2);
     e->present = true;
-    e->error = sqrt(c11 * fit->serial);
+    e->error = sqrt(c11 * fit->side[0].serial);
     set_interval(fit, false, -INFINITY, INFINITY, e);
     if (!(e->low > 0))
         e->note = "not distinguishable from zero by these tests";
 }
 
 static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {
-    static const char *const names[SF_ESTIMATES] = {"E",  "HU",    "SHAPE",    "c (log rate)",
+    static const char *const names[SF_ESTIMATES] = {"E",  "HU",    "SHAPE",    "ALPHA", "c (log rate)",
                                                     "ED", "BETA1", "exponent", "limit"};
-    static const char *const units[SF_ESTIMATES] = {"Pa", "", "", "", "Pa", "1/s", "", ""};
+    static const char *const units[SF_ESTIMATES] = {"Pa", "", "", "", "", "Pa", "1/s", "", ""};
     for (int k = 0; k < SF_ESTIMATES; k++)
         fit->estimate[k] = (sf_estimate){names[k], units[k], false, NAN, NAN, NAN, NAN, ""};
     estimate_modulus(fit, &fit->estimate[SF_ESTIMATE_E]);
     estimate_number(fit, SF_NUMBER_HU, false, &fit->estimate[SF_ESTIMATE_HU]);
     estimate_number(fit, SF_NUMBER_SHAPE, true, &fit->estimate[SF_ESTIMATE_SHAPE]);
+    estimate_number(fit, SF_NUMBER_ALPHA, true, &fit->estimate[SF_ESTIMATE_ALPHA]);
     estimate_number(fit, SF_NUMBER_LOG_RATE, false, &fit->estimate[SF_ESTIMATE_LOG_RATE]);
     estimate_number(fit, SF_NUMBER_ED, true, &fit->estimate[SF_ESTIMATE_ED]);
     estimate_number(fit, SF_NUMBER_BETA1, true, &fit->estimate[SF_ESTIMATE_BETA1]);
@@ -320,30 +368,148 @@ static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
 
 /* ---- everything ---- */
 
+/* Unloading with ALPHA, from what was found without it: taken if the points ask for it (BIC). */
+static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
+    sf_compression_model model;
+    const sf_compression_form form = {fit->model.form.rate, fit->model.form.rule, true};
+    double n = points_of(&fit->data, true);
+    SF_TRY(sf_compression_model_init(&fit->data, form, &model, err));
+    gsl_vector *x = gsl_vector_alloc((size_t)model.parameter_count);
+    if (!x) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", model.parameter_count);
+    } else {
+        sf_compression_guess(&model, 0.5, x);
+        for (size_t k = 0; k < fit->parameters->size; k++) /* ALPHA is the last */
+            gsl_vector_set(x, k, gsl_vector_get(fit->parameters, k));
+        double chi2 = search(&model, true, x, NULL, err);
+        if (n * log(chi2 / fit->side[1].chi2) + log(n) < 0) {
+            sf_compression_model old = fit->model;
+            gsl_vector *without = fit->parameters;
+            fit->side[1].chi2 = chi2;
+            fit->model = model;
+            fit->parameters = x;
+            model = old;
+            x = without;
+        }
+    }
+    gsl_vector_free(x);
+    sf_compression_model_free(&model);
+    return err->status;
+}
+
+/* The unloading was found for the loading's parameters, whose uncertainty it inherits: with J1 and J2 the
+ * derivatives of its deviations by both, x2 moves by G = -(J2'J2)^-1 J2'J1 for a unit of x1. */
+static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *loading,
+                                  const gsl_matrix *unloading, sf_error *err) {
+    const sf_compression_data *d = &fit->data;
+    const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true), n = (size_t)d->count;
+    gsl_matrix *change = gsl_matrix_alloc(n, p1 + p2), *cross = gsl_matrix_alloc(p2, p1),
+               *g = gsl_matrix_alloc(p2, p1), *gc = gsl_matrix_alloc(p2, p1);
+    gsl_matrix_view c11 = gsl_matrix_submatrix(fit->covariance, 0, 0, p1, p1),
+                    c21 = gsl_matrix_submatrix(fit->covariance, p1, 0, p2, p1),
+                    c12 = gsl_matrix_submatrix(fit->covariance, 0, p1, p1, p2),
+                    c22 = gsl_matrix_submatrix(fit->covariance, p1, p1, p2, p2);
+    if (!change || !cross || !g || !gc) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit");
+    } else {
+        sf_compression_predict(&fit->model, fit->parameters, fit->stress, change);
+        for (size_t i = 0; i < n; i++) {
+            gsl_vector_view row = gsl_matrix_row(change, i);
+            gsl_vector_scale(&row.vector, d->unloading[i] ? 1 / d->sigma[i] : 0);
+        }
+        gsl_matrix_view j1 = gsl_matrix_submatrix(change, 0, 0, n, p1),
+                        j2 = gsl_matrix_submatrix(change, 0, p1, n, p2);
+        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, &j2.matrix, &j1.matrix, 0, cross);
+        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, -1, unloading, cross, 0, g);
+        gsl_matrix_memcpy(&c11.matrix, loading);
+        gsl_matrix_scale(&c11.matrix, fit->side[0].misfit * fit->side[0].serial);
+        gsl_matrix_memcpy(&c22.matrix, unloading);
+        gsl_matrix_scale(&c22.matrix, fit->side[1].misfit * fit->side[1].serial);
+        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, g, &c11.matrix, 0, gc);
+        gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, gc, g, 1, &c22.matrix);
+        gsl_matrix_memcpy(&c21.matrix, gc);
+        gsl_matrix_transpose_memcpy(&c12.matrix, gc);
+    }
+    gsl_matrix_free(change);
+    gsl_matrix_free(cross);
+    gsl_matrix_free(g);
+    gsl_matrix_free(gc);
+    return err->status;
+}
+
+/* Root mean square of the deviations of a side, over the stress and over the largest stress of all tests. */
+static void measure_side(const sf_compression_fit *fit, bool unloading, sf_side *side) {
+    const sf_compression_data *d = &fit->data;
+    double relative = 0, absolute = 0, largest = 0;
+    for (int i = 0; i < d->count; i++)
+        largest = fmax(largest, d->stress[i]);
+    for (int i = 0; i < d->count; i++) {
+        double off = fit->stress[i] - d->stress[i];
+        if (d->unloading[i] != unloading)
+            continue;
+        relative += pow(off / fmax(d->stress[i], 0.01 * largest), 2);
+        absolute += pow(off / largest, 2);
+    }
+    side->relative = sqrt(relative / side->points);
+    side->of_largest = sqrt(absolute / side->points);
+}
+
+/* Both sides again with their covariances, at the minimum. */
+static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
+    const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true), p = p1 + p2;
+    gsl_matrix *own[2] = {gsl_matrix_alloc(p1, p1), p2 > 0 ? gsl_matrix_alloc(p2, p2) : NULL};
+    fit->covariance = gsl_matrix_calloc(p, p);
+    if (!fit->covariance || !own[0] || (p2 > 0 && !own[1]))
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit");
+    for (int k = 0; k < (p2 > 0 ? 2 : 1) && err->status == SF_OK; k++) {
+        sf_side *side = &fit->side[k];
+        side->points = points_of(&fit->data, k == 1);
+        side->chi2 = search(&fit->model, k == 1, fit->parameters, own[k], err);
+        side->misfit = side->chi2 / ((double)side->points - (double)count_of(&fit->model, k == 1));
+    }
+    sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
+    for (int k = 0; k < 2; k++) {
+        fit->side[k].correlation = neighbour_correlation(fit, k == 1);
+        fit->side[k].serial = serial_factor(fit->side[k].correlation, fit->side[k].points);
+    }
+    if (err->status == SF_OK && p2 > 0) {
+        join_covariances(fit, own[0], own[1], err);
+    } else if (err->status == SF_OK) {
+        gsl_matrix_memcpy(fit->covariance, own[0]);
+        gsl_matrix_scale(fit->covariance, fit->side[0].misfit * fit->side[0].serial);
+    }
+    gsl_matrix_free(own[0]);
+    gsl_matrix_free(own[1]);
+    return err->status;
+}
+
 static sf_status finish(sf_compression_fit *fit, sf_error *err) {
     const sf_compression_config *c = fit->data.config;
-    size_t p = (size_t)fit->model.parameter_count;
-    fit->parameters = gsl_vector_alloc(p);
-    fit->covariance = gsl_matrix_alloc(p, p);
+    fit->parameters = gsl_vector_alloc((size_t)fit->model.parameter_count);
     fit->stress = sf_alloc(err, (unsigned long)fit->data.count, sizeof *fit->stress, "fitted stresses");
-    if (!fit->parameters || !fit->covariance || !fit->stress)
+    if (!fit->parameters || !fit->stress)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit");
-    if (search_form(&fit->model, fit->parameters, &fit->chi2, err) != SF_OK)
-        return err->status;
-    if (isfinite(fit->chi2))
-        fit->chi2 = search(&fit->model, fit->parameters, fit->covariance, err);
+    bool unloads = count_of(&fit->model, true) > 0;
+    SF_TRY(search_loading(&fit->model, fit->parameters, &fit->side[0].chi2, err));
+    if (isfinite(fit->side[0].chi2) && unloads) {
+        fit->side[1].chi2 = search(&fit->model, true, fit->parameters, NULL, err);
+        if (err->status == SF_OK && isfinite(fit->side[1].chi2))
+            SF_TRY(try_alpha(fit, err));
+    }
+    if (err->status == SF_OK && isfinite(fit->side[0].chi2) && isfinite(fit->side[1].chi2))
+        SF_TRY(find_errors(fit, err));
     double left = fit->data.count - fit->model.parameter_count;
-    if (err->status != SF_OK || !isfinite(fit->chi2) || !(left > 0))
+    if (err->status != SF_OK || !(fit->side[0].misfit > 0) || (unloads && !(fit->side[1].misfit > 0)) ||
+        !isfinite(fit->side[0].chi2 + fit->side[1].chi2))
         return SF_FAIL(err, SF_ERR_NUMERIC,
                        "the fit of %d parameters to %d points did not converge; fewer forms can be asked for "
                        "with rate_model and densification",
                        fit->model.parameter_count, fit->data.count);
-    sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
+    fit->chi2 = fit->side[0].chi2 + fit->side[1].chi2;
     fit->misfit = fit->chi2 / left;
-    fit->correlation = neighbour_correlation(fit);
-    fit->serial = serial_factor(fit->correlation, fit->data.count);
-    fit->quantile = gsl_cdf_tdist_Pinv(0.5 + 0.5 * c->confidence, left / fit->serial);
-    gsl_matrix_scale(fit->covariance, fit->misfit * fit->serial);
+    for (int k = 0; k < (unloads ? 2 : 1); k++)
+        measure_side(fit, k == 1, &fit->side[k]);
+    fit->quantile = gsl_cdf_tdist_Pinv(0.5 + 0.5 * c->confidence, left / fit->side[0].serial);
     if (estimate_all(fit, err) != SF_OK)
         return err->status;
     return fill_table(fit, err);
@@ -398,7 +564,7 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
                        .modulus = e[SF_ESTIMATE_E].value,
                        .hysteresis_hu = e[SF_ESTIMATE_HU].value,
                        .hysteresis_shape = e[SF_ESTIMATE_SHAPE].value,
-                       .hysteresis_alpha = 1,
+                       .hysteresis_alpha = e[SF_ESTIMATE_ALPHA].present ? e[SF_ESTIMATE_ALPHA].value : 1,
                        .damp = c->damp,
                        .maxwell_modulus = maxwell ? e[SF_ESTIMATE_ED].value : 0,
                        .maxwell_rate = maxwell ? e[SF_ESTIMATE_BETA1].value : 5000,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The joint fit of all tests: weighted least squares of compression_model.h (GSL, Levenberg-Marquardt), the
+/* The joint fit of all tests: weighted least squares of point_model.h (GSL, Levenberg-Marquardt), loading
+ * first and then unloading given the loading, the
  * choice of rate dependence and densification by BIC, and the 95 % interval of every number. */
 #ifndef SF_FIT_COMPRESSION_FIT_H
 #define SF_FIT_COMPRESSION_FIT_H
@@ -14,6 +15,7 @@ typedef enum sf_estimate_name {
     SF_ESTIMATE_E,        /* Pa */
     SF_ESTIMATE_HU,       /* - */
     SF_ESTIMATE_SHAPE,    /* - */
+    SF_ESTIMATE_ALPHA,    /* - */
     SF_ESTIMATE_LOG_RATE, /* - */
     SF_ESTIMATE_ED,       /* Pa */
     SF_ESTIMATE_BETA1,    /* s-1 */
@@ -37,15 +39,26 @@ typedef struct sf_candidate {
     double chi2, bic;
 } sf_candidate;
 
+/* How well one side of the tests is met. */
+typedef struct sf_side {
+    int points;
+    double chi2;        /* sum of squares of deviation over sigma */
+    double misfit;      /* chi2 over degrees of freedom: the variance factor */
+    double correlation; /* of neighbouring deviations */
+    double serial;      /* variance factor for it, 1 or more */
+    double relative;    /* root mean square of the deviation over the stress (over a hundredth of the largest
+                           where that is more) */
+    double of_largest;  /* the same over the largest stress of the tests */
+} sf_side;
+
 typedef struct sf_compression_fit {
     sf_compression_data data;
     sf_compression_model model;
     gsl_vector *parameters; /* of the chosen form; owned */
-    gsl_matrix *covariance; /* of the parameters, with both factors below in it; owned */
-    double chi2;            /* sum of squares of deviation over sigma */
-    double misfit;          /* chi2 over degrees of freedom: the variance factor */
-    double correlation;     /* of neighbouring deviations */
-    double serial;          /* variance factor for it, 1 or more */
+    gsl_matrix *covariance; /* of the parameters, with the factors of both sides in it; owned */
+    sf_side side[2];        /* loading; unloading, which is fitted given the loading; zeros without any */
+    double chi2;            /* of both */
+    double misfit;          /* of both, over the degrees of freedom */
     double quantile;        /* of Student's t for the confidence */
     double *stress;         /* [data.count] Pa, of the fit; owned */
     sf_candidate rate[SF_RATE_MODELS];

@@ -227,9 +227,16 @@ static void put_quality(FILE *out, const sf_table_result *r) {
     sf_html_fact(&table, "scatter",
                  "%.3g kPa and %.3g %% of the stress, of the data about a free smooth curve",
                  1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative);
-    sf_html_fact(&table, "neighbours",
-                 "correlation of their deviations %.3g; the variances are multiplied by %.3g for it",
-                 fit->correlation, fit->serial);
+    for (int k = 0; k < 2; k++)
+        if (fit->side[k].points > 0)
+            sf_html_fact(&table, k ? "unloading, given the loading" : "loading",
+                         "rms deviation %.3g %% of the stress, %.3g %% of the largest; misfit (1 is scatter "
+                         "alone) %.3g",
+                         100 * fit->side[k].relative, 100 * fit->side[k].of_largest, fit->side[k].misfit);
+    sf_html_fact(
+        &table, "neighbours",
+        "correlation of their deviations while loading %.3g; its variances are multiplied by %.3g for it",
+        fit->side[0].correlation, fit->side[0].serial);
     sf_html_fact(&table, "written card", "in the solver's own law it differs from the fit by at most %.2g %%",
                  r->card_percent);
     sf_html_table_end(&table);
@@ -369,6 +376,17 @@ static void put_estimates(FILE *out, const sf_compression_fit *fit) {
     }
 }
 
+static void put_misfits(FILE *out, const sf_compression_fit *fit) {
+    static const char *const sides[2] = {"loading", "unloading, given the loading"};
+    for (int k = 0; k < 2; k++)
+        if (fit->side[k].points > 0)
+            fprintf(out,
+                    "  %s: rms deviation %.3g %% of the stress, %.3g %% of the largest; misfit (1 is scatter "
+                    "alone) %.3g\n",
+                    sides[k], 100 * fit->side[k].relative, 100 * fit->side[k].of_largest,
+                    fit->side[k].misfit);
+}
+
 static void describe(FILE *out, const void *place, bool comments) {
     const sf_table_result *r = place;
     const sf_compression_fit *fit = &r->fit;
@@ -378,12 +396,11 @@ static void describe(FILE *out, const void *place, bool comments) {
         fprintf(out, "  rate dependence  %s\n  densification    %s, from strain %.4g\n", rate, rule,
                 fit->data.start);
         put_estimates(out, fit);
-        fprintf(
-            out,
-            "  scatter of the data: %.3g kPa and %.3g %% of the stress; misfit (1 is scatter alone) %.3g\n"
-            "  card in the solver's law against the fit: largest difference %.2g %%\n",
-            1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative, fit->misfit,
-            r->card_percent);
+        fprintf(out, "  scatter of the data: %.3g kPa and %.3g %% of the stress\n",
+                1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative);
+        put_misfits(out, fit);
+        fprintf(out, "  card in the solver's law against the fit: largest difference %.2g %%\n",
+                r->card_percent);
         return;
     }
     fputs(" from\n", out);
@@ -398,12 +415,14 @@ static void describe(FILE *out, const void *place, bool comments) {
 
 static void warn(const void *place, const sf_sink *sink) {
     const sf_compression_fit *fit = &((const sf_table_result *)place)->fit;
-    if (fit->misfit > 2)
-        sf_sink_tell(
-            sink, SF_WARNING,
-            "the law misses the data by %.3g times their scatter (fit.png, lower panel); the intervals "
-            "are widened by as much",
-            sqrt(fit->misfit));
+    static const char *const sides[2] = {"loading", "unloading"};
+    for (int k = 0; k < 2; k++)
+        if (fit->side[k].points > 0 && fit->side[k].misfit > 2)
+            sf_sink_tell(
+                sink, SF_WARNING,
+                "the law misses the %s by %.3g times its scatter (fit.png, lower panel), %.3g %% of the "
+                "largest stress; the intervals are widened by as much",
+                sides[k], sqrt(fit->side[k].misfit), 100 * fit->side[k].of_largest);
 }
 
 /* ---- files ---- */
@@ -502,7 +521,7 @@ static void json_choice(sf_json *json, const sf_compression_fit *fit) {
 }
 
 static void json_estimates(sf_json *json, const sf_compression_fit *fit) {
-    static const char *const names[SF_ESTIMATES] = {"E_Pa",  "HU",        "SHAPE",    "log_rate_c",
+    static const char *const names[SF_ESTIMATES] = {"E_Pa",  "HU",        "SHAPE",    "ALPHA", "log_rate_c",
                                                     "ED_Pa", "BETA1_1_s", "exponent", "limit"};
     static const sf_row rows[] = {
         {.key = "value", SF_ROW_OF(NUMBER, sf_estimate, value)},
@@ -530,6 +549,19 @@ static sf_value coefficients_of(const void *record) {
     return sf_value_integer((int64_t)((const sf_table_result *)record)->fit.model.spline.count - 1);
 }
 
+/* NaN, which JSON shows as null, without any unloading. */
+static double of_unloading(const void *record, double value) {
+    return ((const sf_table_result *)record)->fit.side[1].points > 0 ? value : NAN;
+}
+
+static sf_value unloading_misfit(const void *record) {
+    return sf_value_real(of_unloading(record, ((const sf_table_result *)record)->fit.side[1].misfit));
+}
+
+static sf_value unloading_rms(const void *record) {
+    return sf_value_real(of_unloading(record, ((const sf_table_result *)record)->fit.side[1].of_largest));
+}
+
 static const sf_row quality_rows[] = {
     {.key = "confidence", .value = confidence_of},
     {.key = "points", SF_ROW_OF(INTEGER, sf_table_result, fit.data.count)},
@@ -539,8 +571,12 @@ static const sf_row quality_rows[] = {
     {.key = "scatter_relative", SF_ROW_OF(NUMBER, sf_table_result, fit.data.scatter.relative)},
     {.key = "chi2", SF_ROW_OF(NUMBER, sf_table_result, fit.chi2)},
     {.key = "misfit", SF_ROW_OF(NUMBER, sf_table_result, fit.misfit)},
-    {.key = "neighbour_correlation", SF_ROW_OF(NUMBER, sf_table_result, fit.correlation)},
-    {.key = "variance_factor_for_correlation", SF_ROW_OF(NUMBER, sf_table_result, fit.serial)},
+    {.key = "misfit_loading", SF_ROW_OF(NUMBER, sf_table_result, fit.side[0].misfit)},
+    {.key = "misfit_unloading", .value = unloading_misfit},
+    {.key = "loading_rms_of_largest", SF_ROW_OF(NUMBER, sf_table_result, fit.side[0].of_largest)},
+    {.key = "unloading_rms_of_largest", .value = unloading_rms},
+    {.key = "neighbour_correlation", SF_ROW_OF(NUMBER, sf_table_result, fit.side[0].correlation)},
+    {.key = "variance_factor_for_correlation", SF_ROW_OF(NUMBER, sf_table_result, fit.side[0].serial)},
     {.key = "card_difference_percent", SF_ROW_OF(NUMBER, sf_table_result, card_percent)},
 };
 
