@@ -150,8 +150,6 @@ static sf_status take_table(const sf_compression_source *source, const table_ter
     if (source->contact_force > 0)
         SF_TRY(begin_at_contact(source, t, err));
     for (int i = 0; i < t->count; i++) {
-        if (check_row(t, i, terms, err) != SF_OK)
-            return err->status;
         t->largest_strain = fmax(t->largest_strain, t->strain[i]);
         t->largest_stress = fmax(t->largest_stress, t->stress[i]);
     }
@@ -309,7 +307,14 @@ static sf_status check_unloading(const sf_compression_test *t, const table_terms
 
 static sf_status check_test(const sf_compression_source *source, sf_compression_test *t,
                             const table_terms *terms, sf_error *err) {
+    double lowest = 0;
+    for (int i = 0; i < t->count; i++)
+        lowest = fmin(lowest, t->strain[i]);
+    for (int i = 0; i < t->count && -lowest > t->largest_strain; i++) /* tension, not a later cycle */
+        SF_TRY(check_row(t, i, terms, err));
     SF_TRY(sf_compression_take_cycle(t->cycle ? NULL : source->cycle, t, err));
+    for (int i = 0; i < t->count; i++)
+        SF_TRY(check_row(t, i, terms, err));
     sf_compression_leave_rests_out(t);
     SF_TRY(split_branches(t, terms, err));
     if (source->toe)

@@ -368,11 +368,53 @@ static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
 
 /* ---- everything ---- */
 
+/* Root mean square of the deviations of a side, over the stress and over the largest stress of all tests. */
+static void measure_side(const sf_compression_fit *fit, bool unloading, sf_side *side) {
+    const sf_compression_data *d = &fit->data;
+    double relative = 0, absolute = 0, largest = 0;
+    for (int i = 0; i < d->count; i++)
+        largest = fmax(largest, d->stress[i]);
+    for (int i = 0; i < d->count; i++) {
+        double off = fit->stress[i] - d->stress[i];
+        if (d->unloading[i] != unloading)
+            continue;
+        relative += pow(off / fmax(d->stress[i], 0.01 * largest), 2);
+        absolute += pow(off / largest, 2);
+    }
+    side->relative = sqrt(relative / side->points);
+    side->of_largest = sqrt(absolute / side->points);
+}
+
+/* Searches the unloading from what stands in `x` and from other places: its minimum is not the only one. */
+static double search_unloading(const sf_compression_model *model, gsl_vector *x, sf_error *err) {
+    static const double starts[][3] = {
+        {-2, -1, 0}, {-4, -2, -1}, {0, 0, -1.5}, {-5, 1, 1}}; /* on the real line */
+    size_t first = first_of(model, true), count = count_of(model, true);
+    gsl_vector *trial = gsl_vector_alloc(x->size);
+    double best = search(model, true, x, NULL, err);
+    for (size_t s = 0; trial && s < sizeof starts / sizeof *starts && err->status == SF_OK; s++) {
+        gsl_vector_memcpy(trial, x);
+        for (size_t k = 0; k < count; k++)
+            gsl_vector_set(trial, first + k, starts[s][k]);
+        double chi2 = search(model, true, trial, NULL, err);
+        if (chi2 < best) {
+            best = chi2;
+            gsl_vector_memcpy(x, trial);
+        }
+    }
+    if (!trial)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu parameters", x->size);
+    gsl_vector_free(trial);
+    return best;
+}
+
 /* Unloading with ALPHA, from what was found without it: taken if the points ask for it (BIC). */
 static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
     sf_compression_model model;
     const sf_compression_form form = {fit->model.form.rate, fit->model.form.rule, true};
     double n = points_of(&fit->data, true);
+    if (fit->model.form.alpha)
+        return SF_OK;
     SF_TRY(sf_compression_model_init(&fit->data, form, &model, err));
     gsl_vector *x = gsl_vector_alloc((size_t)model.parameter_count);
     if (!x) {
@@ -381,7 +423,7 @@ static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
         sf_compression_guess(&model, 0.5, x);
         for (size_t k = 0; k < fit->parameters->size; k++) /* ALPHA is the last */
             gsl_vector_set(x, k, gsl_vector_get(fit->parameters, k));
-        double chi2 = search(&model, true, x, NULL, err);
+        double chi2 = search_unloading(&model, x, err);
         if (n * log(chi2 / fit->side[1].chi2) + log(n) < 0) {
             sf_compression_model old = fit->model;
             gsl_vector *without = fit->parameters;
@@ -422,9 +464,9 @@ static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *loa
         gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, &j2.matrix, &j1.matrix, 0, cross);
         gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, -1, unloading, cross, 0, g);
         gsl_matrix_memcpy(&c11.matrix, loading);
-        gsl_matrix_scale(&c11.matrix, fit->side[0].misfit * fit->side[0].serial);
+        gsl_matrix_scale(&c11.matrix, fit->side[0].factor * fit->side[0].serial);
         gsl_matrix_memcpy(&c22.matrix, unloading);
-        gsl_matrix_scale(&c22.matrix, fit->side[1].misfit * fit->side[1].serial);
+        gsl_matrix_scale(&c22.matrix, fit->side[1].factor * fit->side[1].serial);
         gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, g, &c11.matrix, 0, gc);
         gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, gc, g, 1, &c22.matrix);
         gsl_matrix_memcpy(&c21.matrix, gc);
@@ -435,23 +477,6 @@ static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *loa
     gsl_matrix_free(g);
     gsl_matrix_free(gc);
     return err->status;
-}
-
-/* Root mean square of the deviations of a side, over the stress and over the largest stress of all tests. */
-static void measure_side(const sf_compression_fit *fit, bool unloading, sf_side *side) {
-    const sf_compression_data *d = &fit->data;
-    double relative = 0, absolute = 0, largest = 0;
-    for (int i = 0; i < d->count; i++)
-        largest = fmax(largest, d->stress[i]);
-    for (int i = 0; i < d->count; i++) {
-        double off = fit->stress[i] - d->stress[i];
-        if (d->unloading[i] != unloading)
-            continue;
-        relative += pow(off / fmax(d->stress[i], 0.01 * largest), 2);
-        absolute += pow(off / largest, 2);
-    }
-    side->relative = sqrt(relative / side->points);
-    side->of_largest = sqrt(absolute / side->points);
 }
 
 /* Both sides again with their covariances, at the minimum. */
@@ -465,7 +490,8 @@ static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
         sf_side *side = &fit->side[k];
         side->points = points_of(&fit->data, k == 1);
         side->chi2 = search(&fit->model, k == 1, fit->parameters, own[k], err);
-        side->misfit = side->chi2 / ((double)side->points - (double)count_of(&fit->model, k == 1));
+        side->factor = side->chi2 / ((double)side->points - (double)count_of(&fit->model, k == 1));
+        side->misfit = fmax(side->misfit, side->factor);
     }
     sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
     for (int k = 0; k < 2; k++) {
@@ -476,11 +502,35 @@ static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
         join_covariances(fit, own[0], own[1], err);
     } else if (err->status == SF_OK) {
         gsl_matrix_memcpy(fit->covariance, own[0]);
-        gsl_matrix_scale(fit->covariance, fit->side[0].misfit * fit->side[0].serial);
+        gsl_matrix_scale(fit->covariance, fit->side[0].factor * fit->side[0].serial);
     }
     gsl_matrix_free(own[0]);
     gsl_matrix_free(own[1]);
     return err->status;
+}
+
+/* Where the law misses the unloading by far more than the scatter, the scatter is not what tells how much a
+ * point means: the points of small stress would decide. The law's error, a constant part of the largest
+ * stress, is added to it. */
+static sf_status weigh_by_law(sf_compression_fit *fit, sf_error *err) {
+    static const double FAR = 4;
+    const sf_compression_data *d = &fit->data;
+    sf_side *side = &fit->side[1];
+    side->points = points_of(d, true);
+    side->misfit = side->chi2 / ((double)side->points - (double)count_of(&fit->model, true));
+    if (!(side->misfit > FAR))
+        return SF_OK;
+    double largest = 0;
+    sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
+    measure_side(fit, true, side);
+    side->law_error = side->of_largest;
+    for (int i = 0; i < d->count; i++)
+        largest = fmax(largest, d->stress[i]);
+    for (int i = 0; i < d->count; i++)
+        if (d->unloading[i])
+            d->sigma[i] = hypot(d->sigma[i], side->law_error * largest);
+    side->chi2 = search_unloading(&fit->model, fit->parameters, err);
+    return err->status == SF_OK && isfinite(side->chi2) ? try_alpha(fit, err) : err->status;
 }
 
 static sf_status finish(sf_compression_fit *fit, sf_error *err) {
@@ -492,9 +542,11 @@ static sf_status finish(sf_compression_fit *fit, sf_error *err) {
     bool unloads = count_of(&fit->model, true) > 0;
     SF_TRY(search_loading(&fit->model, fit->parameters, &fit->side[0].chi2, err));
     if (isfinite(fit->side[0].chi2) && unloads) {
-        fit->side[1].chi2 = search(&fit->model, true, fit->parameters, NULL, err);
+        fit->side[1].chi2 = search_unloading(&fit->model, fit->parameters, err);
         if (err->status == SF_OK && isfinite(fit->side[1].chi2))
             SF_TRY(try_alpha(fit, err));
+        if (isfinite(fit->side[1].chi2))
+            SF_TRY(weigh_by_law(fit, err));
     }
     if (err->status == SF_OK && isfinite(fit->side[0].chi2) && isfinite(fit->side[1].chi2))
         SF_TRY(find_errors(fit, err));

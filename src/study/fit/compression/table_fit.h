@@ -43,7 +43,9 @@ typedef struct sf_candidate {
 typedef struct sf_side {
     int points;
     double chi2;        /* sum of squares of deviation over sigma */
-    double misfit;      /* chi2 over degrees of freedom: the variance factor */
+    double misfit;      /* chi2 over degrees of freedom, 1: nothing but scatter */
+    double law_error;   /* over the largest stress: what was added to the scatter, as the law cannot follow */
+    double factor;      /* of the variances: misfit, or where the law's error was added what is left of it */
     double correlation; /* of neighbouring deviations */
     double serial;      /* variance factor for it, 1 or more */
     double relative;    /* root mean square of the deviation over the stress (over a hundredth of the largest

@@ -41,7 +41,7 @@ static void keep(sf_compression_test *t, int first, int count) {
  * each.
  */
 static int begin_of_cycle(const sf_compression_test *t, int k) {
-    double turn = 0.1 * t->largest_strain, highest = 0, lowest = 0;
+    double turn = 0.1 * t->largest_strain, highest = t->count > 0 ? t->strain[0] : 0, lowest = 0;
     int cycle = 1, at = 0;
     bool falls = false;
     for (int i = 0; i < t->count; i++) {
