@@ -449,3 +449,9 @@ char *sf_case_load_text(const char *path, int count, const char *const *override
     }
     return text;
 }
+
+const char *sf_case_syntax_phrase(const char *text) {
+    if (text && strcmp(text, "mismatched element type in array") == 0)
+        return "the numbers of an array must all have a decimal point, or none: [0.5, 0.0, -1.0]";
+    return text ? text : "syntax error";
+}

@@ -116,7 +116,8 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
         if (!config_read_string(&scratch, whole)) {
             int line = 0;
             const char *file = sf_case_source_find(&lines, config_error_line(&scratch), &line);
-            SF_FAIL(err, SF_ERR_INPUT, "--set %s: %s:%d: %s", text, file, line, config_error_text(&scratch));
+            SF_FAIL(err, SF_ERR_INPUT, "--set %s: %s:%d: %s", text, file, line,
+                    sf_case_syntax_phrase(config_error_text(&scratch)));
         } else {
             if (parent)
                 config_setting_remove(parent, member);

@@ -357,7 +357,8 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
     if (!config_read_string(config, reader->out->text)) {
         int line = 0;
         const char *path = sf_case_source_find(&reader->source, config_error_line(config), &line);
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line, config_error_text(config));
+        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line,
+                       sf_case_syntax_phrase(config_error_text(config)));
     }
     bool parted = config_lookup(config, "materials") && !config_lookup(config, "material");
     for (int i = 0; i < count; i++)

@@ -335,8 +335,9 @@ static sf_status read_vector(sf_case_reader *reader, const sf_key *key, const co
         value[i] = number_of(item);
     }
     if (!fits)
-        return FAIL_AT(reader, key, setting, err,
-                       "expected three plain numbers, for example [0.0, 0.0, -1.0]");
+        return FAIL_AT(
+            reader, key, setting, err,
+            "expected three plain numbers, all with a decimal point or all without, for example [0.0, 0.0, -1.0]");
     snprintf(detail, size, "-");
     return SF_OK;
 }
