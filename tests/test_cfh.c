@@ -148,6 +148,7 @@ typedef struct pad {
     law a_max, hic;
     double collapse;
     double anvil; /* m, > 0: from there the missile reaches the anvil */
+    double lock;  /* m, > 0: the foam locks up, and a_max rises with the 50th power of the height over it */
 } pad;
 
 static sf_cfh_plan plan_from(double first, double max_height) {
@@ -163,6 +164,8 @@ static void add_round(const pad *p, const sf_cfh_plan *plan, const sf_cfh_round 
         sf_cfh_point point = {.height = height, .failed = height > p->collapse};
         point.value[SF_CFH_A_MAX] = evaluate(&p->a_max, height);
         point.value[SF_CFH_HIC] = evaluate(&p->hic, height);
+        if (p->lock > 0)
+            point.value[SF_CFH_A_MAX] *= 1 + pow(height / p->lock, 50);
         point.on_anvil = p->anvil > 0 && height >= p->anvil;
         point.failed = point.failed || point.on_anvil;
         assert_true(points->count < plan->max_drops || plan->list_count > 0);
@@ -194,11 +197,11 @@ static void the_search_finds_the_criterion_that_is_met_first(void **state) {
         pad pad;
         sf_cfh_criterion deciding;
     } cases[] = {
-        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0}, SF_CFH_HIC},
-        {{{200, 1.64, 1.7, 0.3}, {1000, 1.70, 2.8, 0.5}, INFINITY, 0}, SF_CFH_A_MAX},
-        {{{200, 0.31, 1.1, 0.1}, {1000, 0.90, 2.0, 0.2}, INFINITY, 0}, SF_CFH_A_MAX},
-        {{{200, 9.00, 0.7, 0.1}, {1000, 4.20, 2.0, 0.1}, INFINITY, 0}, SF_CFH_HIC},
-        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.0, 0}, SF_CFH_HIC}, /* fails not far above */
+        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0, 0}, SF_CFH_HIC},
+        {{{200, 1.64, 1.7, 0.3}, {1000, 1.70, 2.8, 0.5}, INFINITY, 0, 0}, SF_CFH_A_MAX},
+        {{{200, 0.31, 1.1, 0.1}, {1000, 0.90, 2.0, 0.2}, INFINITY, 0, 0}, SF_CFH_A_MAX},
+        {{{200, 9.00, 0.7, 0.1}, {1000, 4.20, 2.0, 0.1}, INFINITY, 0, 0}, SF_CFH_HIC},
+        {{{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.0, 0, 0}, SF_CFH_HIC}, /* fails not far above */
     };
     static const double first[] = {0.5, 1.0, 1.65, 3.0};
     for (size_t q = 0; q < sizeof cases / sizeof cases[0]; q++)
@@ -219,11 +222,39 @@ static void the_search_finds_the_criterion_that_is_met_first(void **state) {
         }
 }
 
+/* The height lies between two drops 2 % apart, whatever the quadratic says. */
+static void a_foam_that_locks_up_is_bracketed(void **state) {
+    (void)state;
+    static const double first[] = {0.5, 1.0, 1.4, 3.0}, lock[] = {1.2, 1.45, 1.6};
+    for (size_t q = 0; q < sizeof lock / sizeof lock[0]; q++)
+        for (size_t f = 0; f < sizeof first / sizeof first[0]; f++) {
+            sf_cfh_plan plan = plan_from(first[f], 10);
+            const pad p = {{200, 2.5, 1.2, 0.1}, {1000, 4, 2.0, 0.1}, INFINITY, 0, lock[q]};
+            sf_cfh_points points;
+            sf_cfh_result result;
+            double low = 0.1, high = 2.5;
+            plan.max_drops = 16;
+            search(&p, &plan, &points);
+            sf_cfh_evaluate(&points, plan.limit, &result);
+            for (int k = 0; k < 60; k++) {
+                double middle = 0.5 * (low + high);
+                bool above = evaluate(&p.a_max, middle) * (1 + pow(middle / p.lock, 50)) >= 200;
+                *(above ? &high : &low) = middle;
+            }
+            const sf_cfh_crossing *c = &result.crossing[SF_CFH_A_MAX];
+            assert_int_equal(result.verdict, SF_CFH_FOUND);
+            assert_int_equal(result.deciding, SF_CFH_A_MAX);
+            assert_true(c->low <= low && low <= c->high);
+            assert_true(log(c->high / c->low) < 0.025);
+            assert_true(c->low <= c->height && c->height <= c->high);
+        }
+}
+
 /* The pads of the examples, by the figures of their drops: two rounds for the 50 mm, three for the 70 mm. */
 static void a_round_has_heights_on_both_sides_of_the_crossing(void **state) {
     (void)state;
-    static const pad pads[] = {{{200, 1.686, 1.75, 0.6}, {1000, 1.644, 2.95, 0.7}, INFINITY, 0},
-                               {{200, 2.812, 1.6, 0.6}, {1000, 2.455, 2.4, 0.5}, INFINITY, 0}};
+    static const pad pads[] = {{{200, 1.686, 1.75, 0.6}, {1000, 1.644, 2.95, 0.7}, INFINITY, 0, 0},
+                               {{200, 2.812, 1.6, 0.6}, {1000, 2.455, 2.4, 0.5}, INFINITY, 0, 0}};
     for (int q = 0; q < 2; q++) {
         const sf_cfh_plan plan = plan_from(1.032, 10);
         sf_cfh_points points;
@@ -240,10 +271,10 @@ static void a_round_has_heights_on_both_sides_of_the_crossing(void **state) {
 
 static void the_search_ends_at_its_limits_and_says_so(void **state) {
     (void)state;
-    const pad soft = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0};
-    const pad weak = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 1.3, 0};
-    const pad stiff = {{200, 0.001, 1.2, 0}, {1000, 0.002, 2.4, 0}, INFINITY, 0};
-    const pad broken = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 0, 0};
+    const pad soft = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0, 0};
+    const pad weak = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 1.3, 0, 0};
+    const pad stiff = {{200, 0.001, 1.2, 0}, {1000, 0.002, 2.4, 0}, INFINITY, 0, 0};
+    const pad broken = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 0, 0, 0};
     sf_cfh_plan plan = plan_from(1, 1.5);
     sf_cfh_points points;
     sf_cfh_result result;
@@ -274,8 +305,8 @@ static void the_search_ends_at_its_limits_and_says_so(void **state) {
 /* "Above 0.1 m, neither reached" was the answer although a drop from 3 m had ended on the anvil. */
 static void a_drop_that_reaches_the_anvil_is_worse_than_every_limit(void **state) {
     (void)state;
-    const pad thin = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 1.2};
-    const pad hole = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0.001};
+    const pad thin = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 1.2, 0};
+    const pad hole = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, INFINITY, 0.001, 0};
     sf_cfh_plan plan = plan_from(1, 10);
     sf_cfh_points points;
     sf_cfh_result result;
@@ -300,7 +331,7 @@ static void a_drop_that_reaches_the_anvil_is_worse_than_every_limit(void **state
 
 static void a_list_of_heights_is_followed(void **state) {
     (void)state;
-    const pad p = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.2, 0};
+    const pad p = {{200, 1.70, 1.7, 0.3}, {1000, 1.64, 2.8, 0.5}, 2.2, 0, 0};
     sf_cfh_plan plan = plan_from(1, 10);
     sf_cfh_points points;
     sf_cfh_result result;
@@ -432,6 +463,7 @@ int main(void) {
         cmocka_unit_test(limits_outside_the_points_are_no_crossing),
         cmocka_unit_test(points_that_give_no_crossing_are_refused),
         cmocka_unit_test(the_search_finds_the_criterion_that_is_met_first),
+        cmocka_unit_test(a_foam_that_locks_up_is_bracketed),
         cmocka_unit_test(a_round_has_heights_on_both_sides_of_the_crossing),
         cmocka_unit_test(the_search_ends_at_its_limits_and_says_so),
         cmocka_unit_test(a_drop_that_reaches_the_anvil_is_worse_than_every_limit),

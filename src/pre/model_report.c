@@ -138,6 +138,11 @@ static void add_body(sf_model_report *out, const sf_model *m) {
         append(out, "; if uniform %.4g kg/m3", m->missile.mass / solid.volume);
 }
 
+/* In mm; what is rounding of coordinates is 0. */
+static double millimetres(double length) {
+    return fabs(length) < 1e-9 ? 0 : 1e3 * length;
+}
+
 static void add_masses(sf_model_report *out, const sf_model *m, const sf_build_report *r) {
     double mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
     for (int64_t i = 0; i < m->node_count; i++)
@@ -162,7 +167,7 @@ static void add_masses(sf_model_report *out, const sf_model *m, const sf_build_r
             (long long)m->surface_triangle_count);
     add_body(out, m);
     add(out, "impact_point", "impact point", "(%.4g, %.4g) mm: there the missile's lowest point arrives",
-        1e3 * m->missile.impact[0] + 0.0, 1e3 * m->missile.impact[1] + 0.0);
+        millimetres(m->missile.impact[0]), millimetres(m->missile.impact[1]));
 }
 
 static void add_mesh_error(sf_model_report *out, const sf_model *m, const sf_contact_zone *zone) {

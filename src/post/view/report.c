@@ -197,7 +197,8 @@ static void put_pad(const page *p) {
     const sf_results *r = p->results;
     sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
     sf_html_fact(&table, "thickness", "%.4g mm", r->thickness * 1e3);
-    sf_html_fact(&table, "mean cross-section", "%.4g cm², of the whole pad", p->figures->area * 1e4);
+    sf_html_fact(&table, "mean cross-section", "%.4g cm²: volume of the whole pad over its extent along z",
+                 p->figures->area * 1e4);
     sf_html_fact(&table, "density", "%.4g kg/m³, undeformed%s", r->density,
                  r->layer_count > 0 ? ", mean of the layers" : "");
     put_parameter(p, &table, "geometry.file", "shape");

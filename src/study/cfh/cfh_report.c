@@ -185,6 +185,7 @@ static void put_fit(sf_json *json, const sf_cfh_report *r, const sf_cfh_crossing
     sf_json_number(json, "c2", fit->count ? fit->c[2] : NAN);
     sf_json_integer(json, "points", fit->count);
     sf_json_number(json, "rms_residual", fit->count ? fit->rms : NAN);
+    sf_json_bool(json, "bracketed", crossing->bracketed);
     sf_json_number(json, "fit_low_m", crossing->low);
     sf_json_number(json, "fit_high_m", crossing->high);
     if (r->rig->pairs > 0) {
@@ -435,7 +436,8 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
         sf_html_cell(&table, "%d", crossing->fit.count);
         sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
         if (isfinite(crossing->low))
-            sf_html_cell(&table, "%.3f to %.3f", crossing->low, crossing->high);
+            sf_html_cell(&table, "%.3f to %.3f%s", crossing->low, crossing->high,
+                         crossing->bracketed ? ", the drops on both sides" : "");
         else
             sf_html_cell(&table, "–");
         if (rig && isfinite(margin))
@@ -446,6 +448,8 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
     sf_html_table_end(&table);
     sf_html_note(
         page,
+        "Where a quadratic misses the points by 3 %% or more, as of a foam that locks up, the interval is that of "
+        "the drops on both sides of the limit. "
         "The interval of the fit (95 %%, Student's t) says how well a quadratic describes the simulated "
         "points, and on the rig how well g_eff is known. It is no uncertainty of the height: foam, mesh "
         "and model are not in it.");
@@ -612,7 +616,12 @@ void sf_cfh_print(FILE *out, const sf_cfh_report *r) {
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_crossing *crossing = &r->result->crossing[c];
         fprintf(out, "  %-5s %6g%-2s  ", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-        if (isfinite(crossing->height))
+        if (crossing->bracketed)
+            fprintf(
+                out,
+                "between drops at %.3f and %.3f m, which a quadratic does not describe (rms residual %.2f %%)\n",
+                crossing->low, crossing->high, 100 * crossing->fit.rms);
+        else if (isfinite(crossing->height))
             fprintf(out, "at %.3f m, fit of %d points, rms residual %.2f %%\n", crossing->height,
                     crossing->fit.count, 100 * crossing->fit.rms);
         else

@@ -205,19 +205,27 @@ static double half_width(const sf_cfh_fit *fit, double d) {
     return quantile * sqrt(fmax(variance, 0)) / (fit->c[1] + 2 * fit->c[2] * d);
 }
 
-static sf_status find_crossing(const char *name, const double *height, double limit, sf_cfh_crossing *out,
-                               sf_error *err) {
-    double d = rising_root(&out->fit, height, limit);
-    if (isnan(d))
-        return SF_FAIL(err, SF_ERR_NUMERIC,
-                       "the quadratic through the points of %s does not rise through %g: simulate more "
-                       "heights near %.4g m",
-                       name, limit, exp(out->fit.centre));
-    out->height = exp(out->fit.centre + d);
+static const double MISSES =
+    0.03; /* residual of ln(value) of a quadratic that does not describe the points */
+
+/* `below`: the last point before the first that reaches the limit. */
+static void find_crossing(const double *height, const double *value, int below, double limit,
+                          sf_cfh_crossing *out) {
+    double d = rising_root(&out->fit, height, limit), centre = out->fit.centre;
+    out->low = height[below];
+    out->high = height[below + 1];
+    out->bracketed =
+        !(out->fit.rms <= MISSES) || !(exp(centre + d) >= out->low && exp(centre + d) <= out->high);
+    if (out->bracketed) {
+        double share = log(limit / value[below]) / log(value[below + 1] / value[below]);
+        out->height = out->low * pow(out->high / out->low, share);
+        out->margin = fmax(log(out->high / out->height), log(out->height / out->low));
+        return;
+    }
+    out->height = exp(centre + d);
     out->margin = half_width(&out->fit, d);
     out->low = out->height * exp(-out->margin);
     out->high = out->height * exp(out->margin);
-    return SF_OK;
 }
 
 sf_status sf_cfh_cross(const char *name, int count, const double *height, const double *value, double limit,
@@ -237,9 +245,13 @@ sf_status sf_cfh_cross(const char *name, int count, const double *height, const 
     if (count < SF_CFH_MIN_POINTS)
         return SF_OK;
     choose_points(rough_crossing(out->side, count, height, value, limit), count, height, &out->fit);
-    if (fit_quadratic(height, value, &out->fit, err) == SF_OK && out->side == SF_CFH_CROSSED)
-        find_crossing(name, height, limit, out, err);
-    return err->status;
+    SF_TRY(fit_quadratic(height, value, &out->fit, err));
+    int at = 0;
+    while (out->side == SF_CFH_CROSSED && value[at + 1] < limit)
+        at++;
+    if (out->side == SF_CFH_CROSSED)
+        find_crossing(height, value, at, limit, out);
+    return SF_OK;
 }
 
 void sf_cfh_points_add(sf_cfh_points *points, const sf_cfh_point *point) {

@@ -63,15 +63,18 @@ typedef struct sf_cfh_crossing {
     double height;    /* m, NaN unless crossed */
     double margin;    /* -, half-width of the 95 % interval of ln(height) */
     double low, high; /* m, that interval */
+    bool bracketed;   /* the quadratic does not describe the points: the interval is that of the two drops on
+                         both sides of the limit, the height lies on the chord between them */
     sf_cfh_fit fit;   /* without a crossing: of the points nearest the limit, if they are enough */
 } sf_cfh_crossing;
 
 /* height: [count] m, ascending; value: [count] positive. `name` is the quantity, for sentences. The fit takes
  * the points within a factor of 1.6 of the crossing, and at least the nearest four. The interval is that of
  * the fit (Student's t, first order): it measures how well a quadratic fits the points, not the error of the
- * model. Errors: SF_ERR_INPUT for points that are not as described, or fewer than four with a crossing among
- * them; SF_ERR_NUMERIC for values that fall by more than 2 % from one height to a greater one, or a fit that
- * does not rise through the limit. */
+ * model. Where its residuals exceed 3 %, as of a foam that locks up, or it crosses the limit elsewhere than
+ * the drops do, the crossing is bracketed. Errors: SF_ERR_INPUT for points that are not as described, or
+ * fewer than four with a crossing among them; SF_ERR_NUMERIC for values that fall by more than 2 % from one
+ * height to a greater one. */
 sf_status sf_cfh_cross(const char *name, int count, const double *height, const double *value, double limit,
                        sf_cfh_crossing *crossing, sf_error *err);
 

@@ -163,6 +163,17 @@ static bool is_enough(const sf_cfh_result *now, double centre, const bracket *b)
     return now->verdict == SF_CFH_FOUND && flanked && first->margin <= GOOD_MARGIN;
 }
 
+/* The bracket in thirds, where a quadratic does not describe the points; none if it is too narrow for that.
+ */
+static void divide_bracket(const sf_cfh_plan *plan, const bracket *b, sf_cfh_round *round) {
+    double low = b->below->height, high = b->above->height, gap = log(high / low);
+    for (int k = 1; k <= 2; k++) {
+        double height = rounded(plan, low * exp(gap * k / 3)), last = round->count ? round->height[0] : low;
+        if (height > last + 0.5 * plan->unit * GRAIN && height < high - 0.5 * plan->unit * GRAIN)
+            round->height[round->count++] = height;
+    }
+}
+
 /* Two free places around the crossing: one on each side, then from its middle outwards. */
 static sf_cfh_step go_near(const sf_cfh_plan *plan, const sf_cfh_points *points, const bracket *b,
                            sf_cfh_round *round) {
@@ -175,6 +186,10 @@ static sf_cfh_step go_near(const sf_cfh_plan *plan, const sf_cfh_points *points,
     double centre = found ? log(now.crossing[now.deciding].height) : chord_crossing(plan, b);
     if (is_enough(&now, centre, b))
         return SF_CFH_ENOUGH;
+    if (found && now.crossing[now.deciding].bracketed) {
+        divide_bracket(plan, b, round);
+        return round->count > 0 ? SF_CFH_SIMULATE : SF_CFH_ENOUGH;
+    }
     add_free(plan, points, exp(centre), 1, &below, round);
     add_free(plan, points, exp(centre), 1, &above, round);
     while (round->count < 2 && add_free(plan, points, exp(centre), PLACES, places, round))
