@@ -4,6 +4,7 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multifit_nlinear.h>
+#include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -273,6 +274,45 @@ static sf_status propose(const sf_mapping_problem *p, const sf_mapping_result *r
     return minimise(&m, next, err);
 }
 
+enum { WIDE_STARTS = 8 };
+
+/* The same without a simulation behind it, from `best` and from places of a Halton sequence over the prior:
+ * the lowest of their minima. */
+static sf_status propose_widely(const sf_mapping_problem *p, const sf_mapping_result *r, const point *best,
+                                double *next, sf_error *err) {
+    double place[SF_MAPPING_MAX_PARAMETERS], lowest = INFINITY;
+    double *y = sf_alloc(err, (unsigned long)p->responses, sizeof *y, "responses");
+    gsl_qrng *places = gsl_qrng_alloc(gsl_qrng_halton, (unsigned)p->parameters);
+    const anchor a = {p, best->u, best->offset, r->matrix};
+    if (!places)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the starts of a search");
+    for (int k = 0; k <= WIDE_STARTS && err->status == SF_OK; k++) {
+        point from = *best;
+        sf_error failure = SF_ERROR_INIT;
+        if (k > 0)
+            gsl_qrng_get(places, place);
+        for (int j = 0; j < p->parameters && k > 0; j++)
+            from.u[j] = p->prior[j] + p->prior_sd[j] * gsl_cdf_ugaussian_Pinv(place[j]);
+        minimisation m = {
+            .anchor = a, .sd = p->sd, .about = best->u, .radius = INFINITY, .err = SF_ERROR_INIT};
+        if (minimise(&m, from.u, &failure) != SF_OK || evaluate(&a, from.u, y, &failure) != SF_OK) {
+            if (failure.status == SF_ERR_MEMORY)
+                *err = failure;
+            continue; /* the law cannot be there */
+        }
+        double objective = misfit_of(p, y) + prior_of(p, from.u);
+        if (objective < lowest) {
+            lowest = objective;
+            memcpy(next, from.u, (size_t)p->parameters * sizeof *next);
+        }
+    }
+    if (isinf(lowest))
+        memcpy(next, best->u, (size_t)p->parameters * sizeof *next);
+    gsl_qrng_free(places);
+    free(y);
+    return err->status;
+}
+
 /* Finds by how much the objective falls from `best` to the trial, by the corrected surrogate; its y is
  * overwritten. */
 static sf_status predict_gain(const sf_mapping_problem *p, const sf_mapping_result *r, const point *best,
@@ -339,7 +379,9 @@ static sf_status iterate(const sf_mapping_problem *p, sf_mapping_result *r, poin
     if (begin(p, r, best, err) != SF_OK)
         return err->status;
     for (r->iterations = 1;; r->iterations++) {
-        if (propose(p, r, best, INFINITY, trial->u, err) != SF_OK ||
+        bool widely = p->exact && r->iterations == 1;
+        if ((widely ? propose_widely(p, r, best, trial->u, err)
+                    : propose(p, r, best, INFINITY, trial->u, err)) != SF_OK ||
             measure_step(p, r, best, trial->u, &step, err) != SF_OK ||
             predict_gain(p, r, best, trial, &gain, err) != SF_OK)
             return err->status;

@@ -36,6 +36,7 @@ typedef struct sf_mapping_problem {
     sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
     void *context;
     int max_iterations; /* simulations at most */
+    bool exact; /* the simulation is the surrogate: its minimum is looked for from several places first */
     double tolerance; /* in standard deviations. Converged: the free next step is below it in every parameter,
                          or would lower the objective by less than its square, or two steps in a row, taken or
                          not, changed it by less than twice the tolerance. With a first_matrix a short step

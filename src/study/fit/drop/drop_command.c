@@ -175,16 +175,26 @@ static sf_status report(sf_study *study, const models *all, char *warning, size_
     return average ? sf_inference_print(stdout, average, err) : SF_OK;
 }
 
-static void warn(const sf_sink *sink, const models *all) {
+/* Tells what has no weight; a fit that did not converge is a failure, though its files are written. */
+static sf_status warn(const sf_sink *sink, const models *all, sf_error *err) {
     char text[96];
+    int open = 0;
     for (int m = 0; m < all->count; m++)
         if (all->failure[m].status != SF_OK)
             sf_sink_tell(sink, SF_WARNING, "model %s has no weight: %s",
                          sf_model_label(&all->input[m], text, sizeof text), all->failure[m].text);
-        else if (!all->fit[m].result.converged)
+        else if (!all->fit[m].result.converged) {
+            open++;
             sf_sink_tell(sink, SF_WARNING, "%s%snot converged after %d iterations",
                          all->count > 1 ? sf_model_label(&all->input[m], text, sizeof text) : "",
                          all->count > 1 ? ": " : "", all->fit[m].result.iterations);
+        }
+    if (open > 0)
+        SF_FAIL(err, SF_ERR_NUMERIC,
+                "%d of %d fits did not converge: the files are written, but the values are no minimum; start "
+                "nearer to the foam, or leave out what contradicts",
+                open, all->count);
+    return err->status;
 }
 
 /* Fits all models and writes the files. What was computed between the drops is kept in DIR/runs/columns.bin
@@ -206,8 +216,7 @@ static sf_status fit_and_write(sf_study *study, models *all, sf_fit_memory *memo
     snprintf(files, sizeof files, "%s.cfg, report.html, fit.json, fit.png%s", in->material_name,
              all->average.models > 0 ? ", posterior.csv, posterior/" : "");
     sf_study_close(study, files, warning);
-    warn(&study->sink, all);
-    return SF_OK;
+    return warn(&study->sink, all, err);
 }
 
 static sf_status run(sf_study *study, void *own, sf_error *err) {

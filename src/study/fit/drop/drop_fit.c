@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_ITERATIONS = 8 };
+enum { MAX_ITERATIONS = 8, EXACT_ITERATIONS = 100 /* of a fit without simulations */ };
 static const double TOLERANCE = 0.1;  /* of a standard deviation: the last step */
 static const double BIN_WIDTH = 0.05; /* of strain */
 
@@ -662,6 +662,7 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     for (int d = 0; d < in->drop_count; d++)
         if (fit->speed[d] >= 0)
             prior_sd[fit->speed[d]] = in->drop[d].speed_sd;
+    const bool exact = fit->measured_drops == 0;
     sf_mapping_result coarse = {0};
     sf_mapping_problem problem = {.parameters = fit->parameters,
                                   .responses = fit->row[fit->measured_drops],
@@ -674,7 +675,8 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
                                   .surrogate = surrogate,
                                   .simulate = simulate,
                                   .context = fit,
-                                  .max_iterations = MAX_ITERATIONS,
+                                  .max_iterations = exact ? EXACT_ITERATIONS : MAX_ITERATIONS,
+                                  .exact = exact,
                                   .tolerance = TOLERANCE,
                                   .progress = report_progress};
     if (in->coarse_count > 0 && !fit->earlier)
