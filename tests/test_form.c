@@ -80,7 +80,7 @@ static bool build(const sf_curve_form *form, const double *value, sf_foam_card *
 static void check_card(const sf_curve_form *form, const double *value) {
     sf_foam_card card = {0};
     sf_curve curve;
-    double pole = form->pole(value), knee = sf_curve_form_stress(form, value, 0.005);
+    double pole = sf_curve_form_pole(form, value), knee = sf_curve_form_stress(form, value, 0.005);
     assert_true(build(form, value, &card, &curve));
     assert_true(fabs(card.densification_limit - pole) < 1e-15);
     assert_true(curve.start >= 0.8 * pole && curve.start < 0.976 * pole && curve.largest_slope < 1e12);
@@ -167,6 +167,40 @@ static void the_solid_fraction_moves_the_poles(void **state) {
                     sf_curve_form_stress(&sf_form_gas, value, strain[k]));
 }
 
+/* Every form may lock up: its own curve to 0.95 e_D, then one that continues value and slope up to e_D; a
+ * lock-up beyond its own pole changes nothing. */
+static void a_lock_up_of_its_own_continues_the_form(void **state) {
+    (void)state;
+    for (int i = 0; i < SF_CURVE_FORMS; i++) {
+        const sf_curve_form *form = sf_curve_form_get(i);
+        double value[SF_PARAMETER_COUNT], locked[SF_PARAMETER_COUNT];
+        assert_true(sf_curve_form_uses(form, SF_PARAMETER_LOCKED) == (form->stress != NULL));
+        if (!form->stress)
+            continue;
+        medians(form, value);
+        medians(form, locked);
+        locked[SF_PARAMETER_LOCKED] = 0.16;
+        const double pole = 0.84, joint = 0.95 * pole, h = 1e-6;
+        assert_true(fabs(sf_curve_form_pole(form, locked) - pole) < 1e-15);
+        assert_true(sf_curve_form_stress(form, locked, 0.79) == sf_curve_form_stress(form, value, 0.79));
+        double below = sf_curve_form_stress(form, locked, joint - h),
+               at = sf_curve_form_stress(form, locked, joint),
+               above = sf_curve_form_stress(form, locked, joint + h);
+        assert_true(fabs((above - at) / (at - below) - 1) < 1e-3);
+        assert_true(sf_curve_form_stress(form, locked, pole - 1e-6) > 1e9);
+        check_card(form, locked);
+        locked[SF_PARAMETER_LOCKED] = 1e-3;
+        for (double strain = 0.05; strain < 0.93; strain += 0.05)
+            assert_true(sf_curve_form_stress(form, locked, strain) ==
+                        sf_curve_form_stress(form, value, strain));
+        sf_foam_form foam = {.curve = form, .base = {.density = DENSITY}, .solid_density = SOLID};
+        assert_true(sf_foam_form_prior_sd(&foam, SF_PARAMETER_LOCKED) == 0.7);
+    }
+    double value[SF_PARAMETER_COUNT] = {[SF_PARAMETER_SOLID_FRACTION] = 0.1};
+    sf_foam_form_start_lock(value);
+    assert_true(fabs(value[SF_PARAMETER_LOCKED] - 0.14) < 1e-12);
+}
+
 /* A bend of the spline's logarithm is felt on its own side, and the initial slope stays. */
 static void the_spline_bends_where_its_parameter_says(void **state) {
     (void)state;
@@ -223,8 +257,8 @@ static void the_solid_density_must_be_plausible(void **state) {
     }
 }
 
-/* A fine table in place of curve and densification holds no stress that the reader of a material file refuses,
- * with a densification that is next to a wall. */
+/* A fine table in place of curve and densification holds no stress that the reader of a material file
+ * refuses, with a densification that is next to a wall. */
 static void a_fine_table_ends_at_1_gpa(void **state) {
     (void)state;
     const sf_foam_form form = {.base = {.density = DENSITY, .modulus = MODULUS, .densification_limit = 1},
@@ -289,6 +323,7 @@ int main(void) {
         cmocka_unit_test(steep_forms_end_at_1_gpa),
         cmocka_unit_test(the_card_has_the_stress_of_the_closed_form),
         cmocka_unit_test(the_solid_fraction_moves_the_poles),
+        cmocka_unit_test(a_lock_up_of_its_own_continues_the_form),
         cmocka_unit_test(the_spline_bends_where_its_parameter_says),
         cmocka_unit_test(values_that_make_no_curve_are_refused),
         cmocka_unit_test(the_solid_density_must_be_plausible),

@@ -260,7 +260,7 @@ static void bad_input_gets_one_sentence(void **state) {
          "t.csv reaches a strain of 0.7, but with solid_fraction = 0.3"},
         {GOOD
          "curve_form = \"gas_solid\"; unknown = ( \"solid_fraction\" ); start = { solid_fraction = 0.45; };",
-         "ends at 0.37: the solid fraction is too large"},
+         "ends at 0.37: it is too large"},
         {GOOD "curve_form = \"gas\"; densification = \"H1\";", "unknown key \"densification\""},
         {GOOD "predict = ( { file = \"t.csv\"; rate = \"1 1/s\"; } );", "unknown key \"predict\""},
         {GOOD "solid_density = \"940 kg/m3\";", "unknown key \"solid_density\""},

@@ -95,11 +95,11 @@ static int deviate_test(const problem *p, const double *value, const sf_compress
 /* Returns by how much the curve falls, over the largest stress: it must rise to its pole. */
 static double fall(const problem *p, const double *value) {
     const sf_curve_form *form = p->request->form.curve;
-    double strain[RISES], stress[RISES], sum = 0, end = RISE_END * form->pole(value),
+    double strain[RISES], stress[RISES], sum = 0, end = RISE_END * sf_curve_form_pole(form, value),
                                          size = p->config->test[0].largest_stress;
     for (int k = 0; k < RISES; k++)
         strain[k] = end * k / (RISES - 1);
-    form->stress(value, RISES, strain, stress);
+    sf_curve_form_stresses(form, value, RISES, strain, stress);
     for (int k = 1; k < RISES; k++)
         sum += fmax(0, stress[k - 1] + LEAST_RISE * size - stress[k]);
     double part = p->fall_weight * sum / size;
@@ -112,7 +112,7 @@ static int deviate(const gsl_vector *x, void *data, gsl_vector *out) {
     double value[SF_PARAMETER_COUNT];
     size_t row = 0;
     take_values(p, x, value);
-    r->form.curve->stress(value, p->points, p->strain, p->stress);
+    sf_curve_form_stresses(r->form.curve, value, p->points, p->strain, p->stress);
     for (int k = 0, at = 0; k < p->config->test_count; k++)
         at += deviate_test(p, value, &p->config->test[k], &p->stress[at], &p->reduced[at]);
     for (int i = 0; i < p->points; i++)

@@ -46,7 +46,8 @@ static double first_slope(const sf_compression_test *t, double range) {
 }
 
 static bool is_of_curve(const sf_form_request *r, sf_foam_parameter p) {
-    return p < SF_PARAMETER_COUNT && (p == SF_PARAMETER_E || sf_curve_form_entry(r->form.curve, p));
+    return p < SF_PARAMETER_COUNT &&
+           (p == SF_PARAMETER_E || p == SF_PARAMETER_LOCKED || sf_curve_form_entry(r->form.curve, p));
 }
 
 /* A value of the rate that the rate model does not have would be lost, or act where none is asked for. */
@@ -116,6 +117,8 @@ static sf_status read_unknowns(const sf_config *file, const config_setting_t *ro
             return sf_config_refuse(file, list, err,
                                     "unknown: \"%.80s\" is neither E nor a parameter of curve_form = \"%s\"",
                                     name ? name : "(no text)", r->form.curve->name);
+        if (p == SF_PARAMETER_LOCKED)
+            sf_foam_form_start_lock(r->start);
         add_unknown(r, p);
     }
     if (!list)
@@ -155,15 +158,15 @@ static sf_status check_solid_fraction(const sf_config *file, const config_settin
 /* At its pole the curve is infinite: no test can get there. */
 static sf_status check_pole(const sf_config *file, const config_setting_t *root, int test_count,
                             const sf_compression_test *test, const sf_form_request *r, sf_error *err) {
-    double pole = r->form.curve->pole(r->start);
+    double pole = sf_curve_form_pole(r->form.curve, r->start);
     for (int k = 0; k < test_count; k++)
         if (!(test[k].largest_strain < pole))
             return sf_config_refuse(
                 file, config_setting_get_member(root, "curve_form"), err,
-                "%s reaches a strain of %.3g, but with solid_fraction = %.3g the curve of "
-                "curve_form = \"%s\" ends at %.3g: the solid fraction is too large",
+                "%s reaches a strain of %.3g, but with solid_fraction = %.3g%s the curve of "
+                "curve_form = \"%s\" ends at %.3g: it is too large",
                 test[k].path, test[k].largest_strain, r->start[SF_PARAMETER_SOLID_FRACTION],
-                r->form.curve->name, pole);
+                r->start[SF_PARAMETER_LOCKED] > 0 ? " and locked_fraction" : "", r->form.curve->name, pole);
     return SF_OK;
 }
 

@@ -342,6 +342,8 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
     SF_TRY(check_term(config, entry, model_of(config_root_setting(&config->config), in), p, name, err));
     if (p == SF_PARAMETER_RATE_FACTOR)
         sf_foam_form_start_rate(in->start);
+    if (p == SF_PARAMETER_LOCKED)
+        sf_foam_form_start_lock(in->start);
     if (!(in->start[p] > 0))
         return sf_config_refuse(config, entry, err,
                                 "%s is 0 in the start material: give a start value, start: { %s = ...; }",

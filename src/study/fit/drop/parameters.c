@@ -2,6 +2,7 @@
 #include "study/fit/drop/parameters.h"
 
 #include "material/curve.h"
+#include "study/fit/form/gas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 static const double LEAST_SOLID = 300, MOST_SOLID = 20000; /* kg m-3 */
 static const double MOST_FRACTION = 0.5;
 static const double UNKNOWN_SOLID_SD = 0.5; /* of the logarithm */
+static const double USUAL_SOLID = 0.05;     /* solid fraction, where it is not known */
 static const double RATE_FACTOR = 0.1;      /* median where the start material has none */
 static const double RATE_REFERENCE = 1;     /* s-1, the same; drops are far above */
 
@@ -47,6 +49,12 @@ static void start_common(const sf_foam_card *base, double value[SF_PARAMETER_COU
 void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]) {
     if (!(value[SF_PARAMETER_RATE_FACTOR] > 0))
         value[SF_PARAMETER_RATE_FACTOR] = RATE_FACTOR;
+}
+
+void sf_foam_form_start_lock(double value[SF_PARAMETER_COUNT]) {
+    double solid = value[SF_PARAMETER_SOLID_FRACTION];
+    if (!(value[SF_PARAMETER_LOCKED] > 0))
+        value[SF_PARAMETER_LOCKED] = 1 - sf_form_dense_strain(solid > 0 ? solid : USUAL_SOLID);
 }
 
 void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]) {

@@ -23,6 +23,9 @@ void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUN
 /* Gives a foam without rate factor the median of its prior: 0.1 for a decade of the rate. */
 void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]);
 
+/* Gives a foam without a lock-up of its own the median of its prior: dense at 1 - 1.4 Phi. */
+void sf_foam_form_start_lock(double value[SF_PARAMETER_COUNT]);
+
 /* Default width of the prior of a parameter, of the logarithm: the form's own; the solid fraction's is wide
  * where solid_density is not known. */
 double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter parameter);

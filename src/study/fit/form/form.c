@@ -58,14 +58,47 @@ const sf_form_entry *sf_curve_form_entry(const sf_curve_form *form, sf_foam_para
 
 bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter) {
     bool of_a_form = false;
+    if (parameter == SF_PARAMETER_LOCKED)
+        return form->stress != NULL;
     for (int k = 0; k < SF_CURVE_FORMS; k++)
         of_a_form = of_a_form || sf_curve_form_entry(forms[k], parameter);
     return !of_a_form || sf_curve_form_entry(form, parameter);
 }
 
+double sf_curve_form_pole(const sf_curve_form *form, const double *value) {
+    double own = form->pole(value), locked = value[SF_PARAMETER_LOCKED];
+    return locked > 0 ? fmin(own, 1 - locked) : own;
+}
+
+static const double TAKES_OVER = 0.95; /* of e_D: from there a lock-up continues the form */
+
+/* Value and slope of the form itself. */
+static void join(const sf_curve_form *form, const double *value, double at, double h, double *stress,
+                 double *slope) {
+    const double strain[3] = {at - h, at, at + h};
+    double sigma[3];
+    form->stress(value, 3, strain, sigma);
+    *stress = sigma[1];
+    *slope = (sigma[2] - sigma[0]) / (2 * h);
+}
+
+void sf_curve_form_stresses(const sf_curve_form *form, const double *value, int count, const double *strain,
+                            double *stress) {
+    double pole = sf_curve_form_pole(form, value), end = TAKES_OVER * pole, at_end, slope, unused[2];
+    form->stress(value, count, strain, stress);
+    if (!(pole < form->pole(value)))
+        return;
+    join(form, value, end, 1e-4 * (pole - end), &at_end, &slope);
+    const sf_densification beyond = sf_densification_join(
+        end, pole, sf_densification_steep_exponent(end, pole, at_end, slope), at_end, slope, 0);
+    for (int k = 0; k < count; k++)
+        if (strain[k] > end)
+            sf_densification_evaluate(&beyond, strain[k], &stress[k], &unused[0], &unused[1]);
+}
+
 double sf_curve_form_stress(const sf_curve_form *form, const double *value, double strain) {
     double stress;
-    form->stress(value, 1, &strain, &stress);
+    sf_curve_form_stresses(form, value, 1, &strain, &stress);
     return stress;
 }
 
@@ -112,7 +145,7 @@ static sf_status check_table(const sf_curve_form *form, const double *strain, co
 static void set_densification(const sf_curve_form *form, const double *value, double pole, double end,
                               sf_foam_card *card) {
     double h = 1e-4 * (pole - end), at[3] = {end - h, end, end + h}, stress[3];
-    form->stress(value, 3, at, stress);
+    sf_curve_form_stresses(form, value, 3, at, stress);
     card->densification_start = 0; /* at the table's end */
     card->densification_rule = pole < 1 ? SF_DENSIFICATION_H2 : SF_DENSIFICATION_H1;
     card->densification_limit = pole;
@@ -138,7 +171,7 @@ sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value,
                                  sf_error *err) {
     if (form->check(value, err) != SF_OK)
         return err->status;
-    double pole = form->pole(value), *strain = sf_alloc(err, POINTS, sizeof *strain, "curve"),
+    double pole = sf_curve_form_pole(form, value), *strain = sf_alloc(err, POINTS, sizeof *strain, "curve"),
            *stress = sf_alloc(err, POINTS, sizeof *stress, "curve"),
            *rate = sf_alloc(err, 1, sizeof *rate, "curve");
     int64_t *ptr = sf_alloc(err, 2, sizeof *ptr, "curve");
@@ -146,7 +179,7 @@ sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value,
         double last = last_part(form, value, pole);
         for (int k = 0; k < POINTS; k++)
             strain[k] = pole * part_of(k, last);
-        form->stress(value, POINTS, strain, stress);
+        sf_curve_form_stresses(form, value, POINTS, strain, stress);
         check_table(form, strain, stress, err);
     }
     if (err->status != SF_OK) {

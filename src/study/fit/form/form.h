@@ -38,6 +38,7 @@
     X(SPLINE_7, "spline_7", NONE, "", 1, 1e-2, 1e2, 0.15, "bend of the logarithm at a strain of 0.60") \
     X(SPLINE_8, "spline_8", NONE, "", 1, 1e-2, 1e2, 0.15, "bend of the logarithm at a strain of 0.75") \
     X(SPLINE_9, "spline_9", NONE, "", 1, 1e-2, 1e2, 0.15, "bend of the logarithm at a strain of 0.90") \
+    X(LOCKED, "locked_fraction", NONE, "", 1, 1e-3, 0.5, 0.7, "part of the thickness that is left where the foam locks up, 1 - e_D") \
     X(STRESS_SCALE, "stress_scale", NONE, "", 1, 1e-3, 1e3, 0.3, "factor on the tabulated curve") \
     X(EXPONENT, "exponent", NONE, "", 1, 0.1, 50, 0.3, "exponent of the densification law") \
     X(HU, "HU", NONE, "", 1, 1e-4, 1, 0.5, "hysteretic unloading factor") \
@@ -94,7 +95,7 @@ typedef struct sf_curve_form {
     void (*start)(double *value);
     /* SF_ERR_NUMERIC: the values make no curve, with the reason. */
     sf_status (*check)(const double *value, sf_error *err);
-    /* Strain at which the stress becomes infinite, at most 1. */
+    /* Strain at which the stress becomes infinite without an earlier lock-up, at most 1. */
     double (*pole)(const double *value);
     /* Stress (Pa) at `count` strains, 0 <= strain < pole. NULL, with check and pole: the curve is the start
      * material's (table). */
@@ -124,7 +125,14 @@ const sf_form_entry *sf_curve_form_entry(const sf_curve_form *form, sf_foam_para
 /* True if the form uses the parameter: its own, or one of every foam (E, unloading, viscosity). */
 bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter);
 
-/* Stress (Pa) at one strain. Not for the form `table`. */
+/* A foam may lock up earlier than the form says: skins, glue layers and folded cell walls take room, too.
+ * With locked_fraction above 0 every form has its pole at e_D = 1 - locked_fraction, if that lies below its
+ * own. From 0.95 e_D on the densification law with that pole continues its stress and slope. Not for the form
+ * `table`. */
+double sf_curve_form_pole(const sf_curve_form *form, const double *value);
+/* Stress (Pa) at `count` strains from 0 on, below the pole; INFINITY from a lock-up on. */
+void sf_curve_form_stresses(const sf_curve_form *form, const double *value, int count, const double *strain,
+                            double *stress);
 double sf_curve_form_stress(const sf_curve_form *form, const double *value, double strain);
 
 /* Puts the curve, as a table to 0.975 of its pole (or 1 GPa) with the densification law beyond, in place of
