@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include "extreme.h"
 #include "post_check.h"
 
 static sf_series uniform_curve(int64_t count, double rate) {
@@ -137,6 +138,92 @@ static void sampling_rate_follows_the_steps_of_the_history(void **state) {
     sf_series_free(&fine);
 }
 
+enum { CHAIN_SAMPLES = 40000 }; /* 0.4 s at 100 kHz */
+
+static sf_series sine(double frequency) {
+    sf_series s;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_series_create(CHAIN_SAMPLES, &s, &err), SF_OK);
+    for (int i = 0; i < CHAIN_SAMPLES; i++) {
+        s.time[i] = i * 1e-5;
+        s.value[i] = sin(2 * M_PI * frequency * s.time[i]);
+    }
+    return s;
+}
+
+/* Largest value of the last tenth, where the beginning has faded. */
+static double last_peak(const sf_series *s) {
+    double peak = 0;
+    for (int64_t i = s->count - s->count / 10; i < s->count; i++)
+        peak = larger(peak, s->value[i]);
+    return peak;
+}
+
+/* Steady vibration: 1 / sqrt((1 - r^2)^2 + (2 zeta r)^2), and w tau / sqrt(1 + (w tau)^2) of the high pass.
+ */
+static void mount_and_coupling_have_their_gain(void **state) {
+    (void)state;
+    const sf_signal_chain mount = {.mount_frequency = 420, .mount_damping = 0.05},
+                          couple = {.coupling = 0.01};
+    static const double frequency[] = {40, 200, 420, 700, 2000};
+    for (size_t k = 0; k < sizeof frequency / sizeof *frequency; k++) {
+        double r = frequency[k] / 420, w = 2 * M_PI * frequency[k] * couple.coupling;
+        sf_series s = sine(frequency[k]);
+        sf_signal_pass(&mount, &s);
+        assert_relative(last_peak(&s), 1 / sqrt((1 - r * r) * (1 - r * r) + 0.01 * r * r), 5e-3);
+        sf_series_free(&s);
+        s = sine(frequency[k]);
+        sf_signal_pass(&couple, &s);
+        assert_relative(last_peak(&s), w / sqrt(1 + w * w), 5e-3);
+        sf_series_free(&s);
+    }
+}
+
+/* A ramp that begins from rest, by its closed form. */
+static void mount_and_coupling_follow_a_ramp(void **state) {
+    (void)state;
+    const double f = 300, zeta = 0.2, w = 2 * M_PI * f, d = w * sqrt(1 - zeta * zeta), slope = 50, tau = 0.05;
+    const sf_signal_chain mount = {.mount_frequency = f, .mount_damping = zeta}, couple = {.coupling = tau};
+    for (int kind = 0; kind < 2; kind++) {
+        sf_series s = sine(0);
+        for (int i = 0; i < CHAIN_SAMPLES; i++)
+            s.value[i] = 3 + slope * s.time[i];
+        sf_signal_pass(kind ? &couple : &mount, &s);
+        for (int i = 0; i < CHAIN_SAMPLES; i += 37) {
+            double t = s.time[i], e = exp(-zeta * w * t), lag = 2 * zeta / w;
+            double expected =
+                kind ? slope * tau * -expm1(-t / tau)
+                     : 3 + slope * (t - lag + e * (lag * cos(d * t) + (zeta * w * lag - 1) / d * sin(d * t)));
+            assert_close(s.value[i], expected, 1e-9);
+        }
+        sf_series_free(&s);
+    }
+}
+
+static void mounts_and_couplings_are_read(void **state) {
+    (void)state;
+    sf_signal_chain c = {0};
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_signal_parse_mount("f = 0.42 kHz, damping = 0.05", &c, &err), SF_OK);
+    assert_close(c.mount_frequency, 420, 1e-9);
+    assert_close(c.mount_damping, 0.05, 0);
+    assert_int_equal(sf_signal_parse_coupling("0.2 s", &c, &err), SF_OK);
+    assert_close(c.coupling, 0.2, 0);
+    static const char *const bad[] = {"",
+                                      "420 Hz",
+                                      "f = 420, damping = 0.1",
+                                      "f = 420 Hz, damping = 1.5",
+                                      "f = -1 Hz, damping = 0.1",
+                                      "f = 420 Hz, damping = 0.1 x",
+                                      "f = 1 Hz, damping = 0.1"};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        err = (sf_error)SF_ERROR_INIT;
+        assert_int_equal(sf_signal_parse_mount(bad[k], &c, &err), SF_ERR_INPUT);
+        err = (sf_error)SF_ERROR_INIT;
+        assert_int_equal(sf_signal_parse_coupling(bad[k], &c, &err), SF_ERR_INPUT);
+    }
+}
+
 static void bad_curves_are_refused(void **state) {
     (void)state;
     sf_series out;
@@ -165,6 +252,9 @@ int main(void) {
         cmocka_unit_test(filtered_pulse_mirrors_like_the_pulse),
         cmocka_unit_test(resampling_interpolates_a_non_uniform_history),
         cmocka_unit_test(sampling_rate_follows_the_steps_of_the_history),
+        cmocka_unit_test(mount_and_coupling_have_their_gain),
+        cmocka_unit_test(mount_and_coupling_follow_a_ramp),
+        cmocka_unit_test(mounts_and_couplings_are_read),
         cmocka_unit_test(bad_curves_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

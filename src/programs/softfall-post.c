@@ -27,6 +27,8 @@
 enum {
     KEY_FORCE = 256,
     KEY_FILTER,
+    KEY_MOUNT,
+    KEY_COUPLING,
     KEY_REFERENCE,
     KEY_WINDOW,
     KEY_REGIONS,
@@ -58,6 +60,7 @@ typedef struct options {
     bool strict;      /* the exit status shows the verdict */
     sf_limits limits;
     double cfc;
+    sf_signal_chain chain;
     bool comparing; /* --reference was given */
     bool tuned;     /* an option that needs --reference was given */
     sf_compare_options compare;
@@ -132,6 +135,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         break;
     case KEY_FILTER:
         parse_filter("--filter", text, &o->cfc, &o->err);
+        break;
+    case KEY_MOUNT:
+        sf_signal_parse_mount(text, &o->chain, &o->err);
+        break;
+    case KEY_COUPLING:
+        sf_signal_parse_coupling(text, &o->chain, &o->err);
         break;
     case KEY_REFERENCE:
         o->compare.reference.path = text;
@@ -227,6 +236,13 @@ static sf_status parse_command(int argc, char **argv, options *o) {
          "shows; by pvbatch (ParaView) and ffmpeg",
          0},
         {"filter", KEY_FILTER, "CFC", 0, "channel frequency class: 60, 180, 600 or 1000 (default)", 0},
+        {"mount", KEY_MOUNT, "F, DAMPING", 0,
+         "pass the model's acceleration through the mount of an accelerometer, a second-order system, before the filter: "
+         "\"f = 420 Hz, damping = 0.05\" (default: rigid)",
+         0},
+        {"coupling", KEY_COUPLING, "TIME", 0,
+         "pass it through the high pass of a piezo chain with this time constant, such as \"0.2 s\" (default: none)",
+         0},
         {"strict", KEY_STRICT, NULL, 0,
          "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"; it says nothing about limits that "
          "are exceeded",
@@ -413,7 +429,7 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     if (sf_staging_check(o->directory, known, o->force, err) != SF_OK || /* the rest when it is known */
         sf_results_open(o->results_path, &j->results, err) != SF_OK ||
         sf_layers_note_slip(&j->results, err) != SF_OK ||
-        sf_figures_compute(&j->results, o->cfc, &j->figures, err) != SF_OK)
+        sf_figures_compute_through(&j->results, o->cfc, &o->chain, &j->figures, err) != SF_OK)
         return err->status;
     if (o->comparing && j->figures.driven)
         return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile's motion was prescribed",

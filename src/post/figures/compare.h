@@ -67,9 +67,9 @@ sf_status sf_region_parse(const char *text, sf_region *region, sf_error *err);
 /* "0-10,10-16,16-30" in ms; `*regions` from sf_alloc, owned by the caller. */
 sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count, sf_error *err);
 
-/* Instant at which contact begins: the straight line through the points where the curve, less its value `zero`
- * (g) before contact, last rises through 2 % and 10 % of its peak, before the peak, extrapolated to that zero. SF_ERR_INPUT naming `name` if the curve has
- * no such rise. */
+/* Instant at which contact begins: the straight line through the points where the curve, less its value
+ * `zero` (g) before contact, last rises through 2 % and 10 % of its peak, before the peak, extrapolated to
+ * that zero. SF_ERR_INPUT naming `name` if the curve has no such rise. */
 sf_status sf_contact_instant(const sf_series *curve, const char *name, double zero, double *instant,
                              sf_error *err);
 

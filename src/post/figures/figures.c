@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "post/results/results_check.h"
 #include "post/figures/strain_field.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <math.h>
 #include <string.h>
@@ -60,8 +61,10 @@ static sf_status filter(const sf_results *r, const sf_series *raw, double free_f
     sf_series before = {0}, uniform = {0};
     if (lead > 0 && sf_signal_lead_in(raw, lead, free_flight, &before, err) != SF_OK)
         return err->status;
-    if (sf_signal_resample(lead > 0 ? &before : raw, f->rate, &uniform, err) == SF_OK)
+    if (sf_signal_resample(lead > 0 ? &before : raw, f->rate, &uniform, err) == SF_OK) {
+        sf_signal_pass(&f->chain, &uniform);
         sf_signal_filter_cfc(&uniform, f->cfc, filtered, err);
+    }
     sf_series_free(&before);
     sf_series_free(&uniform);
     return err->status;
@@ -347,11 +350,34 @@ static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
     f->steps = r->has_summary ? r->steps : r->history.rows - 1;
 }
 
+/* Names the acceleration that the curves show, and what it has passed. */
+static void name_acceleration(sf_figures *f) {
+    const char *name =
+        f->turns       ? f->kinematic ? "resultant kinematic acceleration of the centre of mass"
+                                      : "resultant acceleration of the centre of mass as an accelerometer reads it"
+        : f->kinematic ? "kinematic deceleration"
+                       : "acceleration as an accelerometer reads it";
+    size_t size = sizeof f->acceleration, used = (size_t)snprintf(f->acceleration, size, "%s", name);
+    if (f->chain.mount_frequency > 0)
+        used +=
+            (size_t)snprintf(f->acceleration + used, size - used, ", on a mount of %.4g Hz (damping %.3g)",
+                             f->chain.mount_frequency, f->chain.mount_damping);
+    if (f->chain.coupling > 0)
+        snprintf(f->acceleration + used, size - used, ", with a coupling of %.4g s", f->chain.coupling);
+}
+
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *f, sf_error *err) {
+    return sf_figures_compute_through(results, cfc, NULL, f, err);
+}
+
+sf_status sf_figures_compute_through(const sf_results *results, double cfc, const sf_signal_chain *chain,
+                                     sf_figures *f, sf_error *err) {
     const sf_history *h = &results->history;
     *f = (sf_figures){0};
     set_undefined(f);
+    f->chain = chain ? *chain : (sf_signal_chain){0};
     take_facts(results, cfc, f);
+    name_acceleration(f);
     if (compute_curves(results, f, err) != SF_OK)
         goto done;
     f->energy_error = sf_history_largest(h, h->energy_error);
@@ -387,12 +413,4 @@ void sf_figures_free(sf_figures *figures) {
     sf_series_free(&figures->filtered);
     free(figures->layers);
     *figures = (sf_figures){0};
-}
-
-const char *sf_figures_acceleration(const sf_figures *figures) {
-    if (figures->turns)
-        return figures->kinematic
-                   ? "resultant kinematic acceleration of the centre of mass"
-                   : "resultant acceleration of the centre of mass as an accelerometer reads it";
-    return figures->kinematic ? "kinematic deceleration" : "acceleration as an accelerometer reads it";
 }

@@ -130,9 +130,11 @@
 #define SF_FIGURE_FACT_TEXT(member)
 #define SF_FIGURE_MEMBER(kind, member, ...) SF_FIGURE_##kind(member)
 typedef struct sf_figures {
-    sf_series raw;      /* s, g: the history as it is; of a missile that turns the resultant; owned */
-    sf_series filtered; /* s, g: resampled and CFC filtered, each axis by itself; owned */
-    double free_flight; /* g: what both are while nothing touches the missile */
+    sf_series raw;          /* s, g: the history as it is; of a missile that turns the resultant; owned */
+    sf_series filtered;     /* s, g: resampled and CFC filtered, each axis by itself; owned */
+    sf_signal_chain chain;  /* that the filtered curves have passed */
+    char acceleration[256]; /* what the curves show, a few words */
+    double free_flight;     /* g: what both are while nothing touches the missile */
     sf_injury injury_raw;
     sf_injury injury;            /* of the filtered curve */
     sf_layer_figures *layers;    /* [results->layer_count] owned; NULL: one material, or no contact */
@@ -159,11 +161,10 @@ const void *sf_figure_record(const sf_figure *figure, const sf_results *results,
 /* The number that summary.json shows, true as 1; NaN: not defined, or a text. */
 double sf_figure_number(const sf_figure *figure, const sf_results *results, const sf_figures *figures);
 
-/* Release with sf_figures_free. */
+/* Release with sf_figures_free. `chain`: what the accelerometer adds; NULL: nothing. */
+sf_status sf_figures_compute_through(const sf_results *results, double cfc, const sf_signal_chain *chain,
+                                     sf_figures *figures, sf_error *err);
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *figures, sf_error *err);
 void sf_figures_free(sf_figures *figures);
-
-/* Returns the name of the acceleration that the curves show, a few words; static storage. */
-const char *sf_figures_acceleration(const sf_figures *figures);
 
 #endif

@@ -3,8 +3,11 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/units.h"
 
 static const double MOST_SAMPLES = 1e7; /* of a curve: 100 s at 100 kHz */
 
@@ -204,5 +207,68 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     memcpy(filtered->value, work + pad, (size_t)uniform->count * sizeof(double));
 done:
     free(work);
+    return err->status;
+}
+
+/* ---- accelerometer ---- */
+
+static void pass_mount(const sf_signal_chain *chain, sf_series *s) {
+    const double w = 2 * M_PI * chain->mount_frequency, decay = chain->mount_damping * w,
+                 damped = w * sqrt(1 - chain->mount_damping * chain->mount_damping);
+    double y = s->value[0], rate = 0, a = s->value[0];
+    for (int64_t i = 1; i < s->count; i++) {
+        double dt = s->time[i] - s->time[i - 1], slope = (s->value[i] - a) / dt,
+               lag = 2 * chain->mount_damping * slope / w; /* of y behind a straight line */
+        double z = y - (a - lag), v = rate - slope, e = exp(-decay * dt), c = cos(damped * dt),
+               d = sin(damped * dt), q = (v + decay * z) / damped;
+        a = s->value[i];
+        y = e * (z * c + q * d) + a - lag;
+        rate = e * (damped * (q * c - z * d) - decay * (z * c + q * d)) + slope;
+        s->value[i] = y;
+    }
+}
+
+static void pass_coupling(double constant, sf_series *s) {
+    double y = 0, a = s->value[0];
+    s->value[0] = 0;
+    for (int64_t i = 1; i < s->count; i++) {
+        double dt = s->time[i] - s->time[i - 1], settled = constant * (s->value[i] - a) / dt;
+        a = s->value[i];
+        y = settled + (y - settled) * exp(-dt / constant);
+        s->value[i] = y;
+    }
+}
+
+void sf_signal_pass(const sf_signal_chain *chain, sf_series *uniform) {
+    if (chain->mount_frequency > 0)
+        pass_mount(chain, uniform);
+    if (chain->coupling > 0)
+        pass_coupling(chain->coupling, uniform);
+}
+
+sf_status sf_signal_parse_mount(const char *text, sf_signal_chain *chain, sf_error *err) {
+    static const double LEAST = 10, MOST = 20e3; /* Hz */
+    char unit[4] = "", rest = 0;
+    double f = 0, damping = 0;
+    int count = sscanf(text, " f = %lf %3[A-Za-z] , damping = %lf %c", &f, unit, &damping, &rest);
+    f *= strcmp(unit, "kHz") == 0 ? 1e3 : strcmp(unit, "Hz") == 0 ? 1 : 0;
+    if (count != 3 || !(f >= LEAST && f <= MOST) || !(damping > 0 && damping < 1))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "\"%s\" is not a mount: write for example \"f = 420 Hz, damping = 0.05\", with a "
+                       "frequency of %g Hz to %g kHz and a damping above 0 and below 1",
+                       text, LEAST, 1e-3 * MOST);
+    chain->mount_frequency = f;
+    chain->mount_damping = damping;
+    return SF_OK;
+}
+
+sf_status sf_signal_parse_coupling(const char *text, sf_signal_chain *chain, sf_error *err) {
+    static const double LEAST = 1e-3, MOST = 1e3; /* s */
+    sf_units *units;
+    SF_TRY(sf_units_open(&units, err));
+    sf_units_parse(units, text, SF_TIME, &chain->coupling, err);
+    sf_units_close(&units);
+    if (err->status == SF_OK && !(chain->coupling >= LEAST && chain->coupling <= MOST))
+        SF_FAIL(err, SF_ERR_INPUT, "the time constant %s is not between 1 ms and 1000 s", text);
     return err->status;
 }

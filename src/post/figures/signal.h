@@ -42,6 +42,22 @@ double sf_signal_rate(const sf_series *series);
  * its peaks are; the first and the last sample are the curve's own values. */
 sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *uniform, sf_error *err);
 
+/* What stands between the missile and its record: the accelerometer's mount, a second-order system that moves
+ * with y'' + 2 zeta w y' + w^2 y = w^2 a, and the high pass y' + y / tau = a' of a piezo chain. */
+typedef struct sf_signal_chain {
+    double mount_frequency; /* Hz, w / 2 pi; 0: the mount is rigid */
+    double mount_damping;   /* -, zeta, above 0 and below 1 */
+    double coupling;        /* s, tau; 0: the chain passes constants */
+} sf_signal_chain;
+
+/* Passes uniform samples through it in place: exact for straight lines between them. It has been at rest with
+ * the first sample. */
+void sf_signal_pass(const sf_signal_chain *chain, sf_series *uniform);
+
+/* "f = 420 Hz, damping = 0.05" and "0.2 s". SF_ERR_INPUT names the text. */
+sf_status sf_signal_parse_mount(const char *text, sf_signal_chain *chain, sf_error *err);
+sf_status sf_signal_parse_coupling(const char *text, sf_signal_chain *chain, sf_error *err);
+
 /* Two-pole Butterworth filter of SAE J211-1, run forward and backward (four poles, no phase shift), on
  * uniformly sampled data. Both ends are extended by point reflection, as ISO 6487 does, until the filter's
  * memory has faded, so that the first and the last sample are not bent. SF_ERR_INPUT if the samples are not

@@ -168,7 +168,7 @@ static void put_drop(sf_chart *chart, sf_panel *panel, const picture *p) {
     put_title(chart, p);
     sf_axis_label(&panel->x, "time (ms)");
     sf_axis_range(&panel->x, p->time[0] * 1e3, p->time[1] * 1e3);
-    sf_axis_label(&panel->y, "%s (g)", sf_figures_acceleration(p->figures));
+    sf_axis_label(&panel->y, "%s (g)", p->figures->acceleration);
     snprintf(panel->y.page_label, sizeof panel->y.page_label, "acceleration (g)");
     sf_axis_range(&panel->y, p->value[0], p->value[1]);
     panel->key = SF_KEY_BELOW;

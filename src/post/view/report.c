@@ -240,10 +240,10 @@ static void put_curve(const page *p, const sf_staging *output) {
         sf_html_figure(p->file, svg, "Nominal stress over strain (indentation over thickness).");
     else if (f->injury.hic.value > 0)
         sf_html_figure(p->file, svg, "Missile: %s, filtered (CFC %.0f); shaded: the HIC window.",
-                       sf_figures_acceleration(f), f->cfc);
+                       f->acceleration, f->cfc);
     else
-        sf_html_figure(p->file, svg, "Missile: %s, filtered with CFC %.0f, over time.",
-                       sf_figures_acceleration(f), f->cfc);
+        sf_html_figure(p->file, svg, "Missile: %s, filtered with CFC %.0f, over time.", f->acceleration,
+                       f->cfc);
     free(svg);
 }
 
