@@ -40,8 +40,8 @@ sf_status sf_case_scan_end(const sf_case_scan *scan, sf_error *err);
 /* The same for a value on one line of its own, without a comment; `name` stands before the sentence. */
 sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err);
 
-/* What libconfig says of a text, with a hint where its words leave the user alone: "mismatched element type in
- * array". */
+/* Returns what libconfig says of a text, with a hint where its words leave the user alone: "mismatched
+ * element type in array". */
 const char *sf_case_syntax_phrase(const char *libconfig_text);
 
 /* The text of a file in libconfig syntax with its includes put in place, and where each of its lines comes

@@ -42,7 +42,7 @@ double sf_signal_rate(const sf_series *series);
  * its peaks are; the first and the last sample are the curve's own values. */
 sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *uniform, sf_error *err);
 
-/* What stands between the missile and its record: the accelerometer's mount, a second-order system that moves
+/* The chain between the missile and its record: the accelerometer's mount, a second-order system that moves
  * with y'' + 2 zeta w y' + w^2 y = w^2 a, and the high pass y' + y / tau = a' of a piezo chain. */
 typedef struct sf_signal_chain {
     double mount_frequency; /* Hz, w / 2 pi; 0: the mount is rigid */

@@ -509,7 +509,7 @@ static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
     return err->status;
 }
 
-/* Where the law misses the unloading by far more than the scatter, the scatter is not what tells how much a
+/* If the law misses the unloading by far more than the scatter, the scatter is not what tells how much a
  * point means: the points of small stress would decide. The law's error, a constant part of the largest
  * stress, is added to it. */
 static sf_status weigh_by_law(sf_compression_fit *fit, sf_error *err) {

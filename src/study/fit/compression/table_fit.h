@@ -39,7 +39,7 @@ typedef struct sf_candidate {
     double chi2, bic;
 } sf_candidate;
 
-/* How well one side of the tests is met. */
+/* The misfit of one side of the tests. */
 typedef struct sf_side {
     int points;
     double chi2;        /* sum of squares of deviation over sigma */
