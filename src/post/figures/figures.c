@@ -3,6 +3,7 @@
 
 #include "base/mat3.h"
 #include "base/units.h"
+#include "post/figures/edge.h"
 #include "post/results/results_check.h"
 #include "post/figures/strain_field.h"
 #include <stdio.h>
@@ -402,6 +403,7 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
         goto done;
     f->raw_peak_rows = count_peak_rows(&f->raw);
     compute_rebound(results, f);
+    sf_edge_estimate(results, f);
 done:
     if (err->status != SF_OK)
         sf_figures_free(f);

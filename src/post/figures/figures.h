@@ -42,6 +42,15 @@
     X(INNER, injury_raw.a_max_g, "a_max_raw_g", 1, "largest deceleration of the raw curve", \
       .name = "a_max, raw", .unit = "g", .format = "%.2f") \
     X(INNER, injury_raw.hic.value, "hic_raw", 1, "head injury criterion of the raw curve, no limit of the window") \
+    X(NUMBER, a_max_by_speed, "a_max_change_by_speed", 1, "estimated relative change of a_max for 1 % more speed (theory.md, \"Edges\")", \
+      .name = "a_max, 1 % more speed", .shown = 100, .unit = "%", .format = "%+.2f") \
+    X(NUMBER, a_max_by_thickness, "a_max_change_by_thickness", 1, "the same for 1 % more thickness of the pad", \
+      .name = "a_max, 1 % thicker", .shown = 100, .unit = "%", .format = "%+.2f") \
+    X(NUMBER, a_max_by_stress, "a_max_change_by_stress", 1, "the same for 1 % more stress of the foam") \
+    X(NUMBER, hic_by_speed, "hic_change_by_speed", 1, "estimated relative change of HIC for 1 % more speed", \
+      .name = "HIC, 1 % more speed", .shown = 100, .unit = "%", .format = "%+.2f") \
+    X(NUMBER, hic_by_thickness, "hic_change_by_thickness", 1, "the same for 1 % more thickness of the pad") \
+    X(NUMBER, hic_by_stress, "hic_change_by_stress", 1, "the same for 1 % more stress of the foam") \
     X(COUNT, raw_peak_rows, "a_max_raw_rows", 1, "rows around that peak above half of it: 1 or 2 are an artefact of the time step") \
     X(NUMBER, peak_resultant, "peak_resultant_g", 1, "largest resultant acceleration of the centre of mass of a free missile, its axes filtered: a_max_g of it; like the next ones undefined of a guided one") \
     X(NUMBER, peak_angular_acceleration, "peak_angular_acceleration_rad_s2", 1, "largest resultant angular acceleration, its axes filtered", \

@@ -93,6 +93,11 @@ static double informed_value(const sf_results *r, const sf_figures *f) {
     return f->energy_beyond_data;
 }
 
+static double edge_value(const sf_results *r, const sf_figures *f) {
+    (void)r;
+    return fmax(fabs(f->a_max_by_speed), fabs(f->a_max_by_thickness));
+}
+
 static double anvil_value(const sf_results *r, const sf_figures *f) {
     (void)r;
     return f->max_mean_strain;

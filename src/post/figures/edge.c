@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/figures/edge.h"
+
+#include <math.h>
+
+/* Secants of the force, by the speed where they begin and end over that at contact. */
+static const double secants[][2] = {{0.5, 0.25}, {0.35, 0.2}, {0.25, 0.12}, {0.2, 0.08}, {0.15, 0.04}};
+static const double LAG = 1.24; /* of e over that of the steepest */
+static const double PERCENT = 0.01;
+
+/* The first row from `first` on in which the missile has slowed down to this speed; -1: none. */
+static int64_t row_of_speed(const sf_history *h, int64_t first, double speed) {
+    for (int64_t i = first; i < h->rows; i++)
+        if (h->velocity[i] <= speed)
+            return i;
+    return -1;
+}
+
+static int64_t row_of_indentation(const sf_history *h, int64_t first, double indentation) {
+    for (int64_t i = first; i < h->rows; i++)
+        if (h->indentation[i] >= indentation)
+            return i;
+    return -1;
+}
+
+/* The steepest secant: (dF/dd) / F, m-1; NaN: there is none. */
+static double steepest(const sf_history *h, int64_t first) {
+    double growth = NAN;
+    for (size_t k = 0; k < sizeof secants / sizeof *secants; k++) {
+        int64_t from = row_of_speed(h, first, secants[k][0] * h->velocity[first]),
+                to = row_of_speed(h, first, secants[k][1] * h->velocity[first]);
+        if (from < 0 || to <= from || !(h->contact_force[from] > 0) ||
+            !(h->indentation[to] > h->indentation[from]))
+            continue;
+        growth = fmax(growth, log(h->contact_force[to] / h->contact_force[from]) /
+                                  (h->indentation[to] - h->indentation[from]));
+    }
+    return growth;
+}
+
+void sf_edge_estimate(const sf_results *r, sf_figures *f) {
+    const sf_history *h = &r->history;
+    if (f->driven || f->turns || !f->rebounded)
+        return;
+    int64_t first = 0;
+    while (first + 1 < h->rows && !(h->contact_nodes[first + 1] > 0))
+        first++;
+    int64_t deepest = sf_history_row_of_largest(h, h->indentation),
+            half = row_of_indentation(h, first, 0.5 * h->indentation[deepest]);
+    double growth = steepest(h, first);
+    if (half < 0 || isnan(growth) || !(h->contact_area[half] > 0))
+        return;
+    double force = h->contact_force[sf_history_row_of_largest(h, h->contact_force)],
+           e = LAG * growth * h->energy_kinetic_missile[first] / force,
+           p = fmin(1, fmax(0, log(h->contact_area[deepest] / h->contact_area[half]) / log(2)));
+    f->a_max_by_speed = PERCENT * 2 * e;
+    f->a_max_by_thickness = PERCENT * (p - (1 + p) * e);
+    f->a_max_by_stress = PERCENT * (1 - e);
+    f->hic_by_speed = 1.5 * f->a_max_by_speed + PERCENT;
+    f->hic_by_thickness = 1.5 * f->a_max_by_thickness;
+    f->hic_by_stress = 1.5 * f->a_max_by_stress;
+}

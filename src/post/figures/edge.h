@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Does a figure stand on an edge? How a_max and HIC change with the speed, the pad's thickness and the foam's
+ * stress, estimated from the run's own force over indentation (docs/theory.md, section 12).
+ *
+ * Near the turn F = C h^(p - n) d^n, with the thickness h, the indentation d, the contact area ~ d^p and the
+ * energy E = F d / (n + 1), so that with e = (dF/dd) E / F^2 = n / (n + 1)
+ *
+ *     d ln a_max = 2 e d ln v,  (p - (1 + p) e) d ln h,  (1 - e) d ln C;
+ *     d ln HIC = 1.5 d ln a_max, and d ln v in addition.
+ *
+ * The slope is that of the steepest of five secants before the turn, the first where the missile slows down
+ * from a half to a quarter of its speed: later ones are bent by the rate of a smooth foam, but see a lock-up.
+ * It lags behind the slope at the turn: e is 1.24 times that of the secant, calibrated to seven drops. While
+ * a foam locks up the estimate is an upper one: up to three times the change beyond the lock-up, where the
+ * force no longer grows as steeply (tests/test_edge.c).
+ */
+#ifndef SF_POST_FIGURES_EDGE_H
+#define SF_POST_FIGURES_EDGE_H
+
+#include "post/figures/figures.h"
+
+/* Fills the changes for 1 % of each in `figures`, whose injury figures are there; they stay NaN of a driven
+ * or free missile, and of a run that did not rebound. */
+void sf_edge_estimate(const sf_results *results, sf_figures *figures);
+
+#endif

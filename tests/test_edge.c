@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The changes of a_max and HIC with speed and thickness that softfall-post estimates from one drop, against
+ * drops with 1 % more and less of each (post/figures/edge.h). */
+#include "program_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#define LOCKED " --set 'material.densification={rule=\"H2\"; start=0.76; limit=%g; exponent=1.0;}'"
+
+static void drop(const program_place *p, double speed, double thickness, double limit) {
+    char lock[120] = "";
+    if (limit > 0)
+        snprintf(lock, sizeof lock, LOCKED, limit);
+    program_succeed(p, "pre",
+                    "good.cfg -o m.h5 --force %s --set missile.velocity='\"%.6f m/s\"' --set "
+                    "geometry.parameters.thickness=%.6f%s",
+                    program_coarse(20), speed, thickness, lock);
+    program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
+    program_succeed(p, "post", "r.h5 -o out --force");
+}
+
+static double figure(const program_place *p, const char *key) {
+    return program_file_number(p, "out/summary.json", key);
+}
+
+/* Change of a figure for 1 % between the drops with 1 % less and more. */
+static double change(const program_place *p, const char *key, bool speed, double v, double h, double limit) {
+    double value[2];
+    for (int side = 0; side < 2; side++) {
+        double by = side ? 1.01 : 0.99;
+        drop(p, speed ? by * v : v, speed ? h : by * h, limit);
+        value[side] = figure(p, key);
+    }
+    return log(value[1] / value[0]) / 2;
+}
+
+static void estimates_agree_with_simulations(void **state) {
+    const program_place *p = *state;
+    static const struct { double speed, thickness; } cases[] = {{4.5, 50}, {6.2, 70}};
+    static const struct {
+        const char *key, *estimate;
+        bool speed;
+    } figures[] = {{"a_max_g", "a_max_change_by_speed", true},
+                   {"a_max_g", "a_max_change_by_thickness", false},
+                   {"hic", "hic_change_by_speed", true},
+                   {"hic", "hic_change_by_thickness", false}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        double v = cases[c].speed, h = cases[c].thickness, estimate[4];
+        drop(p, v, h, 0);
+        for (int k = 0; k < 4; k++)
+            estimate[k] = figure(p, figures[k].estimate);
+        for (int k = 0; k < 4; k++) {
+            double true_change = change(p, figures[k].key, figures[k].speed, v, h, 0);
+            print_message("%g m/s on %g mm, %s: %.4f, estimated %.4f\n", v, h, figures[k].estimate,
+                          true_change, estimate[k]);
+            assert_true(fabs(estimate[k] / true_change - 1) < 1.0 / 3);
+        }
+        assert_true(estimate[0] < 0.1);
+    }
+}
+
+/* A foam that locks up in the drop is found, before the lock-up or in it. */
+static void an_edge_is_not_overlooked(void **state) {
+    const program_place *p = *state;
+    static const double limit[] = {0.83, 0.80};
+    for (int k = 0; k < 2; k++) {
+        drop(p, 5.2, 50, limit[k]);
+        double estimate = figure(p, "a_max_change_by_speed"),
+               true_change = change(p, "a_max_g", true, 5.2, 50, limit[k]);
+        print_message("locked at %g: %.4f, estimated %.4f\n", limit[k], true_change, estimate);
+        assert_true(estimate > 0.7 * true_change && estimate < 3 * true_change);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(estimates_agree_with_simulations),
+        cmocka_unit_test(an_edge_is_not_overlooked),
+    };
+    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+}
