@@ -227,7 +227,11 @@ static void parts_are_chosen_and_listed(void **state) {
         {"Time (s);Force (N)\n1;1\nTime (s);Force (N)\n3;30\n", NULL, NULL,
          ":3: another table begins here, the file holds 2: choose one with specimen = N"},
         {"Time (s);Force (N)\n1;1\nTime (s);Force (N)\n3;30\n", "4", NULL, "holds 2 tables"},
-        {"Time (s);Force (N);Specimen height (mm);cycle height (mm)\n1;1;50;3\n3;30;49;4\n", NULL, NULL, NULL},
+        {"Cycle;Time (s);Force (N)\n1;1;1\n2;2;2\n3;2.1;2\n4;2.2;2\n5;2.3;2\n6;2.4;2\n7;2.5;2\n8;2.6;2\n9;3;30\n",
+         NULL, NULL, NULL},
+        {"Specimen;Time (s);Force (N)\n1;3;30\nMean;-;\n", NULL, NULL, NULL},
+        {"Time (s);Force (N);Specimen height (mm);cycle height (mm)\n1;1;50;3\n3;30;49;4\n", NULL, NULL,
+         NULL},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         sf_table t;

@@ -286,7 +286,7 @@ static sf_status take_heading(csv *file, const sf_table_layout *layouts, int cou
 
 /* ---- parts of a file that holds several ---- */
 
-enum { MOST_PARTS = 64, PART_TEXT = 24 };
+enum { MOST_PARTS = 64, PART_TEXT = 24, MOST_ROWS_ALONE = 8 };
 
 /* A letter begins the line, after a quote perhaps: no number. */
 static bool begins_with_letter(const char *line) {
@@ -349,10 +349,18 @@ static bool is_part(const char *cell, const char *chosen) {
     return strcmp(cell, chosen) == 0 || (sf_table_number(cell, &a) && sf_table_number(chosen, &b) && a == b);
 }
 
-/* Lists what the column holds, each text once, in the rows of the other chosen part; -1 if numbers in it are
- * no counts. */
+/* The cell of column `c` is a number, or the number of its row. */
+static bool holds_number(const csv *file, const sf_table_cells *cells, int c) {
+    double number;
+    int place = file->heading.place[c];
+    return place == SF_TABLE_ROW || (cells->count > place && cells->count <= SF_TABLE_COLUMNS &&
+                                     sf_table_number(cells->cell[place], &number));
+}
+
+/* Lists what the column holds, each text once, in the rows of the other chosen part; -1 if it numbers no
+ * parts: numbers that are no counts, or another one in every second row, as of a logger. */
 static int list_parts(const csv *file, int k, char list[MOST_PARTS][PART_TEXT]) {
-    int listed = 0, other = !k, place = file->heading.part[k];
+    int listed = 0, rows = 0, other = !k, place = file->heading.part[k];
     const char *chosen = file->layout->part[other];
     char *copy;
     for (const char *rest = file->next; (!file->end || rest < file->end) && (copy = copy_line(&rest));) {
@@ -361,19 +369,20 @@ static int list_parts(const csv *file, int k, char list[MOST_PARTS][PART_TEXT]) 
         bool known = false;
         sf_table_split(copy, file->separator, false, &cells);
         bool use = !is_empty(copy) && cells.count <= SF_TABLE_COLUMNS && cells.count > place &&
-                   cells.cell[place][0] &&
+                   cells.cell[place][0] && holds_number(file, &cells, 0) && holds_number(file, &cells, 1) &&
                    (!chosen || file->heading.part[other] < 0 || cells.count <= file->heading.part[other] ||
                     is_part(cells.cell[file->heading.part[other]], chosen));
         bool count = !use || !sf_table_number(cells.cell[place], &number) || number == floor(number);
         for (int i = 0; use && i < listed; i++)
             known = known || is_part(cells.cell[place], list[i]);
+        rows += use;
         if (use && !known && listed < MOST_PARTS)
             snprintf(list[listed++], PART_TEXT, "%s", cells.cell[place]);
         free(copy);
         if (!count)
             return -1;
     }
-    return listed;
+    return listed == MOST_PARTS || (rows > MOST_ROWS_ALONE && 2 * listed > rows) ? -1 : listed;
 }
 
 /* Checks the choice against the columns that number specimens and cycles. */
@@ -577,14 +586,6 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
 }
 
 /* ---- the whole ---- */
-
-/* The cell of column `c` is a number, or the number of its row. */
-static bool holds_number(const csv *file, const sf_table_cells *cells, int c) {
-    double number;
-    int place = file->heading.place[c];
-    return place == SF_TABLE_ROW || (cells->count > place && cells->count <= SF_TABLE_COLUMNS &&
-                                     sf_table_number(cells->cell[place], &number));
-}
 
 static bool holds_point(const csv *file, char *line) {
     sf_table_cells cells;
