@@ -24,8 +24,8 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "the peak or a part of the HIC window may lie after the end")                                                    \
     X(energy_error, 0.01, 0.05, SF_AS_PERCENT, "energy error", "`energy_error`",                                       \
       "energy that appears or disappears falsifies the deceleration")                                                  \
-    X(stabilisation, 0.05, 0.15, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
-      "the stabilisation stiffens the pad")                                                                            \
+    X(stabilisation, 0.01, 0.05, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
+      "the stabilisation stiffens the pad, or bears what a foam that locks up should")                                 \
     X(contact, 0.01, 0.05, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
       "contact consumes energy that the foam should take")                                                             \
     X(dissipation, 1e-3, 0.01, SF_AS_PERCENT, "energy given back by what dissipates", "`negative_dissipation`",         \
