@@ -129,7 +129,7 @@ static void fill_row(sf_history *h, int64_t i, bool untouched) {
     h->indentation[i] = untouched ? -0.01 : 0.03 * sin(x);
     h->energy_stored[i] = contact * 80 * sin(x);
     h->energy_viscous[i] = contact * 16 * sin(x);
-    h->energy_stabilisation[i] = contact * 4 * sin(x);
+    h->energy_stabilisation[i] = contact * 0.8 * sin(x);
     h->energy_contact[i] = contact * 0.5 * sin(x);
     h->energy_error[i] = -0.002 * sin(x);
     h->largest_compression[i] = untouched ? 0 : 0.7 * sin(x);

@@ -212,7 +212,7 @@ static void the_line_names_three_findings_the_worst_first(void **state) {
     sound_run run = open_run(*state, (fixture_options){0});
     char line[SF_VERDICT_LINE_SIZE];
     run.figures.energy_error = 0.03;
-    run.figures.stabilisation_energy_fraction = 0.1;
+    run.figures.stabilisation_energy_fraction = 0.03;
     run.figures.contact_energy_fraction = 0.03;
     judge(&run);
     sf_verdict_line(&run.verdict, line, sizeof line);
