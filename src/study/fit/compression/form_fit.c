@@ -3,7 +3,7 @@
 
 #include "material/curve.h"
 #include "study/fit/compression/point_model.h"
-#include "study/fit/compression/least_squares.h"
+#include "study/fit/least_squares.h"
 #include "material/unloading.h"
 #include <gsl/gsl_errno.h>
 #include <math.h>

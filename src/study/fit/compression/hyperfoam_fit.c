@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/hyperfoam_fit.h"
 
-#include "study/fit/compression/least_squares.h"
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_errno.h>
 #include <math.h>
 #include <stdlib.h>
