@@ -96,10 +96,12 @@ static void folder_that_may_not_be_written_is_told(void **state) {
     }
 }
 
-/* One sentence and the code of a file that failed. */
+/* One sentence and the code of a file that failed; the run may have warned of itself before. */
 static void assert_file_fails(const program_result *r, const char *sentence) {
     assert_int_equal(r->code, SF_ERR_IO);
-    if (strncmp(r->err, sentence, strlen(sentence)) != 0 || strchr(r->err, '\n') != strrchr(r->err, '\n'))
+    const char *at = strstr(r->err, sentence), *warning = "softfall-solve: warning: ";
+    bool first = at == r->err || (strncmp(r->err, warning, strlen(warning)) == 0 && at && at[-1] == '\n');
+    if (!first || strchr(at, '\n') != strrchr(at, '\n'))
         fail_msg("no sentence \"%s...\": %s", sentence, r->err);
 }
 

@@ -38,9 +38,10 @@ static double steepest(const sf_history *h, int64_t first) {
     return growth;
 }
 
-void sf_edge_estimate(const sf_results *r, sf_figures *f) {
+void sf_edge_estimate(const sf_results *r, sf_edge *edge) {
     const sf_history *h = &r->history;
-    if (f->driven || f->turns || !f->rebounded)
+    *edge = (sf_edge){NAN, NAN, NAN, NAN, NAN, NAN};
+    if (r->driven || r->turns)
         return;
     int64_t first = 0;
     while (first + 1 < h->rows && !(h->contact_nodes[first + 1] > 0))
@@ -53,10 +54,10 @@ void sf_edge_estimate(const sf_results *r, sf_figures *f) {
     double force = h->contact_force[sf_history_row_of_largest(h, h->contact_force)],
            e = LAG * growth * h->energy_kinetic_missile[first] / force,
            p = fmin(1, fmax(0, log(h->contact_area[deepest] / h->contact_area[half]) / log(2)));
-    f->a_max_by_speed = PERCENT * 2 * e;
-    f->a_max_by_thickness = PERCENT * (p - (1 + p) * e);
-    f->a_max_by_stress = PERCENT * (1 - e);
-    f->hic_by_speed = 1.5 * f->a_max_by_speed + PERCENT;
-    f->hic_by_thickness = 1.5 * f->a_max_by_thickness;
-    f->hic_by_stress = 1.5 * f->a_max_by_stress;
+    edge->a_max_by_speed = PERCENT * 2 * e;
+    edge->a_max_by_thickness = PERCENT * (p - (1 + p) * e);
+    edge->a_max_by_stress = PERCENT * (1 - e);
+    edge->hic_by_speed = 1.5 * edge->a_max_by_speed + PERCENT;
+    edge->hic_by_thickness = 1.5 * edge->a_max_by_thickness;
+    edge->hic_by_stress = 1.5 * edge->a_max_by_stress;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Does a figure stand on an edge? How a_max and HIC change with the speed, the pad's thickness and the foam's
- * stress, estimated from the run's own force over indentation (docs/theory.md, section 12).
+/* The edge on which a figure may stand: how a_max and HIC change with the speed, the pad's thickness and the
+ * foam's stress, estimated from the run's own force over indentation (docs/theory.md, section 12).
  *
  * Near the turn F = C h^(p - n) d^n, with the thickness h, the indentation d, the contact area ~ d^p and the
  * energy E = F d / (n + 1), so that with e = (dF/dd) E / F^2 = n / (n + 1)
@@ -17,10 +17,15 @@
 #ifndef SF_POST_FIGURES_EDGE_H
 #define SF_POST_FIGURES_EDGE_H
 
-#include "post/figures/figures.h"
+#include "post/results/results.h"
 
-/* Fills the changes for 1 % of each in `figures`, whose injury figures are there; they stay NaN of a driven
- * or free missile, and of a run that did not rebound. */
-void sf_edge_estimate(const sf_results *results, sf_figures *figures);
+/* Relative changes for 1 % of each. */
+typedef struct sf_edge {
+    double a_max_by_speed, a_max_by_thickness, a_max_by_stress;
+    double hic_by_speed, hic_by_thickness, hic_by_stress;
+} sf_edge;
+
+/* All NaN of a driven or free missile, and where the force tells nothing. The run has rebounded. */
+void sf_edge_estimate(const sf_results *results, sf_edge *edge);
 
 #endif

@@ -351,6 +351,17 @@ static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
     f->steps = r->has_summary ? r->steps : r->history.rows - 1;
 }
 
+static void take_edge(const sf_results *results, sf_figures *f) {
+    sf_edge edge;
+    sf_edge_estimate(results, &edge);
+    f->a_max_by_speed = edge.a_max_by_speed;
+    f->a_max_by_thickness = edge.a_max_by_thickness;
+    f->a_max_by_stress = edge.a_max_by_stress;
+    f->hic_by_speed = edge.hic_by_speed;
+    f->hic_by_thickness = edge.hic_by_thickness;
+    f->hic_by_stress = edge.hic_by_stress;
+}
+
 /* Names the acceleration that the curves show, and what it has passed. */
 static void name_acceleration(sf_figures *f) {
     const char *name =
@@ -403,7 +414,8 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
         goto done;
     f->raw_peak_rows = count_peak_rows(&f->raw);
     compute_rebound(results, f);
-    sf_edge_estimate(results, f);
+    if (f->rebounded)
+        take_edge(results, f);
 done:
     if (err->status != SF_OK)
         sf_figures_free(f);
