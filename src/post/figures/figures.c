@@ -364,18 +364,17 @@ static void take_edge(const sf_results *results, sf_figures *f) {
 
 /* Names the acceleration that the curves show, and what it has passed. */
 static void name_acceleration(sf_figures *f) {
-    const char *name =
+    f->acceleration =
         f->turns       ? f->kinematic ? "resultant kinematic acceleration of the centre of mass"
                                       : "resultant acceleration of the centre of mass as an accelerometer reads it"
         : f->kinematic ? "kinematic deceleration"
                        : "acceleration as an accelerometer reads it";
-    size_t size = sizeof f->acceleration, used = (size_t)snprintf(f->acceleration, size, "%s", name);
+    size_t size = sizeof f->passed, used = 0;
     if (f->chain.mount_frequency > 0)
-        used +=
-            (size_t)snprintf(f->acceleration + used, size - used, ", on a mount of %.4g Hz (damping %.3g)",
-                             f->chain.mount_frequency, f->chain.mount_damping);
+        used = (size_t)snprintf(f->passed, size, ", on a mount of %.4g Hz (damping %.3g)",
+                                f->chain.mount_frequency, f->chain.mount_damping);
     if (f->chain.coupling > 0)
-        snprintf(f->acceleration + used, size - used, ", with a coupling of %.4g s", f->chain.coupling);
+        snprintf(f->passed + used, size - used, ", with a coupling of %.4g s", f->chain.coupling);
 }
 
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *f, sf_error *err) {

@@ -139,11 +139,12 @@
 #define SF_FIGURE_FACT_TEXT(member)
 #define SF_FIGURE_MEMBER(kind, member, ...) SF_FIGURE_##kind(member)
 typedef struct sf_figures {
-    sf_series raw;          /* s, g: the history as it is; of a missile that turns the resultant; owned */
-    sf_series filtered;     /* s, g: resampled and CFC filtered, each axis by itself; owned */
-    sf_signal_chain chain;  /* that the filtered curves have passed */
-    char acceleration[256]; /* what the curves show, a few words */
-    double free_flight;     /* g: what both are while nothing touches the missile */
+    sf_series raw;            /* s, g: the history as it is; of a missile that turns the resultant; owned */
+    sf_series filtered;       /* s, g: resampled and CFC filtered, each axis by itself; owned */
+    sf_signal_chain chain;    /* that the filtered curves have passed */
+    const char *acceleration; /* what the curves show, a few words; static storage */
+    char passed[128];         /* ", on a mount of 420 Hz (damping 0.05)", the chain; or empty */
+    double free_flight;       /* g: what both are while nothing touches the missile */
     sf_injury injury_raw;
     sf_injury injury;            /* of the filtered curve */
     sf_layer_figures *layers;    /* [results->layer_count] owned; NULL: one material, or no contact */

@@ -146,14 +146,14 @@ static void put_curve(sf_chart *chart, const sf_series *curve, double shift, dou
 static void put_curves(sf_chart *chart, const picture *p) {
     const sf_figures *f = p->figures;
     const sf_comparison *c = p->comparison;
-    char title[96], class[32] = "";
+    char title[224], class[32] = "";
     if (f->injury.hic.value > 0)
         put_hic(chart, p);
     if (p->points)
         put_curve(chart, &c->raw, c->shift, 1.2, "#a0a0a0", "measured, as in its file");
     if (p->raw)
         put_curve(chart, &f->raw, 0, 1.2, "#fd8d3c", "raw");
-    snprintf(title, sizeof title, "%sCFC %.0f", c ? "model, " : "", f->cfc);
+    snprintf(title, sizeof title, "%sCFC %.0f%s", c ? "model, " : "", f->cfc, f->passed);
     put_curve(chart, &f->filtered, 0, 4, "#08519c", title);
     if (!c)
         return;

@@ -239,11 +239,11 @@ static void put_curve(const page *p, const sf_staging *output) {
     else if (f->driven)
         sf_html_figure(p->file, svg, "Nominal stress over strain (indentation over thickness).");
     else if (f->injury.hic.value > 0)
-        sf_html_figure(p->file, svg, "Missile: %s, filtered (CFC %.0f); shaded: the HIC window.",
-                       f->acceleration, f->cfc);
+        sf_html_figure(p->file, svg, "Missile: %s%s, filtered (CFC %.0f); shaded: the HIC window.",
+                       f->acceleration, f->passed, f->cfc);
     else
-        sf_html_figure(p->file, svg, "Missile: %s, filtered with CFC %.0f, over time.", f->acceleration,
-                       f->cfc);
+        sf_html_figure(p->file, svg, "Missile: %s%s, filtered with CFC %.0f, over time.", f->acceleration,
+                       f->passed, f->cfc);
     free(svg);
 }
 

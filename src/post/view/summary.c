@@ -118,7 +118,9 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
     sf_json_text(&json, "results", s->results_path);
     sf_json_text(&json, "caution", caution);
     put_verdict(&json, s->verdict);
-    sf_json_text(&json, "acceleration", s->figures->acceleration);
+    char acceleration[256];
+    snprintf(acceleration, sizeof acceleration, "%s%s", s->figures->acceleration, s->figures->passed);
+    sf_json_text(&json, "acceleration", acceleration);
     put_figures(&json, s);
     if (s->figures->layers)
         sf_rows_json_array(&json, "layers", sf_layer_figure_rows(), layers_of(s));
@@ -196,8 +198,8 @@ static void print_drop(FILE *out, const sf_summary *s) {
     fprintf(out, "Drop of %.4g kg at %.4g m/s on %.4g mm (CFC %.0f%s%s)\n", s->results->missile_mass, f->v0,
             s->results->thickness * 1e3, f->cfc, f->kinematic ? ", kinematic acceleration" : "",
             f->turns ? ", free missile: a_max, HIC and all that follows of the resultant" : "");
-    if (f->chain.mount_frequency > 0 || f->chain.coupling > 0)
-        fprintf(out, "  of the %s\n", f->acceleration);
+    if (f->passed[0])
+        fprintf(out, "  of the %s%s\n", f->acceleration, f->passed);
     print_figures(out, s, drop_keys);
     if (f->turns)
         print_figures(out, s, rotation_keys);
