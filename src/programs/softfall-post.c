@@ -30,14 +30,15 @@ enum {
     KEY_MOUNT,
     KEY_COUPLING,
     KEY_REFERENCE,
-    KEY_WINDOW,
-    KEY_REGIONS,
-    KEY_SHIFT,
     KEY_STRICT,
     KEY_FULL,
     KEY_FILM,
     KEY_LIMIT_G,
     KEY_LIMIT_HIC,
+    KEY_TUNED, /* the next ones need --reference */
+    KEY_WINDOW = KEY_TUNED,
+    KEY_REGIONS,
+    KEY_SHIFT,
     KEY_REFERENCE_FILTER,
     KEY_REFERENCE_COLUMN,
     KEY_REFERENCE_COLUMNS,
@@ -48,7 +49,8 @@ enum {
     KEY_REFERENCE_ZERO,
     KEY_FROM,
     KEY_TO,
-    KEY_IMPACT
+    KEY_IMPACT,
+    KEY_LAST = KEY_IMPACT
 };
 
 typedef struct options {
@@ -111,6 +113,7 @@ static sf_status parse_impact(const char *text, int *impact, sf_error *err) {
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
     options *o = state->input;
+    o->tuned = o->tuned || (key >= KEY_TUNED && key <= KEY_LAST);
     switch (key) {
     case 'o':
         o->directory = text;
@@ -150,60 +153,46 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         o->compare.reference.cfc = 0;
         if (strcmp(text, "none") != 0)
             parse_filter("--reference-filter", text, &o->compare.reference.cfc, &o->err);
-        o->tuned = true;
         break;
     case KEY_REFERENCE_COLUMN:
         o->compare.reference.column = text;
-        o->tuned = true;
         break;
     case KEY_REFERENCE_COLUMNS:
         o->compare.reference.columns = text;
-        o->tuned = true;
         break;
     case KEY_REFERENCE_HEADING:
         o->compare.reference.heading = text;
-        o->tuned = true;
         break;
     case KEY_REFERENCE_SCALE:
         sf_reference_parse_sensitivity(text, &o->compare.reference.sensitivity, &o->err);
-        o->tuned = true;
         break;
     case KEY_REFERENCE_RATE:
         sf_reference_parse_rate(text, &o->compare.reference.rate, &o->err);
-        o->tuned = true;
         break;
     case KEY_REFERENCE_INVERT:
         o->compare.reference.invert = true;
-        o->tuned = true;
         break;
     case KEY_FROM:
         parse_ms("--from", text, &o->compare.reference.from, &o->err);
-        o->tuned = true;
         break;
     case KEY_TO:
         parse_ms("--to", text, &o->compare.reference.to, &o->err);
-        o->tuned = true;
         break;
     case KEY_IMPACT:
         parse_impact(text, &o->compare.reference.impact, &o->err);
-        o->tuned = true;
         break;
     case KEY_REFERENCE_ZERO:
         o->compare.reference.zero = true;
-        o->tuned = true;
         break;
     case KEY_WINDOW:
         sf_region_parse(text, &o->compare.window, &o->err);
-        o->tuned = true;
         break;
     case KEY_REGIONS:
         free(o->regions);
         sf_regions_parse(text, &o->regions, &o->compare.region_count, &o->err);
-        o->tuned = true;
         break;
     case KEY_SHIFT:
         parse_ms("--shift", text, &o->compare.shift, &o->err);
-        o->tuned = true;
         break;
     case ARGP_KEY_ARG:
         if (o->results_path)
