@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A search for the least sum of squares (GSL, Levenberg-Marquardt with trust region, derivatives by
  * differences). */
-#ifndef SF_FIT_COMPRESSION_SEARCH_H
-#define SF_FIT_COMPRESSION_SEARCH_H
+#ifndef SF_STUDY_FIT_LEAST_SQUARES_H
+#define SF_STUDY_FIT_LEAST_SQUARES_H
 
 #include <gsl/gsl_matrix.h>
 
