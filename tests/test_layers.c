@@ -183,6 +183,39 @@ static void without_ties_the_patch_test_fails(void **state) {
     fixture_free(&f);
 }
 
+/* A layer of negative viscosity beside one of a larger positive one: the viscous work of the pad is positive at
+ * every step, and yet single nodes give energy back. */
+static void what_single_nodes_give_back_is_seen_behind_the_pads_sum(void **state) {
+    const fixture_block block = {.cells = {6, 5, 5}, .spacing = 0.01};
+    static const double sign[] = {-0.01, 1};
+    sf_case c;
+    fixture f;
+    (void)state;
+    layers_case(&c, NULL, BASE, 2);
+    layers_under_plate(&c, &block, flat, &f);
+    for (int wrong = 0; wrong < 2; wrong++) {
+        for (int k = 0; k < 2; k++) {
+            sf_foam_shared *card = &sf_foam_card_of(&f.model.material[k])->shared;
+            card->damp = card->maxwell_modulus = card->rate_factor = 0;
+            card->kelvin_viscosity = 200 * (wrong ? sign[k] : 1);
+        }
+        fixture_start(&f);
+        double least = 0;
+        for (int step = 0; step < 200; step++) {
+            fixture_advance(&f);
+            least = smaller(least, f.state.ledger.viscous);
+            double lost = 0;
+            for (int64_t i = 0; i < f.model.node_count; i++)
+                lost += larger(0, -f.state.viscous_work[i]) + larger(0, -f.state.pair_work[i]);
+            assert_true(f.state.given_back >= lost * (1 - 1e-12));
+        }
+        assert_true(f.state.ledger.viscous > 1e-3 * f.state.ledger.reference);
+        assert_true(least == 0);
+        assert_int_equal(f.state.given_back > 1e-3 * f.state.ledger.viscous, wrong);
+    }
+    fixture_free(&f);
+}
+
 /* ---- sliding ---- */
 
 static void start_sliding(layering layer, fixture *f) {
@@ -484,6 +517,7 @@ int main(void) {
         cmocka_unit_test(gaps_are_those_of_the_whole_pad),
         cmocka_unit_test(affine_field_across_interfaces_is_in_equilibrium),
         cmocka_unit_test(without_ties_the_patch_test_fails),
+        cmocka_unit_test(what_single_nodes_give_back_is_seen_behind_the_pads_sum),
         cmocka_unit_test(sliding_layers_are_free_along_their_interface_and_tied_across_it),
         cmocka_unit_test(sliding_steps_hold_each_other_along_their_faces),
         cmocka_unit_test(loose_part_of_a_layer_is_refused),

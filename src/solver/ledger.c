@@ -76,7 +76,7 @@ static void balance_in_space(const sf_model *m, sf_state *s, const sf_wrench *ou
 
 void sf_ledger_close(const sf_model *m, sf_state *s, const sf_wrench *outside, double dt_v) {
     sf_ledger *l = &s->ledger;
-    double potential = 0, drift = 0, momentum[3] = {0}, angular[3] = {0}, fastest = 0;
+    double back = s->rubbed_back, momentum[3] = {0}, angular[3] = {0}, fastest = 0;
     s->smallest_jacobian = INFINITY;
     double shortest = INFINITY;
     l->stored = l->hysteresis = l->kinetic_pad = 0;
@@ -86,8 +86,8 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const sf_wrench *outside, d
         l->hysteresis += p->hysteresis;
         l->viscous += p->viscous;
         l->kinetic_pad += p->kinetic;
-        potential += p->stabilisation;
-        drift += p->stabilisation_drift;
+        l->stabilisation += p->stabilisation;
+        back += p->given_back;
         shortest = fmin(shortest, p->shortest);
         fastest = fmax(fastest, p->fastest);
         if (p->jacobian < s->smallest_jacobian) {
@@ -101,8 +101,7 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const sf_wrench *outside, d
     }
     s->largest_compression = 1 - shortest;
     s->fastest = sqrt(fastest);
-    l->stabilisation_drift += drift;
-    l->stabilisation = potential - l->stabilisation_drift;
+    s->given_back = fmax(s->given_back, back);
 
     double held = sf_missile_along(m, outside->force), carried = sf_missile_along(m, momentum);
     if (sf_missile_is_driven(m))

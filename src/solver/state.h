@@ -57,8 +57,8 @@ typedef struct sf_partial {
     double angular[3];                  /* kg m2 s-1, angular momentum about the origin */
     double moment[3];                   /* N m, of the constraint reactions about the origin */
     double fastest;                     /* m2 s-2, largest v . v */
-    double stabilisation;               /* J, potential */
-    double stabilisation_drift;         /* J, change of the potential by the change of its stiffness */
+    double stabilisation;               /* J, of this step */
+    double given_back;                  /* J, by the viscosity or the stabilisation of single nodes, to date */
     double step;                        /* s, smallest stable step */
     double jacobian;                    /* -, smallest */
     double shortest;                    /* -, smallest principal stretch */
@@ -85,7 +85,6 @@ typedef struct sf_partial {
     X(double, weight, , "J", "work of gravity on a resting pad")                                                       \
     X(double, anvil, , "J", "part of `contact` and `friction` that is lost at the anvil")                              \
     X(double, reference, , "J", "to which errors refer: total at first contact; see ledger.h")                                 \
-    X(double, stabilisation_drift, , "J", "work that changed stiffness put into the pairs, to date")                   \
     X(double, error, , "1", "of the balance, over `reference`")                                                        \
     X(double, largest_error, , "1", "largest |error| so far")                                                          \
     X(double, momentum_reference, , "kg m s-1", "along the missile's direction, to which the momentum error refers")   \
@@ -107,6 +106,8 @@ typedef struct sf_partial {
     X(int64_t, anvil_count, , "1", "points with a force of the anvil")                                                 \
     X(double, anvil_force, [3], "N", "of the anvil on a resting pad")                                                  \
     X(double, penetration, , "m", "deepest now")                                                                       \
+    X(double, rubbed_back, , "J", "given back by the friction of single points, to date")                              \
+    X(double, given_back, , "J", "largest sum so far of what dissipation of single nodes has given back")             \
     X(int64_t, contact_unsettled, , "1", "steps whose sweeps did not reach their tolerance")                           \
     X(double, base_reaction, [3], "N", "of the base on the pad")                                                       \
     X(double, constraint_residual, , "m s-1", "largest |G v|, when last measured")                                     \
@@ -145,13 +146,15 @@ typedef struct sf_state {
     double *stiffness; /* [n] Pa */
     double *tangent;   /* [n] Pa, effective: a + 2 eta / dt of the last step */
 
-    /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, and the stiffness it was last used with. */
+    double *viscous_work; /* [n] J, to date */
+
+    /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, the stiffness it was last used with, and the
+     * work of the node's share to date. */
     double *pair_sum;       /* [n] m3 */
     double *pair_stiffness; /* [n] Pa */
+    double *pair_work;      /* [n] J */
 
-    /* Only a pad of layers has these. */
-    double *viscous_work; /* [n] J, to date */
-    double *compressed;   /* [n] -, largest compression to date */
+    double *compressed; /* [n] -, largest compression to date; only a pad of layers has it */
 
     /* Power iteration (time_step.h). */
     double *mode;       /* [n] its vector */
@@ -165,6 +168,7 @@ typedef struct sf_state {
     double *contact_old;      /* [contacts][3] N, of the last step */
     double *contact_gap;      /* [contacts] m, predicted */
     double *contact_normal;   /* [contacts][3] outward from the missile or the anvil */
+    double *contact_rubbed;   /* [contacts] J, work of friction to date */
     int32_t *contact_active;  /* [contacts] list */
     int32_t *contact_near;    /* [contacts] Verlet list: the points that can touch before contact_room is used
                                  up; arrays of other points are not up to date */

@@ -189,11 +189,13 @@ static int64_t count_peak_rows(const sf_series *raw) {
     return last - first + 1;
 }
 
-/* Returns the energy that a dissipation has given back, over `scale`; none may give any. */
-static double negative_dissipation(const sf_history *h, double scale) {
+/* Returns the energy that dissipation has given back, over `scale`: the whole of a kind at one time, or the
+ * sum over single nodes, whose gains the whole hides. None may give any. */
+static double negative_dissipation(const sf_results *r, double scale) {
+    const sf_history *h = &r->history;
     const double *const dissipated[] = {h->energy_hysteresis, h->energy_viscous, h->energy_friction,
                                         h->energy_stabilisation};
-    double least = 0;
+    double least = fmin(0, -r->given_back);
     for (size_t k = 0; k < sizeof dissipated / sizeof dissipated[0]; k++)
         for (int64_t i = 0; i < h->rows; i++)
             least = fmin(least, dissipated[k][i]);
@@ -206,7 +208,7 @@ static void compute_energies(const sf_results *r, sf_figures *f) {
     f->internal_energy_peak_time = e.time;
     f->stabilisation_energy_fraction = e.stabilisation;
     f->contact_energy_fraction = e.contact;
-    f->negative_dissipation = negative_dissipation(&r->history, e.peak);
+    f->negative_dissipation = negative_dissipation(r, e.peak);
 }
 
 /* Contact has ended if a row without contact follows the last row with it; the speed there is the rebound's.

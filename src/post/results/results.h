@@ -94,6 +94,7 @@ typedef struct sf_results {
     char status[512];    /* "" without summary */
     double contact_time; /* s, NaN if the bodies never touched */
     double wall_time;    /* s */
+    double given_back;   /* J, see /summary/given_back; NaN: not stored */
     int64_t steps;
     int64_t threads;
     int64_t interactions;

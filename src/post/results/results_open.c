@@ -248,7 +248,7 @@ static sf_status read_notes(sf_results *r, sf_error *err) {
 
 static sf_status read_summary(sf_results *r, sf_error *err) {
     r->steps = r->threads = r->interactions = -1;
-    r->contact_time = r->wall_time = NAN;
+    r->contact_time = r->wall_time = r->given_back = NAN;
     r->has_summary = sf_h5_exists(r->file, "/summary/status");
     if (!r->has_summary) {
         sf_results_note_ending(
@@ -265,7 +265,7 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
         read_integer(r, "/summary/interactions", &r->interactions, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/summary/wall_time", &r->wall_time, err) != SF_OK ||
         sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err) != SF_OK ||
-        read_notes(r, err) != SF_OK)
+        read_optional(r, "/summary/given_back", &r->given_back, err) != SF_OK || read_notes(r, err) != SF_OK)
         return err->status;
     if (!sf_results_ended_well(r))
         sf_results_note(r, "the run stopped with: %s", r->status);

@@ -116,6 +116,9 @@ static void book_work(const sf_model *m, sf_state *s, const contact_solve *w) {
         double normal = w->friction[partner(m, c)] > 0 ? sf_dot3(mean, n) * sf_dot3(slip, n) : lost;
         s->ledger.contact += normal;
         s->ledger.friction += lost - normal;
+        s->rubbed_back -= fmax(0, -s->contact_rubbed[c]);
+        s->contact_rubbed[c] += lost - normal;
+        s->rubbed_back += fmax(0, -s->contact_rubbed[c]);
         if (sf_model_point_rests(m, c))
             s->ledger.anvil += lost;
         else if (driven)

@@ -101,7 +101,7 @@ static void update_laws(const sf_model *m, const sf_operators *op, double dt, in
 
 /* Sums and extremes of a chunk, lane by lane, so that one batch does not wait for the one before. */
 typedef struct lane_sums {
-    double stored[SF_LANES], hysteresis[SF_LANES], viscous[SF_LANES];
+    double stored[SF_LANES], hysteresis[SF_LANES], viscous[SF_LANES], given_back[SF_LANES];
     double slowness[SF_LANES]; /* s-1, largest inverse of a stable step, times 4 */
     double load[SF_LANES], shortest[SF_LANES];
     double jacobian[SF_LANES], block[SF_LANES]; /* smallest, and in which block of the chunk; a NaN is kept */
@@ -154,6 +154,7 @@ static void merge_lanes(const lane_sums *lane, int64_t first, sf_partial *sum) {
         sum->stored += lane->stored[l];
         sum->hysteresis += lane->hysteresis[l];
         sum->viscous += lane->viscous[l];
+        sum->given_back += lane->given_back[l];
         slowness = sf_larger(lane->slowness[l], slowness);
         sum->load = sf_larger(lane->load[l], sum->load);
         sum->shortest = sf_smaller(lane->shortest[l], sum->shortest);
@@ -188,12 +189,23 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
     }
 }
 
-/* Stores the sums by layer for the report at the end. */
-static void store_layers(const sf_model *m, sf_state *s, int64_t first, int count, const sf_law_batch *b) {
+/* Stores the viscous work of each node to date. */
+static void store_work(const sf_model *m, sf_state *s, int64_t first, int count, const sf_law_batch *b,
+                       lane_sums *sum) {
+    double *restrict work = &s->viscous_work[first];
+    const double *restrict volume = &m->volume[first];
+#pragma omp simd
+    for (int l = 0; l < count; l++) {
+        work[l] += volume[l] * b->work[l];
+        sum->given_back[l] += sf_larger(0, -work[l]);
+    }
+}
+
+/* Stores the largest compressions for the report by layer at the end. */
+static void store_layers(sf_state *s, int64_t first, int count, const sf_law_batch *b) {
     for (int l = 0; l < count; l++) {
         double shorter = sf_smaller(b->stretch[0][l], b->stretch[1][l]),
                compressed = 1 - sf_smaller(b->stretch[2][l], shorter);
-        s->viscous_work[first + l] += m->volume[first + l] * b->work[l];
         s->compressed[first + l] = sf_larger(compressed, s->compressed[first + l]);
     }
 }
@@ -215,8 +227,9 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
         for (int l = count; l < SF_LANES; l++) /* nor is it short */
             batch.jacobian[l] = batch.stretch[0][l] = batch.stretch[1][l] = batch.stretch[2][l] = INFINITY;
         store_batch(m, op, s, block, count, &batch, &sum);
+        store_work(m, s, block * SF_LANES, count, &batch, &sum);
         if (m->material_count > 1)
-            store_layers(m, s, block * SF_LANES, count, &batch);
+            store_layers(s, block * SF_LANES, count, &batch);
     }
     merge_lanes(&sum, chunk * SF_CHUNK, &s->partial[chunk]);
 }

@@ -87,8 +87,10 @@ static void take_sums(const sf_model *m, const sf_pair_sums *sums, int64_t g, sf
         memcpy(&s->force[3 * i], &sums->force[p], 3 * sizeof *s->force);
         for (int k = 0; k < 9; k++)
             s->stress[9 * i + k] += sums->couple[p][k % 3][k / 3];
-        partial->stabilisation += stiffness * energy;
-        partial->stabilisation_drift += 0.5 * (s->pair_sum[i] + energy) * (stiffness - s->pair_stiffness[i]);
+        double work = 0.5 * (s->pair_stiffness[i] + stiffness) * (energy - s->pair_sum[i]);
+        s->pair_work[i] += work;
+        partial->stabilisation += work;
+        partial->given_back += sf_larger(0, -s->pair_work[i]);
         s->pair_sum[i] = energy;
         s->pair_stiffness[i] = stiffness;
     }
