@@ -453,8 +453,8 @@ static void values_out_of_bounds_are_refused(void **state) {
     assert_refused(GOOD, "missile.gap=1 m", "missile.gap: the missile travels 0.039", "never reaches the pad",
                    "1 m away", NULL);
     assert_refused(GOOD, "output.times=[\"-1 ms\"]", "output.times: -0.001 s is out of bounds", NULL);
-    assert_refused(GOOD, "missile.direction=[0, 0, 1]", "missile.direction: [0, 0, 1] does not point to the pad",
-                   NULL);
+    assert_refused(GOOD, "missile.direction=[0, 0, 1]",
+                   "missile.direction: [0, 0, 1] does not point to the pad", NULL);
     assert_refused(GOOD, "missile.direction=[0, -1]", "expected three plain numbers", NULL);
     assert_refused(GOOD, "missile.position=[\"0 mm\"]", "expected an array of two lengths, x and y", NULL);
     assert_refused(GOOD, "missile.position=\"0 mm\"", "expected an array of two lengths, x and y", NULL);

@@ -94,7 +94,8 @@ static void curves_begin_before_the_contact(void **state) {
     assert_close(early.figures.filtered.value[0], 0, 1e-6);
     program_succeed(*state, "post", "early.h5 -o early --force");
     assert_int_equal(
-        program_shell(*state, "awk -F, 'NR == 2 { exit !($1 <= -4.9 && $2 * $2 < 1e-12) }' early/acceleration.csv")
+        program_shell(*state,
+                      "awk -F, 'NR == 2 { exit !($1 <= -4.9 && $2 * $2 < 1e-12) }' early/acceleration.csv")
             .code,
         0);
     release(&late);

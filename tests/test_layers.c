@@ -183,8 +183,8 @@ static void without_ties_the_patch_test_fails(void **state) {
     fixture_free(&f);
 }
 
-/* A layer of negative viscosity beside one of a larger positive one: the viscous work of the pad is positive at
- * every step, and yet single nodes give energy back. */
+/* A layer of negative viscosity beside one of a larger positive one: the viscous work of the pad is positive
+ * at every step, and yet single nodes give energy back. */
 static void what_single_nodes_give_back_is_seen_behind_the_pads_sum(void **state) {
     const fixture_block block = {.cells = {6, 5, 5}, .spacing = 0.01};
     static const double sign[] = {-0.01, 1};

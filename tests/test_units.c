@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/units.h"
 
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -163,12 +162,8 @@ static void every_name_of_the_table_is_a_unit(void **state) {
     static const struct {
         const char *kind;
         sf_quantity quantity;
-    } kinds[] = {{"length", SF_LENGTH},
-                 {"mass", SF_MASS},
-                 {"time", SF_TIME},
-                 {"force", SF_FORCE},
-                 {"pressure", SF_PRESSURE},
-                 {"voltage", SF_VOLTAGE},
+    } kinds[] = {{"length", SF_LENGTH},         {"mass", SF_MASS},         {"time", SF_TIME},
+                 {"force", SF_FORCE},           {"pressure", SF_PRESSURE}, {"voltage", SF_VOLTAGE},
                  {"angle", SF_ANGULAR_VELOCITY}};
     char *table = NULL, *rest, kind[16] = "";
     size_t size = 0;

@@ -42,8 +42,8 @@ typedef struct sf_case {
     uint64_t values;  /* hash of the values of all keys that can change a drop, but those that name files */
     sf_geo_source pad;
     sf_geo_source missile;
-    double length_unit;     /* m per unit of the geometry */
-    double up[3];           /* -, unit vector out of the pad's face, in the geometry; the model has it along z */
+    double length_unit; /* m per unit of the geometry */
+    double up[3];       /* -, unit vector out of the pad's face, in the geometry; the model has it along z */
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */
     const char *store;    /* folder in which meshes and domains are kept for other drops (io/folder.h); NULL:
                              they are not; borrowed, not of the case file */

@@ -8,7 +8,10 @@
 #include "base/mat3.h"
 
 #define ARRAY(member, type, rows, extra, columns, path, units, text)                                         \
-    { offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text, false, false }
+    {                                                                                                        \
+        offsetof(sf_model, member), type, offsetof(sf_model, rows), extra, columns, path, units, text,       \
+            false, false                                                                                     \
+    }
 #define SCALAR(member, type, path, units, text)                                                              \
     { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, false, false }
 /* Fields that models of older versions may lack. */

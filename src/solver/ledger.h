@@ -2,10 +2,11 @@
 /* The energy ledger and the momentum balance. Stored and hysteretic energy are state functions of W and its
  * maximum, not integrals of the forces: their agreement with the kinetic energy is a check, not an identity.
  *
- * Errors are relative to the energy and momentum at first contact of a free missile; with a prescribed motion, to
- * the largest work and the impulse of the motion so far. The balance in space counts the pad, and a missile
- * that turns (sf_missile_momenta); angular momentum is about the origin, its error refers to the same
- * momentum times the pad's thickness. Both hold to rounding, whatever the step: theory, section "Ledger". */
+ * Errors are relative to the energy and momentum at first contact of a free missile; with a prescribed
+ * motion, to the largest work and the impulse of the motion so far. The balance in space counts the pad, and
+ * a missile that turns (sf_missile_momenta); angular momentum is about the origin, its error refers to the
+ * same momentum times the pad's thickness. Both hold to rounding, whatever the step: theory, section
+ * "Ledger". */
 #ifndef SF_SOLVER_LEDGER_H
 #define SF_SOLVER_LEDGER_H
 

@@ -58,11 +58,11 @@ typedef struct sf_partial {
     double moment[3];                   /* N m, of the constraint reactions about the origin */
     double fastest;                     /* m2 s-2, largest v . v */
     double stabilisation;               /* J, of this step */
-    double given_back;                  /* J, by the viscosity or the stabilisation of single nodes, to date */
-    double step;                        /* s, smallest stable step */
-    double jacobian;                    /* -, smallest */
-    double shortest;                    /* -, smallest principal stretch */
-    double load;                        /* s-2, largest c (a + 2 eta / dt) */
+    double given_back; /* J, by the viscosity or the stabilisation of single nodes, to date */
+    double step;       /* s, smallest stable step */
+    double jacobian;   /* -, smallest */
+    double shortest;   /* -, smallest principal stretch */
+    double load;       /* s-2, largest c (a + 2 eta / dt) */
     int64_t jacobian_node;
 } sf_partial;
 
@@ -148,8 +148,8 @@ typedef struct sf_state {
 
     double *viscous_work; /* [n] J, to date */
 
-    /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, the stiffness it was last used with, and the
-     * work of the node's share to date. */
+    /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, the stiffness it was last used with, and
+     * the work of the node's share to date. */
     double *pair_sum;       /* [n] m3 */
     double *pair_stiffness; /* [n] Pa */
     double *pair_work;      /* [n] J */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* acceleration.png: the curves, the HIC window and the limit; acceleration.gp, which draws the picture again, or
- * differently, stays beside it. Of a run with a prescribed motion compression.png: stress over strain. */
+/* acceleration.png: the curves, the HIC window and the limit; acceleration.gp, which draws the picture again,
+ * or differently, stays beside it. Of a run with a prescribed motion compression.png: stress over strain. */
 #ifndef SF_POST_PLOT_H
 #define SF_POST_PLOT_H
 
@@ -15,9 +15,9 @@ enum { SF_PLOT_KEY_COLUMNS = 2 };
 /* The name of the script without its ending. */
 const char *sf_plot_name(const sf_figures *figures);
 
-/* Writes the script and the picture, which names the verdict and shows its limits. `comparison` may be NULL. If
- * gnuplot is absent or fails, `warning` (size bytes) says so in a sentence, and that is no error; otherwise
- * it is "". */
+/* Writes the script and the picture, which names the verdict and shows its limits. `comparison` may be NULL.
+ * If gnuplot is absent or fails, `warning` (size bytes) says so in a sentence, and that is no error;
+ * otherwise it is "". */
 sf_status sf_plot_write(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                         const sf_comparison *comparison, const sf_verdict *verdict, char *warning,
                         size_t size, sf_error *err);
@@ -26,8 +26,8 @@ sf_status sf_plot_write(const sf_staging *output, const sf_results *results, con
  * value, or the measured one above 5 %, and a margin; all of a run without a pulse. */
 void sf_plot_time_range(const sf_figures *figures, const sf_comparison *comparison, double range[2]);
 
-/* Returns the largest difference of two curves over the range, over the largest value of `a`: a curve with a small
- * one is not seen beside the other. */
+/* Returns the largest difference of two curves over the range, over the largest value of `a`: a curve with a
+ * small one is not seen beside the other. */
 double sf_plot_difference(const sf_series *a, const sf_series *b, const double range[2]);
 
 #endif

@@ -212,7 +212,8 @@ static const struct {
     double size; /* m */
 } targets[] = {{"CM", 1e-2}, {"M", 1}, {"INCH", 0.0254}, {"FT", 0.3048}};
 
-/* The .geo text that sets the parameters, and the unit; from malloc. The decimal point is a point in any locale. */
+/* The .geo text that sets the parameters, and the unit; from malloc. The decimal point is a point in any
+ * locale. */
 static char *parameter_text(const sf_geo_source *source) {
     char *text = NULL;
     size_t size = 0;

@@ -276,9 +276,10 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         write_notes(d, file, err) != SF_OK ||
         write_scalar(file, "/summary/wall_time", "s", "time of the run", d->run->wall_time, err) != SF_OK)
         return err->status;
-    if (write_scalar(file, "/summary/given_back", "J",
-                     "most that dissipation of single nodes had given back at one time, summed over the nodes",
-                     sf_model_whole(m) * s->given_back, err) != SF_OK)
+    if (write_scalar(
+            file, "/summary/given_back", "J",
+            "most that dissipation of single nodes had given back at one time, summed over the nodes",
+            sf_model_whole(m) * s->given_back, err) != SF_OK)
         return err->status;
     return write_scalar(file, "/summary/contact_time", "s", "first contact, NaN if none",
                         s->missile.contact_time, err);
