@@ -9,6 +9,7 @@
 #include "foam_fixture.h"
 #include "io/folder.h"
 #include "post/figures/injury.h"
+#include "post_check.h"
 #include "program_fixture.h"
 
 #include <math.h>
@@ -804,6 +805,43 @@ static void hidden_foam_is_found(void **state) {
     program_tear_down(&place);
 }
 
+/* The record of a drop on a mount of 100 Hz tells the mount's frequency beside the foam, and a fit that takes
+ * the mount for rigid does not describe it. */
+static void the_mount_of_the_accelerometer_is_found(void **state) {
+    (void)state;
+    static const char *const chain[] = {"mount = \"f = 130 Hz, damping = 0.4\"; mount_frequency_sd = 0.3;\n",
+                                        ""};
+    program_place place;
+    double misfit[2];
+    program_set_up(&place);
+    put_case(&place);
+    program_succeed(&place, "pre", "case.cfg -o m.h5");
+    program_succeed(&place, "solve", "m.h5 -o r.h5");
+    program_succeed(&place, "post", "r.h5 -o post --mount 'f = 100 Hz, damping = 0.4'");
+    for (int k = 0; k < 2; k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "material = \"start.cfg\"; curve_form = \"table\"; posterior = false;\n"
+                 "unknown = ( { name = \"stress_scale\"; } );\n%s"
+                 "drops = ( { name = \"a\"; case = \"case.cfg\"; curve = \"post/history.csv\"; "
+                 "curve_column = \"acceleration_cfc1000_g\"; curve_sd = 0.005; } );\n",
+                 chain[k]);
+        program_write_text(&place, "fit.cfg", text);
+        program_result r = program_run(&place, "fit", "drop fit.cfg -o out%d -t 1", k);
+        assert_int_equal(r.code, 0);
+        if (k == 0) {
+            assert_relative(number_after(r.out, "accelerometer's mount: frequency "), 100, 0.03);
+            assert_relative(number_after(r.out, "stress_scale"), 1, 0.01);
+            program_bytes page = program_read_file(program_path(&place, "out0/report.html"));
+            assert_non_null(strstr(page.data, "mount: frequency"));
+            free(page.data);
+        }
+        misfit[k] = number_after(r.out, "misfit ");
+    }
+    assert_true(misfit[1] > 10 * misfit[0]);
+    program_tear_down(&place);
+}
+
 static void a_second_fit_in_the_folder_is_refused(void **state) {
     (void)state;
     program_place place;
@@ -997,6 +1035,7 @@ int main(void) {
         cmocka_unit_test(medians_follow_the_modulus_of_the_start),
         cmocka_unit_test(no_foam_is_one_that_a_case_refuses),
         cmocka_unit_test(hidden_foam_is_found),
+        cmocka_unit_test(the_mount_of_the_accelerometer_is_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),
         cmocka_unit_test(killed_fit_ends_with_the_same_material),
         cmocka_unit_test(killed_fit_of_two_models_ends_with_the_same_draws),

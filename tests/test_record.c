@@ -119,6 +119,28 @@ static void each_fault_is_found(void **state) {
     assert_close(v.rows[SF_RECORD_other_impact].value, 0.4, 1e-3);
 }
 
+/* A record that begins at contact, as softfall's own history.csv does, has no rest before it: its first
+ * samples are the foot of the pulse and tell no offset. With a rest of 2 ms they do. */
+static void a_record_that_begins_at_contact_tells_no_offset(void **state) {
+    (void)state;
+    double time[COUNT], value[COUNT], offset;
+    sf_error err = SF_ERROR_INIT;
+    for (int rest = 0; rest < 2; rest++) {
+        for (int i = 0; i < COUNT; i++) { /* half a sine squared: slow at first */
+            double x = larger(0, (i * STEP - 2e-3 * rest) / (2 * LENGTH));
+            time[i] = i * STEP;
+            value[i] = 3 * rest + (x < 1 ? PEAK * pow(sin(M_PI * x), 2) : 0);
+        }
+        const sf_series raw = {.count = COUNT, .time = time, .value = value};
+        assert_int_equal(sf_record_offset(&raw, &raw, &offset, &err), SF_OK);
+        if (rest)
+            assert_close(offset, 3, 1e-2);
+        else
+            assert_true(isnan(offset));
+        assert_true(rest || isnan(judge(time, value, COUNT).rows[SF_RECORD_offset].value));
+    }
+}
+
 static void a_gap_in_the_pulse_is_found(void **state) {
     (void)state;
     double time[COUNT], value[COUNT];
@@ -228,6 +250,7 @@ int main(void) {
         cmocka_unit_test(a_clean_record_is_valid),
         cmocka_unit_test(a_coarse_converter_is_no_rail),
         cmocka_unit_test(each_fault_is_found),
+        cmocka_unit_test(a_record_that_begins_at_contact_tells_no_offset),
         cmocka_unit_test(a_gap_in_the_pulse_is_found),
         cmocka_unit_test(clock_zero_line_and_impact_are_chosen),
         cmocka_unit_test(the_filter_works_at_the_records_own_rate),

@@ -270,18 +270,23 @@ static double peak_of(const sf_series *c) {
     return bend < 0 ? c->value[k] - 0.5 * rise * rise / bend : c->value[k];
 }
 
+sf_status sf_columns_read(const sf_series *filtered, sf_columns_figures *out, sf_error *err) {
+    sf_hic hic;
+    SF_TRY(sf_pulse_hic(filtered, &hic, err));
+    out->a_max_g = peak_of(filtered);
+    out->hic = hic.value;
+    out->hic_window = hic.t2 - hic.t1;
+    return SF_OK;
+}
+
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law, sf_columns_figures *out,
                              sf_series *filtered, sf_error *err) {
     sf_series curve = {0}, read = {0};
-    sf_hic hic;
     double rebound, contact;
     if (sf_columns_drop(columns, law, &curve, &rebound, &contact, err) == SF_OK &&
-        filter(&curve, &read, err) == SF_OK && sf_pulse_hic(&read, &hic, err) == SF_OK) {
-        *out = (sf_columns_figures){.a_max_g = peak_of(&read),
-                                    .hic = hic.value,
-                                    .hic_window = hic.t2 - hic.t1,
-                                    .v_rebound = rebound,
-                                    .contact_time = contact};
+        filter(&curve, &read, err) == SF_OK) {
+        *out = (sf_columns_figures){.v_rebound = rebound, .contact_time = contact};
+        sf_columns_read(&read, out, err);
     }
     sf_series_free(&curve);
     if (err->status == SF_OK && filtered)

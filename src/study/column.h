@@ -43,6 +43,9 @@ typedef struct sf_columns_figures {
     double contact_time; /* s, from first contact to the end of contact; NaN: it had not */
 } sf_columns_figures;
 
+/* Sets the figures of a filtered curve (s, g): a_max_g, hic and hic_window. */
+sf_status sf_columns_read(const sf_series *filtered, sf_columns_figures *figures, sf_error *err);
+
 /* Drops, filters and evaluates. `filtered` (s, g; owned by the caller) begins 5 ms before contact, which is
  * at 0; NULL: not wanted. Errors as of sf_columns_drop. */
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law,

@@ -120,10 +120,23 @@ static double cut_value(const record *r) {
     return fmax(r->begins ? 0 : r->median[0], r->ends ? 0 : r->median[r->raw->count - 1]) / r->peak;
 }
 
+/* True if the record begins at contact: what precedes the pulse is shorter than half of it and grows from the
+ * first sample on, so that it is the pulse's foot and no rest. */
+static bool begins_at_contact(const record *r, const sf_series *series, int64_t count) {
+    const double *time = r->raw->time;
+    double early = median_of(series->value, count / 2, r->work),
+           late = median_of(&series->value[count / 2], count - count / 2, r->work),
+           larger = fmax(fabs(early), fabs(late));
+    return time[r->begin] - time[0] < 0.5 * (time[r->end] - time[r->begin]) &&
+           fabs(late - early) > 0.5 * larger && larger > 2e-3 * r->peak;
+}
+
 /* The first half of what precedes the pulse: its foot lies in the other. */
 static double base_before(const record *r, const sf_series *series) {
     int64_t count = r->begins ? r->begin / 2 : 0;
-    return count < LEAST_BASE ? NAN : median_of(series->value, count, r->work);
+    return count < LEAST_BASE || begins_at_contact(r, series, count)
+               ? NAN
+               : median_of(series->value, count, r->work);
 }
 
 static double offset_value(const record *r) {

@@ -49,6 +49,7 @@ typedef struct sf_signal_chain {
     double mount_damping;   /* -, zeta, above 0 and below 1 */
     double coupling;        /* s, tau; 0: the chain passes constants */
 } sf_signal_chain;
+enum { SF_SIGNAL_CHAIN = sizeof(sf_signal_chain) / sizeof(double) }; /* its numbers, in this order */
 
 /* Passes uniform samples through it in place: exact for straight lines between them. It has been at rest with
  * the first sample. */

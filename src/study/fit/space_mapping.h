@@ -16,7 +16,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { SF_MAPPING_MAX_PARAMETERS = 44 };
+enum { SF_MAPPING_MAX_PARAMETERS = 47 };
 
 typedef struct sf_mapping_problem {
     int parameters, responses;

@@ -16,8 +16,8 @@ enum { MAX_ITERATIONS = 8, EXACT_ITERATIONS = 100 /* of a fit without simulation
 static const double TOLERANCE = 0.1;  /* of a standard deviation: the last step */
 static const double BIN_WIDTH = 0.05; /* of strain */
 
-_Static_assert(SF_MAPPING_MAX_PARAMETERS >= SF_FIT_MAX_UNKNOWNS + SF_FIT_MAX_DROPS,
-               "the unknown parameters and the speed of every drop");
+_Static_assert(SF_MAPPING_MAX_PARAMETERS >= SF_FIT_MAX_UNKNOWNS + SF_SIGNAL_CHAIN + SF_FIT_MAX_DROPS,
+               "the unknown parameters, the chain and the speed of every drop");
 
 /* ---- parameters and responses ---- */
 
@@ -66,17 +66,44 @@ static sf_status take_samples(const sf_fit_drop *drop, const sf_series *curve, d
     return SF_OK;
 }
 
-/* Scaled responses of one drop from its figures and its curve, which has CFC 1000. */
-static sf_status respond(const sf_fit_drop *drop, const sf_columns_figures *figures, const sf_series *curve,
-                         double *y, sf_error *err) {
-    sf_series filtered = {0};
-    sf_drop_values_scale(figures, y);
-    if (drop->samples == 0)
-        return SF_OK;
+sf_signal_chain sf_drop_fit_chain(const sf_drop_fit *fit, const double *u) {
+    double number[SF_SIGNAL_CHAIN];
+    sf_signal_chain chain = fit->input->chain;
+    memcpy(number, &chain, sizeof number);
+    for (int k = 0; k < SF_SIGNAL_CHAIN && u; k++)
+        if (fit->chain[k] >= 0)
+            number[k] *= exp(u[fit->chain[k]]);
+    memcpy(&chain, number, sizeof number);
+    chain.mount_damping = fmin(chain.mount_damping, 0.999);
+    return chain;
+}
+
+/* Passes the curve through the chain, and evaluates it again. The chain and the filter, which the curve has
+ * been through, are linear: their order does not matter. */
+static sf_status pass_chain(const sf_signal_chain *chain, const sf_series *curve, sf_columns_figures *figures,
+                            sf_series *passed, sf_error *err) {
+    SF_TRY(sf_signal_resample(curve, sf_signal_rate(curve), passed, err));
+    sf_signal_pass(chain, passed);
+    return sf_columns_read(passed, figures, err);
+}
+
+/* Scaled responses of one drop from its figures and its curve, which has CFC 1000, as the chain reads it. */
+static sf_status respond(const sf_fit_drop *drop, const sf_signal_chain *chain,
+                         const sf_columns_figures *figures, const sf_series *curve, double *y,
+                         sf_error *err) {
+    sf_series filtered = {0}, passed = {0};
+    sf_columns_figures read = *figures;
     bool lower = drop->sample_class > 0 && drop->sample_class < 1000;
-    if (!lower || filter_like_measured(curve, drop->sample_class, &filtered, err) == SF_OK)
+    if ((chain->mount_frequency > 0 || chain->coupling > 0) &&
+        pass_chain(chain, curve, &read, &passed, err) == SF_OK)
+        curve = &passed;
+    if (err->status == SF_OK)
+        sf_drop_values_scale(&read, y);
+    if (drop->samples > 0 && err->status == SF_OK &&
+        (!lower || filter_like_measured(curve, drop->sample_class, &filtered, err) == SF_OK))
         take_samples(drop, lower ? &filtered : curve, &y[SF_FIT_SAMPLES], err);
     sf_series_free(&filtered);
+    sf_series_free(&passed);
     return err->status;
 }
 
@@ -88,6 +115,8 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
         fit->measured_drops += !in->drop[d].predicted;
     }
     fit->parameters = in->unknown_count;
+    for (int k = 0; k < SF_SIGNAL_CHAIN; k++)
+        fit->chain[k] = in->chain_sd[k] > 0 ? fit->parameters++ : -1;
     for (int d = 0; d < in->drop_count; d++)
         fit->speed[d] = in->drop[d].speed_sd > 0 ? fit->parameters++ : -1;
     unsigned long n = (unsigned long)fit->row[in->drop_count];
@@ -135,6 +164,7 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
     sf_material_law law;
     if (sf_material_law_build(&material, &law, err) != SF_OK)
         return err->status;
+    const sf_signal_chain chain = sf_drop_fit_chain(fit, u);
     if (first == 0)
         sf_joint_respond(&fit->input->joint, &law, y, err);
     for (int d = first; d < last && err->status == SF_OK; d++) {
@@ -149,7 +179,7 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
         if (u && fit->speed[d] >= 0)
             columns.speed *= exp(u[fit->speed[d]]);
         if (sf_columns_respond(&columns, &law, &figures, &curve, err) == SF_OK &&
-            respond(drop, &figures, &curve, &y[fit->row[d]], err) == SF_OK)
+            respond(drop, &chain, &figures, &curve, &y[fit->row[d]], err) == SF_OK)
             check_values(drop, &y[fit->row[d]], "its columns end", "this foam does not let go", err);
         sf_series_free(&curve);
         if (drop->predicted && err->status == SF_ERR_NUMERIC) { /* the foam may be too soft for this one */
@@ -173,6 +203,8 @@ static uint64_t hash_inputs(const sf_drop_fit *fit) {
     hash = sf_hash(hash, in->start, sizeof in->start);
     hash = sf_hash(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
     hash = sf_joint_hash(hash, &in->joint);
+    hash = sf_hash(hash, &in->chain, sizeof in->chain);
+    hash = sf_hash(hash, fit->chain, sizeof fit->chain);
     for (int d = 0; d < in->drop_count; d++) {
         const sf_fit_drop *drop = &in->drop[d];
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) { /* which must be defined */
@@ -283,7 +315,7 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
                                         .hic_window = result->hic_window,
                                         .v_rebound = result->v_rebound,
                                         .contact_time = result->contact_time};
-    if (respond(drop, &figures, &result->curve, &y[fit->row[d]], err) == SF_OK)
+    if (respond(drop, &fit->chain_now, &figures, &result->curve, &y[fit->row[d]], err) == SF_OK)
         check_values(drop, &y[fit->row[d]], "its simulation ends", "raise solver.end_time of its case", err);
     sf_series_free(&last->curve);
     *last = (sf_fit_simulated){.max_local_strain = result->max_local_strain,
@@ -404,6 +436,7 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
     if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
         return err->status;
+    fit->chain_now = sf_drop_fit_chain(fit, u);
     card.informed_strain = 0; /* that of the start says nothing about an iterate */
     const sf_material material = sf_foam_material(&card);
     if (check_card(fit->input, u, &card, err) == SF_OK)
@@ -424,7 +457,10 @@ static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, 
     unsigned long n = (unsigned long)fit->row[fit->measured_drops];
     double *with = sf_alloc(err, n, sizeof *with, "responses"),
            *without = sf_alloc(err, n, sizeof *with, "responses");
-    memcpy(given, u, (size_t)fit->input->unknown_count * sizeof *u);
+    memcpy(given, u, (size_t)fit->parameters * sizeof *u);
+    for (int d = 0; d < fit->measured_drops; d++)
+        if (fit->speed[d] >= 0)
+            given[fit->speed[d]] = 0;
     if (err->status == SF_OK && surrogate((void *)fit, u, with, err) == SF_OK &&
         surrogate((void *)fit, given, without, err) == SF_OK)
         for (unsigned long k = 0; k < n; k++)
@@ -659,6 +695,9 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
         start[k] = log(in->prior[k]);
         prior_sd[k] = in->prior_sd[k];
     }
+    for (int k = 0; k < SF_SIGNAL_CHAIN; k++)
+        if (fit->chain[k] >= 0)
+            prior_sd[fit->chain[k]] = in->chain_sd[k];
     for (int d = 0; d < in->drop_count; d++)
         if (fit->speed[d] >= 0)
             prior_sd[fit->speed[d]] = in->drop[d].speed_sd;

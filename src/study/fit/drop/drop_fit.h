@@ -43,14 +43,16 @@ typedef struct sf_drop_fit {
      * drops */
     int row[SF_FIT_MAX_DROPS + 1];
     int measured_drops;
-    int parameters;              /* unknown parameters of the foam, then speeds */
+    int parameters;              /* unknown parameters of the foam, then those of the chain, then speeds */
+    int chain[SF_SIGNAL_CHAIN];  /* index of the chain's numbers among them; -1: it is known */
     int speed[SF_FIT_MAX_DROPS]; /* index of the drop's speed among them; -1: it is known */
     double *measured, *sd;       /* [responses] scaled; sd INFINITY where nothing was measured; owned */
     sf_columns columns[SF_FIT_MAX_DROPS];
     bool borrowed[SF_FIT_MAX_DROPS]; /* columns of the coarse drop, until the drop itself was simulated */
     sf_fit_simulated simulated[SF_FIT_MAX_DROPS];
-    bool coarse;           /* now: the drops have the input's coarse_set */
-    int coarse_iterations; /* of the first part; 0: there was none */
+    bool coarse;               /* now: the drops have the input's coarse_set */
+    sf_signal_chain chain_now; /* through which the simulated drops are read */
+    int coarse_iterations;     /* of the first part; 0: there was none */
     int iteration;
     sf_mapping_result result; /* of the measured drops */
     double *y;                /* [responses] of the simulations with the result; owned */
@@ -66,12 +68,15 @@ typedef struct sf_drop_fit {
     double curve_prior_sd[SF_FIT_STRAIN_BINS]; /* the same before the data */
 } sf_drop_fit;
 
+/* The accelerometer's chain with its numbers in `u`; NULL: as given. */
+sf_signal_chain sf_drop_fit_chain(const sf_drop_fit *fit, const double *u);
+
 /* Fits. `fit` holds input, runner, folder, log and memory. Release with sf_drop_fit_free, also on failure. */
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err);
 void sf_drop_fit_free(sf_drop_fit *fit);
 
-/* Responses of drops `first` to `last` - 1 by columns of this foam into y [responses]; `u` has the speeds,
- * NULL: as given. Reads the fit only: for several threads at a time. */
+/* Responses of drops `first` to `last` - 1 by columns of this foam into y [responses]; `u` has the speeds
+ * and the chain, NULL: as given. Reads the fit only: for several threads at a time. */
 sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
                               const double *u, double *y, sf_error *err);
 

@@ -75,6 +75,7 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
     put_picture(f, output);
     if (average)
         sf_inference_html(f, average, err);
+    sf_report_chain_html(f, fit);
     sf_report_drops_html(f, fit);
     sf_report_joint_html(f, fit);
     put_misfit(f, fit);
@@ -139,6 +140,7 @@ void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
     fprintf(f, "; misfit %.2f with %.1f degrees of freedom%s\n", fit->result.misfit, fit->result.freedom,
             gain);
     sf_report_parameters_print(f, fit);
+    sf_report_chain_print(f, fit);
     sf_report_drops_print(f, fit);
     sf_report_joint_print(f, fit);
     fprintf(f, "  the drops see the curve between strains of %.2f and %.2f\n", low, high);

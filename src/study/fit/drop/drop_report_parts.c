@@ -148,6 +148,69 @@ void sf_report_speeds_html(FILE *f, const sf_drop_fit *fit) {
     sf_html_table_end(&table);
 }
 
+/* A number of the accelerometer's chain, as it is shown. */
+typedef struct chain_shown {
+    const char *name, *unit;
+    double given, sd, value, factor; /* the interval: value / factor to value * factor */
+} chain_shown;
+
+/* Fills `shown` with the numbers that the chain has; returns how many. */
+static int list_chain(const sf_drop_fit *fit, chain_shown shown[SF_SIGNAL_CHAIN]) {
+    static const char *const name[] = {"mount: frequency", "mount: damping", "coupling: time constant"},
+                             *const unit[] = {"Hz", "", "s"};
+    const sf_signal_chain found = sf_drop_fit_chain(fit, fit->result.u);
+    double given[SF_SIGNAL_CHAIN], value[SF_SIGNAL_CHAIN];
+    int count = 0;
+    memcpy(given, &fit->input->chain, sizeof given);
+    memcpy(value, &found, sizeof value);
+    for (int k = 0; k < SF_SIGNAL_CHAIN; k++) {
+        int p = fit->chain[k];
+        double width = p >= 0 ? sf_report_half_width(fit) * sqrt(fit->result.covariance[p][p]) : 0;
+        if (given[k] > 0)
+            shown[count++] =
+                (chain_shown){name[k], unit[k], given[k], fit->input->chain_sd[k], value[k], exp(width)};
+    }
+    return count;
+}
+
+void sf_report_chain_html(FILE *f, const sf_drop_fit *fit) {
+    chain_shown shown[SF_SIGNAL_CHAIN];
+    int count = list_chain(fit, shown);
+    if (count == 0)
+        return;
+    sf_html_paragraph(
+        f,
+        "Every simulated number of the drops on this page is what the accelerometer reads on its mount and "
+        "behind its high pass, not what the missile does. The drops share both.");
+    sf_html_table table =
+        sf_html_table_begin(f, "dense", "accelerometer|>given|>standard deviation (%)|>in the fit|>95 %");
+    for (int k = 0; k < count; k++) {
+        const chain_shown *c = &shown[k];
+        const char *blank = *c->unit ? " " : "";
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s", c->name);
+        sf_html_cell(&table, "%.4g%s%s", c->given, blank, c->unit);
+        sf_html_cell(&table, "%.3g", 100 * c->sd);
+        sf_html_cell(&table, "%.4g%s%s", c->value, blank, c->unit);
+        sf_html_cell(&table, c->sd > 0 ? "%.4g to %.4g" : "known", c->value / c->factor,
+                     c->value * c->factor);
+    }
+    sf_html_table_end(&table);
+}
+
+void sf_report_chain_print(FILE *f, const sf_drop_fit *fit) {
+    chain_shown shown[SF_SIGNAL_CHAIN];
+    int count = list_chain(fit, shown);
+    for (int k = 0; k < count; k++) {
+        fprintf(f, "Read through the accelerometer's %s %.4g%s%s", shown[k].name, shown[k].value,
+                *shown[k].unit ? " " : "", shown[k].unit);
+        if (shown[k].sd > 0)
+            fprintf(f, " (95 %%, linearised: %.4g to %.4g; given %.4g)", shown[k].value / shown[k].factor,
+                    shown[k].value * shown[k].factor, shown[k].given);
+        fputs(".\n", f);
+    }
+}
+
 static void put_prediction(sf_html_table *table, const sf_drop_fit *fit, int d, int kind) {
     int digits = sf_drop_kind_get(kind)->digits;
     double value = sf_report_response(fit, d, kind),
@@ -402,6 +465,7 @@ sf_status sf_report_material(const sf_drop_fit *fit, const sf_drop_average *aver
             SF_VERSION, input_path);
     if (average)
         sf_inference_comment(f, average);
+    sf_report_chain_print(f, fit);
     for (int d = 0; d < fit->input->drop_count && !fit->input->drop[d].predicted; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
         fprintf(f, "%s:", drop->name);

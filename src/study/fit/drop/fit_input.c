@@ -48,6 +48,26 @@ static sf_status read_coarse(const sf_config *config, const config_setting_t *ro
     return SF_OK;
 }
 
+/* Reads what the accelerometer's mount and a high pass do to every record. */
+static sf_status read_chain(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+                            sf_error *err) {
+    static const char *const sd[SF_SIGNAL_CHAIN] = {"mount_frequency_sd", "mount_damping_sd", "coupling_sd"};
+    const char *mount = NULL, *coupling = NULL;
+    SF_TRY(sf_config_text(config, root, "mount", false, &mount, err));
+    SF_TRY(sf_config_text(config, root, "coupling", false, &coupling, err));
+    if (mount)
+        SF_TRY(sf_signal_parse_mount(mount, &in->chain, err));
+    if (coupling)
+        SF_TRY(sf_signal_parse_coupling(coupling, &in->chain, err));
+    for (int k = 0; k < SF_SIGNAL_CHAIN; k++) {
+        SF_TRY(sf_config_number(config, root, sd[k], false, 0, 0.5, &in->chain_sd[k], err));
+        if (in->chain_sd[k] > 0 && !(k < 2 ? mount : coupling))
+            return sf_config_refuse(config, config_setting_get_member(root, sd[k]), err,
+                                    "%s is given without %s", sd[k], k < 2 ? "mount" : "coupling");
+    }
+    return SF_OK;
+}
+
 /* ---- material and parameters ---- */
 
 /* Sets the reference of a material without a rate factor: the slowest compression test, as below the
@@ -484,12 +504,13 @@ sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_er
         const config_setting_t *root = config_root_setting(&config.config);
         if (sf_config_names(&config, root,
                             "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
-                            "seed|posterior|compressions|cushions|coarse_set",
+                            "seed|posterior|compressions|cushions|coarse_set|mount|mount_frequency_sd|"
+                            "mount_damping_sd|coupling|coupling_sd",
                             err) == SF_OK &&
             read_options(&config, root, in, err) == SF_OK &&
             sf_joint_read(&config, root, &in->joint, err) == SF_OK &&
             read_drops(&config, root, "drops", false, in, err) == SF_OK &&
-            read_coarse(&config, root, in, err) == SF_OK &&
+            read_coarse(&config, root, in, err) == SF_OK && read_chain(&config, root, in, err) == SF_OK &&
             read_drops(&config, root, "predict", true, in, err) == SF_OK &&
             read_material(&config, root, in, err) == SF_OK && read_starts(&config, root, in, err) == SF_OK)
             read_unknowns(&config, root, in, err);

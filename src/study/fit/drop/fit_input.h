@@ -27,6 +27,8 @@ typedef struct sf_fit_input {
     int coarse_count;                  /* 0: no coarse iterations */
     char *coarse[SF_RUNNER_OVERRIDES]; /* "group.key=value" of the first iterations; owned */
     sf_joint joint;                    /* compression tests and cushion curves */
+    sf_signal_chain chain;             /* of the accelerometer, medians of the priors; zeros: none */
+    double chain_sd[SF_SIGNAL_CHAIN];  /* of the logarithms; 0: known */
     double start[SF_PARAMETER_COUNT];  /* SI, every parameter */
     int unknown_count;
     sf_foam_parameter unknown[SF_FIT_MAX_UNKNOWNS];

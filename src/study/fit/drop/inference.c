@@ -228,22 +228,31 @@ static sf_status find_jacobian(sf_drop_inference *in, sf_error *err) {
     return err->status;
 }
 
-/* Covariance of the errors: their own, and the speeds' by the corrected surrogate's derivatives. */
+/* Adds to the covariance what an unknown beside the foam's, of index `parameter` and this standard deviation,
+ * does to the data by the corrected surrogate's derivatives. */
+static void add_unknown(sf_drop_inference *in, int parameter, double sd) {
+    const double *g = in->fit->result.corrected;
+    size_t n = (size_t)in->data;
+    for (size_t i = 0; i < n && parameter >= 0; i++)
+        for (size_t j = 0; j < n; j++)
+            in->base[i * n + j] += sd * sd * g[in->data_row[i] * in->fit->parameters + parameter] *
+                                   g[in->data_row[j] * in->fit->parameters + parameter];
+}
+
+/* Covariance of the errors: their own, and those of the speeds and of the accelerometer's chain. */
 static sf_status fill_base(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     size_t n = (size_t)in->data;
     in->base = sf_alloc(err, n * n, sizeof(double), "covariances");
-    for (size_t i = 0; i < n && err->status == SF_OK; i++) {
+    if (err->status != SF_OK)
+        return err->status;
+    for (size_t i = 0; i < n; i++)
         in->base[i * n + i] = pow(fit->sd[in->data_row[i]], 2);
-        for (size_t j = 0; j < n; j++)
-            for (int d = 0; d < fit->measured_drops; d++)
-                if (fit->speed[d] >= 0)
-                    in->base[i * n + j] +=
-                        pow(fit->input->drop[d].speed_sd, 2) *
-                        fit->result.corrected[in->data_row[i] * fit->parameters + fit->speed[d]] *
-                        fit->result.corrected[in->data_row[j] * fit->parameters + fit->speed[d]];
-    }
-    return err->status;
+    for (int d = 0; d < fit->measured_drops; d++)
+        add_unknown(in, fit->speed[d], fit->input->drop[d].speed_sd);
+    for (int k = 0; k < SF_SIGNAL_CHAIN; k++)
+        add_unknown(in, fit->chain[k], fit->input->chain_sd[k]);
+    return SF_OK;
 }
 
 static bool is_of(const sf_drop_fit *fit, int row, int drop) {
