@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Makes the SYNTHETIC data of this example: cushion.csv, and the lines of the drops in leap_joint.cfg, which it prints. The hidden foam has
-# the loading curve that softfall-fit finds for the measured compression test of LEAP (../foams/leap.cfg), with HU = 0.5, SHAPE = 1.4 and a
+# the loading curve that softfall-fit finds for the measured compression test of LEAP (../../foams/leap.cfg), with HU = 0.5, SHAPE = 1.4 and a
 # rate factor of 0.1 that nobody measured. Blocks and drops are simulations with it, without errors of measurement.
 #
 #     examples/fit/joint/make_data.sh DIR
@@ -17,7 +17,7 @@ dir=$1 here=$(dirname "${BASH_SOURCE[0]}")
 bin=${SF_BIN_DIR:-$here/../../../build/bin}
 
 mkdir -p "$dir"
-"$bin/softfall-fit" compression "$here/../foams/leap.cfg" -o "$dir/leap" --force > /dev/null
+"$bin/softfall-fit" compression "$here/../../foams/leap.cfg" -o "$dir/leap" --force > /dev/null
 hidden=(--set "material=@$dir/leap/material.cfg" --set material.HU=0.5 --set material.SHAPE=1.4 --set material.ALPHA=1
     --set material.DAMP=0.05 --set material.rate_factor=0.1 --set "material.rate_reference=0.01 1/s"
     --set "material.rate_filter_time=0.5 ms")
