@@ -56,6 +56,8 @@ static void estimates_agree_with_simulations(void **state) {
         drop(p, v, h, 0);
         for (int k = 0; k < 4; k++)
             estimate[k] = figure(p, figures[k].estimate);
+        double spread = hypot(estimate[0], estimate[1] * 100 / h); /* 1 % of speed and 1 mm, the defaults */
+        assert_true(fabs(figure(p, "a_max_scatter") / spread - 1) < 1e-6);
         for (int k = 0; k < 4; k++) {
             double true_change = change(p, figures[k].key, figures[k].speed, v, h, 0);
             print_message("%g m/s on %g mm, %s: %.4f, estimated %.4f\n", v, h, figures[k].estimate,

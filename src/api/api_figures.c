@@ -56,6 +56,8 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .slit_fraction = m->slit_fraction,
                       .anvil_depth = m->anvil.depth,
                       .density = sf_model_density(m),
+                      .speed_scatter = m->run.speed_scatter,
+                      .thickness_tolerance = m->run.thickness_tolerance,
                       .impact_x = m->missile.impact_known ? m->missile.impact[0] : NAN,
                       .impact_y = m->missile.impact_known ? m->missile.impact[1] : NAN,
                       .missile_mass = m->missile.mass,

@@ -56,6 +56,9 @@ static const sf_key keys[] = {
     {"pad", "mesh_error_limit", SF_KEY_NUMBER, "0.1", AT(mesh_error_limit),
      "expected relative error of a_max from the spacing above which the case is refused; a larger value allows a coarser mesh",
      .high = 1e6},
+    {"pad", "thickness_tolerance", SF_KEY_QUANTITY, "\"1 mm\"", AT(run.thickness_tolerance),
+     "standard deviation of the thickness from pad to pad: it makes `a_max_scatter` and `hic_scatter` of the report, and changes no drop",
+     .quantity = SF_LENGTH, .high = 1.0},
     /* material: the law; its parameters follow (solver/material) */
     {"material", "law", SF_KEY_LAW, "", AT(material.law), "material law; its parameters follow"},
     /* missile */
@@ -63,6 +66,8 @@ static const sf_key keys[] = {
      "of the whole missile, also in a quarter model; required without `motion`", .quantity = SF_MASS, .low = 1e-9, .high = 1e9},
     {"missile", "velocity", SF_KEY_QUANTITY, "", AT(missile_card.speed),
      "speed when it first touches the pad, whatever the gap; required without `motion`", .quantity = SF_SPEED, .low = 1e-9, .high = SF_MOTION_MAX_SPEED},
+    {"missile", "speed_scatter", SF_KEY_NUMBER, "0.01", AT(run.speed_scatter),
+     "standard deviation of the speed from drop to drop, over the speed: as `pad.thickness_tolerance`", .high = 0.5},
     {"missile", "motion", SF_KEY_MOTION, "", AT(motion_count),
      "displacement over time of a missile that a machine drives, a CSV file (see above), instead of `mass` and `velocity`; relative to the file that names it"},
     {"missile", "direction", SF_KEY_VECTOR, "[0.0, 0.0, -1.0]", AT(missile_card.direction),

@@ -79,6 +79,8 @@ typedef struct sf_run_options {
     int64_t output_fields;      /* SF_FIELD_* bits */
     int64_t stop_after_rebound; /* 1: end when the missile has left the pad upwards */
     int64_t kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
+    double speed_scatter;       /* -, standard deviation of the missile's speed over it, for figures only */
+    double thickness_tolerance; /* m, standard deviation of the pad's thickness, for figures only */
 } sf_run_options;
 
 typedef struct sf_model {

@@ -40,7 +40,7 @@ static double steepest(const sf_history *h, int64_t first) {
 
 void sf_edge_estimate(const sf_results *r, sf_edge *edge) {
     const sf_history *h = &r->history;
-    *edge = (sf_edge){NAN, NAN, NAN, NAN, NAN, NAN};
+    *edge = (sf_edge){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     if (r->driven || r->turns)
         return;
     int64_t first = 0;
@@ -60,4 +60,7 @@ void sf_edge_estimate(const sf_results *r, sf_edge *edge) {
     edge->hic_by_speed = 1.5 * edge->a_max_by_speed + PERCENT;
     edge->hic_by_thickness = 1.5 * edge->a_max_by_thickness;
     edge->hic_by_stress = 1.5 * edge->a_max_by_stress;
+    double speed = r->speed_scatter / PERCENT, thickness = r->thickness_tolerance / r->thickness / PERCENT;
+    edge->a_max_scatter = hypot(edge->a_max_by_speed * speed, edge->a_max_by_thickness * thickness);
+    edge->hic_scatter = hypot(edge->hic_by_speed * speed, edge->hic_by_thickness * thickness);
 }

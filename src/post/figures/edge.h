@@ -23,6 +23,8 @@
 typedef struct sf_edge {
     double a_max_by_speed, a_max_by_thickness, a_max_by_stress;
     double hic_by_speed, hic_by_thickness, hic_by_stress;
+    /* relative standard deviations by the scatter of the case's speed and the tolerance of its thickness */
+    double a_max_scatter, hic_scatter;
 } sf_edge;
 
 /* All NaN of a driven or free missile, and where the force tells nothing. The run has rebounded. */

@@ -362,6 +362,8 @@ static void take_edge(const sf_results *results, sf_figures *f) {
     f->hic_by_speed = edge.hic_by_speed;
     f->hic_by_thickness = edge.hic_by_thickness;
     f->hic_by_stress = edge.hic_by_stress;
+    f->a_max_scatter = edge.a_max_scatter;
+    f->hic_scatter = edge.hic_scatter;
 }
 
 /* Names the acceleration that the curves show, and what it has passed. */

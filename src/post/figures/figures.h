@@ -51,6 +51,10 @@
       .name = "HIC, 1 % more speed", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, hic_by_thickness, "hic_change_by_thickness", 1, "the same for 1 % more thickness of the pad") \
     X(NUMBER, hic_by_stress, "hic_change_by_stress", 1, "the same for 1 % more stress of the foam") \
+    X(NUMBER, a_max_scatter, "a_max_scatter", 1, "estimated standard deviation of a_max from drop to drop, over it: by `missile.speed_scatter` and `pad.thickness_tolerance`", \
+      .name = "a_max, scatter of drops", .shown = 100, .unit = "%", .format = "%.2f") \
+    X(NUMBER, hic_scatter, "hic_scatter", 1, "the same of HIC", \
+      .name = "HIC, scatter of drops", .shown = 100, .unit = "%", .format = "%.2f") \
     X(COUNT, raw_peak_rows, "a_max_raw_rows", 1, "rows around that peak above half of it: 1 or 2 are an artefact of the time step") \
     X(NUMBER, peak_resultant, "peak_resultant_g", 1, "largest resultant acceleration of the centre of mass of a free missile, its axes filtered: a_max_g of it; like the next ones undefined of a guided one") \
     X(NUMBER, peak_angular_acceleration, "peak_angular_acceleration_rad_s2", 1, "largest resultant angular acceleration, its axes filtered", \

@@ -144,6 +144,8 @@ static const char *const drop_keys[] = {"a_max_g",
                                         "absorbed_energy_fraction",
                                         "a_max_change_by_speed",
                                         "a_max_change_by_thickness",
+                                        "a_max_scatter",
+                                        "hic_scatter",
                                         NULL};
 static const char *const rotation_keys[] = {"peak_angular_acceleration_rad_s2", "peak_angular_velocity_rad_s",
                                             NULL};

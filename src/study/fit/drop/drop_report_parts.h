@@ -43,7 +43,7 @@ void sf_report_put_difference(sf_html_table *table, double scaled, double measur
 
 void sf_report_drops_html(FILE *page, const sf_drop_fit *fit);
 void sf_report_speeds_html(FILE *page, const sf_drop_fit *fit);
-/* What the accelerometer's mount and high pass are taken to do; nothing without them. */
+/* Write what the accelerometer's mount and high pass are taken to do; nothing without them. */
 void sf_report_chain_html(FILE *page, const sf_drop_fit *fit);
 void sf_report_chain_print(FILE *f, const sf_drop_fit *fit);
 void sf_report_predictions_html(FILE *page, const sf_drop_fit *fit);
