@@ -372,7 +372,7 @@ static void unknown_names_are_refused_with_what_exists(void **state) {
     (void)state;
     assert_refused(GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\";\n velocty = \"4.5 m/s\"; };\n",
                    NULL, "case.cfg:5: unknown key \"velocty\" in group missile (did you mean \"velocity\"?)",
-                   "mass, velocity, motion, direction, position, friction", NULL);
+                   "mass, velocity, speed_scatter, motion, direction, position, friction", NULL);
     assert_refused(
         GOOD "missle: { };\n", NULL,
         "case.cfg:5: unknown group \"missle\" (did you mean \"missile\"?); the groups are geometry, pad, "
