@@ -139,6 +139,7 @@ static void gaps_are_those_of_the_whole_pad(void **state) {
         if (slit)
             fixture_open_slit(&block, 3, 1, 0.002, &mesh);
         layers_case(&c, NULL, BASE, 2);
+        c.self_contact = SF_SELF_CONTACT_OFF;
         fixture_plate(1, 0, 0, &surface);
         fixture_build(&c, &mesh, &surface, &f);
         assert_int_equal(f.report.hidden_count > 0, slit);

@@ -207,8 +207,16 @@ static void pads_in_one_piece_are_built(void **state) {
     static const int kinds[] = {0, 1, 2, 5, 6};
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
         program_result r = program_succeed(
-            *state, "pre", "blocks.cfg -o good%d.h5 --set geometry.parameters.kind=%d", kinds[k], kinds[k]);
+            *state, "pre",
+            "blocks.cfg -o good%d.h5 --set geometry.parameters.kind=%d --set pad.self_contact='\"off\"'",
+            kinds[k], kinds[k]);
         assert_int_equal(strstr(r.err, "the pad has a slit") != NULL, kinds[k] == 1);
+        r = program_succeed(*state, "pre",
+                            "blocks.cfg -o touching.h5 --force --set geometry.parameters.kind=%d",
+                            kinds[k]); /* slit, cored and cavity */
+        assert_int_equal(strstr(r.out, "may touch each other") != NULL,
+                         kinds[k] == 1 || kinds[k] == 2 || kinds[k] == 6);
+        assert_null(strstr(r.err, "the pad has a slit"));
     }
 }
 

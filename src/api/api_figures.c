@@ -57,6 +57,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .anvil_depth = m->anvil.depth,
                       .density = sf_model_density(m),
                       .given_back = sf_model_whole(m) * d->state.given_back,
+                      .air = m->air,
                       .speed_scatter = m->run.speed_scatter,
                       .thickness_tolerance = m->run.thickness_tolerance,
                       .impact_x = m->missile.impact_known ? m->missile.impact[0] : NAN,

@@ -14,6 +14,13 @@ static inline void sf_cross3(const double a[3], const double b[3], double out[3]
         out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
+/* Makes a vector one of unit length; zero stays zero. */
+static inline void sf_unit3(double a[3]) {
+    double size = sqrt(sf_dot3(a, a));
+    for (int k = 0; k < 3 && size > 0; k++)
+        a[k] /= size;
+}
+
 /* a . (b x c): the volume that they span, positive for a right-handed set. */
 static inline double sf_triple3(const double a[3], const double b[3], const double c[3]) {
     double normal[3];

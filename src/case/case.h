@@ -34,6 +34,7 @@ typedef struct sf_geo_source {
 } sf_geo_source;
 
 enum { SF_BASE_GLUED, SF_BASE_SMOOTH, SF_BASE_RESTING }; /* pad.base, in the order of its words */
+enum { SF_SELF_CONTACT_AUTO, SF_SELF_CONTACT_ON, SF_SELF_CONTACT_OFF }; /* pad.self_contact, likewise */
 
 typedef struct sf_case {
     char *path;       /* as given */
@@ -62,6 +63,8 @@ typedef struct sf_case {
     bool symmetry_given;
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
+    int self_contact;                      /* SF_SELF_CONTACT_* */
+    double self_friction;                  /* -, Coulomb coefficient of the pad against itself */
     double mesh_error_limit;               /* -, expected error of a_max above which the case is refused */
     int kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
     int shape_rule;         /* 0 "auto": sphere if the surface is one, 1 "sphere", 2 "surface" */

@@ -140,6 +140,12 @@ typedef struct sf_model {
     int32_t *rest_node; /* [rest_count] ascending, on one plane z = constant */
     double *rest_load;  /* [rest_count] N, of the anvil on the pad at t = 0; their sum is the pad's weight */
 
+    /* The faces of the pad that may touch the pad itself or the anvil, turned outwards; none: nothing does.
+     */
+    int64_t skin_count;
+    int32_t *skin_triangle; /* [skin_count][3] nodes */
+    double skin_friction;   /* -, Coulomb coefficient between them */
+
     /* The missile's surface in the pose of first contact, `gap` away along its direction; triangles turned
      * outwards. */
     int64_t surface_node_count;
@@ -159,6 +165,7 @@ typedef struct sf_model {
 
     int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness; /* m, of the foam under the contact, along the missile's path, its vertical part */
+    double air;       /* m, on the same way: gaps of a pad with a skin, which close first */
     double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; 0 = not estimated */
     double slit_fraction;       /* of the nodes: those at a slit, hole or gap narrower than their supports */
     int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */

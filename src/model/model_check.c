@@ -141,9 +141,11 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"missile sphere radius (m)", m->missile.sphere_radius, m->missile.shape ? 0 : 1e-9, 1e3},
         {"missile sphere cap cosine", m->missile.sphere_cap_cosine, -1 - 1e-9, 1 + 1e-9},
         {"anvil depth (m)", m->anvil.depth, 0, 1e3},
+        {"skin friction", m->skin_friction, 0, 10},
         {"anvil friction", m->anvil.friction, 0, 10},
         {"symmetry factor", (double)m->symmetry_factor, 1, 4},
         {"pad thickness (m)", m->thickness, 1e-6, 1e3},
+        {"air below the missile (m)", m->air, 0, 1e3},
         {"expected mesh error", m->expected_mesh_error, 0, 1e6},
         {"slit fraction", m->slit_fraction, 0, 1},
         {"end time (s)", m->run.end_time, 1e-9, 1e3},
@@ -193,6 +195,19 @@ static sf_status check_mesh(const sf_model *m, sf_error *err) {
         if (m->surface_triangle[k] < 0 || m->surface_triangle[k] >= m->surface_node_count)
             return SF_FAIL(err, SF_ERR_MODEL, "missile triangle %lld refers to node %d, of 0 to %lld",
                            (long long)k / 3, m->surface_triangle[k], (long long)m->surface_node_count - 1);
+    return SF_OK;
+}
+
+static sf_status check_skin(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < 3 * m->skin_count; k++) {
+        const int32_t *node = &m->skin_triangle[k - k % 3];
+        if (m->skin_triangle[k] < 0 || m->skin_triangle[k] >= m->node_count || node[0] == node[1] ||
+            node[1] == node[2] || node[2] == node[0])
+            return SF_FAIL(
+                err, SF_ERR_MODEL,
+                "triangle %lld of the pad's skin has the nodes %d, %d, %d: three of 0 to %lld are needed",
+                (long long)k / 3, node[0], node[1], node[2], (long long)m->node_count - 1);
+    }
     return SF_OK;
 }
 
@@ -297,7 +312,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld nodes", (long long)m->node_count);
     if (m->contact_count < 1 || m->surface_triangle_count < 1)
         return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
-    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK)
+    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK || check_skin(m, err) != SF_OK)
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
         return err->status;

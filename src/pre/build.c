@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/build.h"
+#include "pre/free_faces.h"
 
 #include "base/mat3.h"
 #include "model/model.h"
@@ -624,9 +625,19 @@ static sf_status check_first_step(const sf_model *m, double first, int64_t criti
                    material->name, material->law->stiffness_keys);
 }
 
-/* The pad has no contact with itself. */
-static void tell_slits(const sf_build_report *r, const sf_sink *sink) {
-    if (r->hidden_count > 0)
+/* Faces of a slit that touch each other do not pass through each other. */
+static sf_status find_skin(const sf_case *c, sf_model *m, sf_error *err) {
+    SF_TRY(sf_skin_find(c, m, err));
+    if (m->skin_count > 0)
+        m->slit_fraction = 0;
+    else
+        m->air = 0; /* nothing closes */
+    return SF_OK;
+}
+
+/* Faces of a pad without contact with itself pass through each other. */
+static void tell_slits(const sf_model *m, const sf_build_report *r, const sf_sink *sink) {
+    if (r->hidden_count > 0 && m->skin_count == 0)
         sf_sink_tell(
             sink, SF_WARNING,
             "the pad has a slit, hole or gap narrower than the supports: nodes %.3g mm apart at (%.4g, %.4g, "
@@ -651,14 +662,14 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
-        take_cards(c, m, err) == SF_OK) {
+        find_skin(c, m, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
             sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
             sf_hold_warn(&report->hold, m, sink);
-            tell_slits(report, sink);
+            tell_slits(m, report, sink);
         }
     }
     sf_layers_free(&layers);

@@ -2,8 +2,8 @@
 #include "pre/foam_path.h"
 
 #include "base/mat3.h"
-#include "pre/mesh/mesh.h"
 #include "pre/mesh/missile_shape.h"
+#include "pre/free_faces.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,11 +14,6 @@ static const double ZONE = 0.5;   /* of the length under the first touch */
 static const double SAME = 1e-6;  /* of the extent: one place; the same thickness */
 
 typedef enum node_mark { MARK_TOUCHED = 1, MARK_HELD = 2 } node_mark;
-
-/* A face of a cell: its nodes as they stand in the cell, and ascending. */
-typedef struct face {
-    int32_t node[4], sorted[4]; /* [3] is -1 of a triangle, in `sorted` [0] */
-} face;
 
 typedef struct triangle {
     int32_t node[3];
@@ -38,56 +33,14 @@ typedef struct hit {
 
 /* ---- the pad's surface ---- */
 
-static int by_nodes(const void *a, const void *b) {
-    return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
-}
-
-static void sort4(int32_t v[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int k = i; k > 0 && v[k] < v[k - 1]; k--) {
-            int32_t swap = v[k];
-            v[k] = v[k - 1];
-            v[k - 1] = swap;
-        }
-}
-
-static int64_t list_faces(const sf_model *m, face *list) {
-    int64_t count = 0;
-    for (int64_t c = 0; c < m->cell_count; c++) {
-        const sf_cell_topology *cell = sf_cell_topology_of(m->cell_type[c]);
-        for (int f = 0; f < cell->faces; f++) {
-            face *out = &list[count++];
-            for (int k = 0; k < 4; k++)
-                out->node[k] = k < cell->face_size[f] ? m->cell_node[m->cell_ptr[c] + cell->face[f][k]] : -1;
-            memcpy(out->sorted, out->node, sizeof out->sorted);
-            sort4(out->sorted);
-        }
-    }
-    qsort(list, (size_t)count, sizeof *list, by_nodes);
-    return count;
-}
-
 static sf_status find_surface(const sf_model *m, surface_of_pad *out, sf_error *err) {
-    int64_t most = 0;
+    int32_t *node = NULL;
     *out = (surface_of_pad){0};
-    for (int64_t c = 0; c < m->cell_count; c++)
-        most += sf_cell_topology_of(m->cell_type[c])->faces;
-    face *list = sf_alloc(err, (unsigned long)most, sizeof *list, "faces of the pad");
-    int64_t count = list ? list_faces(m, list) : 0, single = 0;
-    for (int64_t i = 0; i < count; i++) { /* two cells share an inner face */
-        bool paired = i + 1 < count && by_nodes(&list[i], &list[i + 1]) == 0;
-        if (!paired)
-            list[single++] = list[i];
-        i += paired;
-    }
-    out->list = sf_alloc(err, 2 * (unsigned long)single, sizeof *out->list, "surface of the pad");
-    for (int64_t i = 0; out->list && i < single; i++) {
-        const int32_t *n = list[i].node;
-        out->list[out->count++] = (triangle){.node = {n[0], n[1], n[2]}};
-        if (n[3] >= 0)
-            out->list[out->count++] = (triangle){.node = {n[0], n[2], n[3]}};
-    }
-    free(list);
+    if (sf_skin_triangles(m, &out->count, &node, err) == SF_OK)
+        out->list = sf_alloc(err, (unsigned long)out->count, sizeof *out->list, "surface of the pad");
+    for (int64_t i = 0; out->list && i < out->count; i++)
+        memcpy(out->list[i].node, &node[3 * i], sizeof out->list[i].node);
+    free(node);
     return err->status;
 }
 
@@ -96,7 +49,7 @@ static uint8_t *mark_nodes(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; mark && k < m->contact_count; k++)
         mark[m->contact_node[k]] |= MARK_TOUCHED;
     for (int64_t k = 0; mark && k < m->fixed_count; k++)
-        mark[m->fixed_node[k]] |= m->fixed_base[k] ? MARK_HELD : 0;
+        mark[m->fixed_node[k]] |= m->fixed_base[k] && (m->fixed_mask[k] & SF_FIX_Z) ? MARK_HELD : 0;
     for (int64_t k = 0; mark && k < m->rest_count; k++)
         mark[m->rest_node[k]] |= MARK_HELD;
     return mark;
@@ -138,13 +91,18 @@ static int by_place(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Length (m) of foam on the ray from the centroid of triangle `first`. */
-static double foam_length(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark, int64_t first,
-                          double slack) {
+/* The parts of a ray: foam, and air between the parts of foam and below them to the anvil. */
+typedef struct path {
+    double foam, air; /* m */
+} path;
+
+/* The path of the ray from the centroid of triangle `first`. */
+static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark, int64_t first,
+                       double slack) {
     hit hits[MOST_HITS];
     int count = 0;
-    double from[3], sum = 0, begin = 0;
-    bool inside = true;
+    double from[3], sum = 0, begin = 0, end = 0, top = -INFINITY;
+    bool inside = true, held = false;
     find_centroid(m, &pad->list[first], from);
     for (int64_t i = 0; i < pad->count && count < MOST_HITS; i++) {
         const double *x[3];
@@ -158,17 +116,21 @@ static double foam_length(const sf_model *m, const surface_of_pad *pad, const ui
         hits[count++] = h;
     }
     qsort(hits, (size_t)count, sizeof *hits, by_place);
-    for (int k = 0; k < count; k++) { /* at an edge two triangles meet: the second changes nothing */
+    for (int k = 0; k < count && !held; k++) { /* at an edge two triangles meet: the second changes nothing */
         if (inside && hits[k].leaves) {
-            sum += hits[k].at - begin;
-            if (hits[k].held)
-                break;
+            end = hits[k].at;
+            sum += end - begin;
+            held = hits[k].held;
         } else if (!inside && !hits[k].leaves) {
             begin = hits[k].at;
         }
         inside = !hits[k].leaves;
     }
-    return sum;
+    for (int64_t i = 0; i < m->node_count; i++)
+        top = fmax(top, m->position[3 * i + 2]);
+    double fall = -m->missile.direction[2], floor = top - m->anvil.depth,
+           below = m->anvil.depth > 0 && !held ? fmax(0, (from[2] - floor) / fall - end) : 0;
+    return (path){sum, m->anvil.depth > 0 ? end - sum + below : 0};
 }
 
 /* ---- the zone ---- */
@@ -194,9 +156,10 @@ static int64_t find_touched(const sf_model *m, const surface_of_pad *pad, const 
     return first;
 }
 
-static double shortest_length(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark,
-                              int64_t first, double slack) {
-    double least = foam_length(m, pad, mark, first, slack), end = pad->list[first].travel + ZONE * least;
+static path shortest_path(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark, int64_t first,
+                          double slack) {
+    path least = follow_ray(m, pad, mark, first, slack);
+    double end = pad->list[first].travel + ZONE * least.foam;
     int64_t zone = 0, seen = 0;
     for (int64_t i = 0; i < pad->count; i++)
         zone += pad->list[i].travel <= end;
@@ -204,8 +167,8 @@ static double shortest_length(const sf_model *m, const surface_of_pad *pad, cons
     for (int64_t i = 0; i < pad->count; i++) {
         if (!(pad->list[i].travel <= end) || seen++ % stride != 0)
             continue;
-        double length = foam_length(m, pad, mark, i, slack);
-        least = length > slack ? fmin(least, length) : least;
+        const path own = follow_ray(m, pad, mark, i, slack);
+        least = own.foam > slack && own.foam < least.foam ? own : least;
     }
     return least;
 }
@@ -258,8 +221,9 @@ sf_status sf_foam_path_measure(sf_model *m, sf_error *between, sf_error *err) {
     uint8_t *mark = mark_nodes(m, err);
     if (mark && find_surface(m, &pad, err) == SF_OK) {
         int64_t first = find_touched(m, &pad, mark);
-        double length = first < 0 ? 0 : shortest_length(m, &pad, mark, first, slack);
-        double upright = -m->missile.direction[2] * length;
+        const path least = first < 0 ? (path){0, 0} : shortest_path(m, &pad, mark, first, slack);
+        double length = least.foam, upright = -m->missile.direction[2] * length;
+        m->air = least.air > slack ? -m->missile.direction[2] * least.air : 0;
         if (length > slack && fabs(upright - extent) > SAME * extent)
             m->thickness = upright;
         check_between(m, &pad, between);

@@ -8,6 +8,7 @@
 #include "solver/constraint/constraint.h"
 #include "solver/contact/rigid_surface.h"
 #include "solver/contact/contact_rows.h"
+#include "solver/contact/skin.h"
 #include "material/laws.h"
 #include "solver/field/halo.h"
 
@@ -24,6 +25,7 @@ typedef struct sf_operators {
     sf_contact_rows rows;
     sf_contact_gram gram;
     sf_anvil anvil;
+    sf_skin skin;
     sf_missile_surface surface;
 } sf_operators;
 

@@ -40,6 +40,17 @@ static const sf_state_array arrays[] = {
     KEPT(contact_gap, 'c', 1),
     KEPT(contact_normal, 'c', 3),
     KEPT(contact_rubbed, 'c', 1),
+    SCRATCH(self_position, 's', 3 * sizeof(double)),
+    SCRATCH(self_motion, 's', 3 * sizeof(double)),
+    SCRATCH(self_step, 's', 3 * sizeof(double)),
+    KEPT(self_force, 's', 3),
+    KEPT(self_partner, 's', 1),
+    KEPT(self_weight, 's', 3),
+    SCRATCH(self_push, 's', 3 * sizeof(double)),
+    SCRATCH(self_candidate, 's', SF_SELF_CANDIDATES * sizeof(int32_t)),
+    SCRATCH(self_normal, 's', 3 * sizeof(double)),
+    SCRATCH(self_close, 's', sizeof(int32_t)),
+    SCRATCH(self_near, 's', sizeof(int32_t)),
     SCRATCH(contact_active, 'c', sizeof(int32_t)),
     SCRATCH(contact_near, 'c', sizeof(int32_t)),
     SCRATCH(partial, 'k', sizeof(sf_partial)),
@@ -69,6 +80,8 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
         return model->node_count;
     case 'l':
         return model->material_count > 1 ? model->node_count : 0;
+    case 's': /* at most all of them */
+        return model->skin_count > 0 ? model->node_count : 0;
     case 'h':
         return blocks * history_rows(model);
     case 'c':
@@ -125,6 +138,8 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
         s->f[9 * i] = s->f[9 * i + 4] = s->f[9 * i + 8] = 1;
         s->pair_stiffness[i] = sf_material_rest_modulus(sf_model_material(model, i));
     }
+    for (int64_t p = 0; p < sf_state_rows(model, 's'); p++)
+        s->self_partner[p] = -1;
     for (int64_t c = 0; c < sf_model_points(model); c++)
         memcpy(&s->contact_position[3 * c], &model->position[3 * sf_model_point_node(model, c)],
                3 * sizeof(double));

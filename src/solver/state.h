@@ -126,6 +126,8 @@ typedef struct sf_ledger {
     SF_LEDGER_NUMBERS(SF_DECLARE)
 } sf_ledger;
 
+enum { SF_SELF_CANDIDATES = 48 };
+
 typedef struct sf_state {
     SF_STATE_NUMBERS(SF_DECLARE)
     sf_missile missile;
@@ -173,6 +175,24 @@ typedef struct sf_state {
     int32_t *contact_near;    /* [contacts] Verlet list: the points that can touch before contact_room is used
                                  up; arrays of other points are not up to date */
     int64_t contact_near_count;
+
+    /* Contact of the skin with itself (contact/self_contact.h); by node of the skin, only a pad with one has
+     * these. */
+    double *self_position;   /* [skin][3] m, physical, now; of nodes in self_near, as the next two */
+    double *self_motion;     /* [skin][3] m, its last step */
+    double *self_step;       /* [skin][3] m, its next step without these forces */
+    double *self_force;      /* [skin][3] N, on the node, of the last step */
+    double *self_partner;    /* [skin] facet that it touches; -1: none, -2: the anvil */
+    double *self_weight;     /* [skin][3] of the facet's nodes */
+    double *self_push;       /* [n][3] m s-2, acceleration by these forces; zero between steps */
+    int32_t *self_candidate; /* [skin][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
+    double *self_normal;     /* [skin][3] outward now, unit; of the nodes in self_close */
+    int32_t *self_close;     /* [skin] list of the nodes that may touch soon, and of their facets' nodes */
+    int32_t *self_near;      /* [skin] list of these, and of the nodes of all facets at them */
+    int64_t self_close_count, self_near_count;
+    double self_room;        /* m, until the lists are made anew */
+    double self_penetration; /* m, deepest now */
+
     double contact_room; /* m, rest of the skin: approach of points and missile until the list is made anew */
     double fastest;      /* m s-1, of the coefficients at the half step */
 

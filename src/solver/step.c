@@ -5,6 +5,7 @@
 #include "base/mat3.h"
 #include "base/threads.h"
 #include "solver/contact/contact.h"
+#include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
 #include "solver/ledger.h"
 #include "solver/field/stabilisation.h"
@@ -211,12 +212,16 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_lap(s->watch, SF_PHASE_TIME_STEP);
     double dt_v = 0.5 * (s->dt_old + s->dt);
 
-    sf_contact_solve(m, op, s); /* f += phi^T q; missile's acceleration */
+    SF_TRY(sf_self_contact_solve(m, op, s, err)); /* f += phi^T q */
+    sf_contact_solve(m, op, s);                   /* f += phi^T q; missile's acceleration */
     sf_lap(s->watch, SF_PHASE_CONTACT);
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
     sf_constraint_project(&op->constraint, &held);
+    sf_wrench below = {{0}, {0}};
+    sf_self_contact_outside(&op->skin, s, &below);
+    s->penetration = fmax(s->penetration, s->self_penetration);
     for (int r = 0; r < 3; r++)
-        s->base_reaction[r] = held.base[r] + s->anvil_force[r];
+        s->base_reaction[r] = held.base[r] + s->anvil_force[r] + below.force[r];
     if (s->step % RESIDUAL_INTERVAL == 0)
         s->constraint_residual = sf_constraint_residual(m, &op->constraint, &held);
     sf_lap(s->watch, SF_PHASE_CONSTRAINT);
@@ -226,6 +231,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     s->ledger.weight = sf_anvil_work(&op->anvil, s->d);
     sf_wrench outside = wrench_of_constraints(s, &held);
     add_anvil(m, op, s, &outside);
+    sf_self_contact_outside(&op->skin, s, &outside);
     sf_ledger_close(m, s, &outside, dt_v);
     sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)

@@ -247,7 +247,7 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
     int64_t strained = sf_history_row_of_largest(h, h->largest_compression);
     f->max_indentation = h->indentation[deepest];
     f->max_indentation_time = h->time[deepest];
-    f->max_mean_strain = f->max_indentation / r->thickness;
+    f->max_mean_strain = fmax(0, f->max_indentation - (r->air > 0 ? r->air : 0)) / r->thickness;
     f->max_local_strain = h->largest_compression[strained];
     f->max_local_strain_time = h->time[strained];
     f->local_strain_excess = f->max_local_strain - f->max_mean_strain;

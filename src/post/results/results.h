@@ -57,6 +57,7 @@ typedef struct sf_results {
     double thickness;         /* m */
     double density;           /* kg m-3, mean */
     double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; NaN: not estimated */
+    double air;                 /* m, gaps on the way of the thickness, which close first; NaN: not stored */
     double speed_scatter, thickness_tolerance; /* -, m: standard deviations; NaN: not stored */
     double slit_fraction;    /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
                                 the file does not say */

@@ -220,6 +220,7 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         read_optional(r, "/model/impact_x", &r->impact_x, err) != SF_OK ||
         read_optional(r, "/model/impact_y", &r->impact_y, err) != SF_OK ||
         read_optional(r, "/model/anvil_depth", &r->anvil_depth, err) != SF_OK ||
+        read_optional(r, "/model/air", &r->air, err) != SF_OK ||
         read_optional(r, "/model/speed_scatter", &r->speed_scatter, err) != SF_OK ||
         read_optional(r, "/model/thickness_tolerance", &r->thickness_tolerance, err) != SF_OK ||
         read_optional(r, "/model/slit_fraction", &r->slit_fraction, err) != SF_OK ||

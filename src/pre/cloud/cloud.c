@@ -8,94 +8,9 @@
 
 #include "base/hash.h"
 
-static int64_t bin_of(const sf_grid *grid, int axis, double x) {
-    double b = floor((x - grid->origin[axis]) / grid->width);
-    return b < 0 ? 0 : b >= (double)grid->bins[axis] ? grid->bins[axis] - 1 : (int64_t)b;
-}
-
-static int64_t bin_index(const sf_grid *grid, const double x[3]) {
-    return (bin_of(grid, 0, x[0]) * grid->bins[1] + bin_of(grid, 1, x[1])) * grid->bins[2] +
-           bin_of(grid, 2, x[2]);
-}
-
-sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, const double *support,
-                        sf_error *err) {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    *grid = (sf_grid){.position = position, .support = support};
-    for (int64_t i = 0; i < count; i++) {
-        grid->width = fmax(grid->width, support[i]);
-        for (int c = 0; c < 3; c++) {
-            low[c] = fmin(low[c], position[3 * i + c]);
-            high[c] = fmax(high[c], position[3 * i + c]);
-        }
-    }
-    /* One outsized support would make every bin huge; one tiny one would make too many: bound the number of
-     * bins. */
-    double volume = 1;
-    for (int c = 0; c < 3; c++)
-        volume *= high[c] - low[c] + grid->width;
-    grid->width = fmax(grid->width, cbrt(volume / (4.0 * (double)count + 64)));
-    for (int c = 0; c < 3; c++) {
-        grid->origin[c] = low[c];
-        grid->bins[c] = (int64_t)((high[c] - low[c]) / grid->width) + 1;
-    }
-    int64_t bins = grid->bins[0] * grid->bins[1] * grid->bins[2];
-    grid->start = sf_alloc(err, (unsigned long)bins + 2, sizeof *grid->start, "neighbour grid");
-    grid->node = sf_alloc(err, (unsigned long)count, sizeof *grid->node, "neighbour grid");
-    if (err->status != SF_OK) {
-        sf_grid_free(grid);
-        return err->status;
-    }
-    for (int64_t i = 0; i < count; i++)
-        grid->start[bin_index(grid, &position[3 * i]) + 2]++;
-    for (int64_t b = 0; b < bins; b++)
-        grid->start[b + 2] += grid->start[b + 1];
-    for (int64_t i = 0; i < count; i++)
-        grid->node[grid->start[bin_index(grid, &position[3 * i]) + 1]++] = (int32_t)i;
-    return SF_OK;
-}
-
-void sf_grid_free(sf_grid *grid) {
-    free(grid->start);
-    free(grid->node);
-    *grid = (sf_grid){0};
-}
-
 static int by_value(const void *a, const void *b) {
     int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
     return (x > y) - (x < y);
-}
-
-int64_t sf_grid_gather(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
-                       int32_t *out) {
-    int64_t found = 0, low[3], high[3];
-    for (int c = 0; c < 3; c++) {
-        low[c] = bin_of(grid, c, centre[c] - radius - grid->width);
-        high[c] = bin_of(grid, c, centre[c] + radius + grid->width);
-    }
-    for (int64_t i = low[0]; i <= high[0]; i++)
-        for (int64_t j = low[1]; j <= high[1]; j++) {
-            int64_t row = (i * grid->bins[1] + j) * grid->bins[2];
-            for (int64_t k = grid->start[row + low[2]]; k < grid->start[row + high[2] + 1]; k++) {
-                int32_t node = grid->node[k];
-                const double *p = &grid->position[3 * node];
-                double dx = p[0] - centre[0], dy = p[1] - centre[1], dz = p[2] - centre[2];
-                double reach = grid->support[node] + radius;
-                if (dx * dx + dy * dy + dz * dz >= reach * reach)
-                    continue;
-                if (found < limit)
-                    out[found] = node;
-                found++;
-            }
-        }
-    return found;
-}
-
-int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
-                      int32_t *out) {
-    int64_t found = sf_grid_gather(grid, centre, radius, limit, out);
-    qsort(out, (size_t)(found < limit ? found : limit), sizeof *out, by_value);
-    return found;
 }
 
 typedef struct keyed_node {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/grid.h"
 #include "pre/cloud/mls.h"
 
 #include <math.h>

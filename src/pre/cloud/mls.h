@@ -3,6 +3,7 @@
 #define SF_PRE_CLOUD_MLS_H
 #include <stdint.h>
 
+#include "base/grid.h"
 #include "base/error.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/dual.h"

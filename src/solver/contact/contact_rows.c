@@ -114,15 +114,27 @@ static int64_t put_row(const sf_model *m, const joined *j, int32_t first, sf_con
 }
 
 sf_status sf_contact_rows_build(const sf_model *m, sf_contact_rows *rows, sf_error *err) {
-    joined j = {0};
     int64_t points = sf_model_points(m);
+    int32_t *node = sf_alloc(err, (unsigned long)points, sizeof *node, "contact rows");
+    memset(rows, 0, sizeof *rows);
+    for (int64_t c = 0; node && c < points; c++)
+        node[c] = (int32_t)sf_model_point_node(m, c);
+    if (node)
+        sf_contact_rows_of_nodes(m, points, node, rows, err);
+    free(node);
+    return err->status;
+}
+
+sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int32_t *point,
+                                   sf_contact_rows *rows, sf_error *err) {
+    joined j = {0};
     memset(rows, 0, sizeof *rows);
     rows->ptr = sf_alloc(err, (unsigned long)points + 1, sizeof *rows->ptr, "contact rows");
     if (err->status == SF_OK)
         join_alloc(m, &j, err);
     for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
         for (int64_t c = 0; c < points; c++)
-            rows->ptr[c + 1] = put_row(m, &j, (int32_t)sf_model_point_node(m, c), rows, rows->ptr[c]);
+            rows->ptr[c + 1] = put_row(m, &j, point[c], rows, rows->ptr[c]);
         if (pass == 1)
             break;
         rows->node = sf_alloc(err, (unsigned long)rows->ptr[points], sizeof *rows->node, "contact rows");

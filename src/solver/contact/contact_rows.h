@@ -17,6 +17,9 @@ typedef struct sf_contact_rows {
 } sf_contact_rows;
 
 sf_status sf_contact_rows_build(const sf_model *model, sf_contact_rows *rows, sf_error *err);
+/* The rows of any `count` nodes. */
+sf_status sf_contact_rows_of_nodes(const sf_model *model, int64_t count, const int32_t *node,
+                                   sf_contact_rows *rows, sf_error *err);
 void sf_contact_rows_free(sf_contact_rows *rows);
 
 /* The accelerations of surface points by a contact force at another: A = Phi M^-1 Phi^T over the contact

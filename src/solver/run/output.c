@@ -58,6 +58,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/informed_strain", "1", "least, over the materials, of the strain up to which data inform"}, SF_H5_F64, 0, {0}, &informed},
         {{"/model/missile_mass", "kg", "mass of the whole missile"}, SF_H5_F64, 0, {0}, &m->missile.mass},
         {{"/model/missile_speed", "m s-1", "speed at first contact"}, SF_H5_F64, 0, {0}, &m->missile.speed},
+        {{"/model/air", "m", "gaps on the same way as the thickness, which close first"}, SF_H5_F64, 0, {0}, &m->air},
         {{"/model/speed_scatter", "1", "standard deviation of the missile's speed over it"}, SF_H5_F64, 0, {0}, &m->run.speed_scatter},
         {{"/model/thickness_tolerance", "m", "standard deviation of the pad's thickness"}, SF_H5_F64, 0, {0}, &m->run.thickness_tolerance},
         {{"/model/impact_x", "m", "where the missile's lowest point arrives at the pad's top, x; NaN: not known"}, SF_H5_F64, 0, {0}, impact ? &impact[0] : &unknown},

@@ -41,7 +41,7 @@ static void tell_depth(const sf_model *m, const sf_extremes *x, const sf_sink *s
     if (card->shape == SF_SHAPE_SPHERE && x->largest_indentation > height)
         sf_sink_tell(sink, SF_WARNING, "the missile went %.4g mm deep, beyond its spherical cap of %.4g mm",
                      1e3 * x->largest_indentation, 1e3 * height);
-    if (x->largest_indentation > m->thickness)
+    if (x->largest_indentation > m->thickness + m->air)
         sf_sink_tell(sink, SF_WARNING, "the missile went %.4g mm into a pad of %.4g mm: %s",
                      1e3 * x->largest_indentation, 1e3 * m->thickness,
                      x->bare_at_deepest ? "it met no contact point there; is it smaller than their spacing?"

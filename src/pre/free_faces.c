@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pre/free_faces.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/grid.h"
+#include "base/mat3.h"
+#include "pre/mesh/mesh.h"
+#include "pre/mesh/missile_shape.h"
+
+/* ---- the pad's surface ---- */
+
+/* A face of a cell: its nodes as they stand in the cell, and ascending. */
+typedef struct face {
+    int32_t node[4], sorted[4]; /* [3] is -1 of a triangle, in `sorted` [0] */
+} face;
+
+static int by_nodes(const void *a, const void *b) {
+    return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
+}
+
+static void sort4(int32_t v[4]) {
+    for (int i = 1; i < 4; i++)
+        for (int k = i; k > 0 && v[k] < v[k - 1]; k--) {
+            int32_t swap = v[k];
+            v[k] = v[k - 1];
+            v[k - 1] = swap;
+        }
+}
+
+static int64_t list_faces(const sf_model *m, face *list) {
+    int64_t count = 0;
+    for (int64_t c = 0; c < m->cell_count; c++) {
+        const sf_cell_topology *cell = sf_cell_topology_of(m->cell_type[c]);
+        for (int f = 0; f < cell->faces; f++) {
+            face *out = &list[count++];
+            for (int k = 0; k < 4; k++)
+                out->node[k] = k < cell->face_size[f] ? m->cell_node[m->cell_ptr[c] + cell->face[f][k]] : -1;
+            memcpy(out->sorted, out->node, sizeof out->sorted);
+            sort4(out->sorted);
+        }
+    }
+    qsort(list, (size_t)count, sizeof *list, by_nodes);
+    return count;
+}
+
+sf_status sf_skin_triangles(const sf_model *m, int64_t *triangles, int32_t **out, sf_error *err) {
+    int64_t most = 0;
+    *triangles = 0;
+    for (int64_t c = 0; c < m->cell_count; c++)
+        most += sf_cell_topology_of(m->cell_type[c])->faces;
+    face *list = sf_alloc(err, (unsigned long)most, sizeof *list, "faces of the pad");
+    int64_t count = list ? list_faces(m, list) : 0, single = 0;
+    for (int64_t i = 0; i < count; i++) { /* two cells share an inner face */
+        bool paired = i + 1 < count && by_nodes(&list[i], &list[i + 1]) == 0;
+        if (!paired)
+            list[single++] = list[i];
+        i += paired;
+    }
+    int32_t *node = *out = sf_alloc(err, 6 * (unsigned long)single, sizeof *node, "surface of the pad");
+    for (int64_t i = 0; node && i < single; i++) {
+        const int32_t *n = list[i].node;
+        memcpy(&node[3 * (*triangles)++], n, 3 * sizeof *n);
+        if (n[3] >= 0) {
+            const int32_t half[3] = {n[0], n[2], n[3]};
+            memcpy(&node[3 * (*triangles)++], half, sizeof half);
+        }
+    }
+    free(list);
+    return err->status;
+}
+
+/* ---- faces that may touch ---- */
+
+static const double ALONG = 0.99; /* least cosine of a face that is held along its normal */
+
+typedef struct shape {
+    double centroid[3], normal[3], radius; /* m, -, m */
+} shape;
+
+static shape shape_of(const sf_model *m, const int32_t node[3]) {
+    shape s = {{0}, {0}, 0};
+    double side[2][3];
+    const double *a = &m->position[3 * (int64_t)node[0]];
+    for (int k = 1; k < 3; k++)
+        for (int r = 0; r < 3; r++)
+            side[k - 1][r] = m->position[3 * (int64_t)node[k] + r] - a[r];
+    sf_cross3(side[0], side[1], s.normal);
+    double size = sqrt(sf_dot3(s.normal, s.normal));
+    for (int r = 0; r < 3; r++) {
+        s.centroid[r] = a[r] + (side[0][r] + side[1][r]) / 3;
+        s.normal[r] /= size > 0 ? size : 1;
+    }
+    for (int k = 0; k < 3; k++) {
+        double arm[3];
+        for (int r = 0; r < 3; r++)
+            arm[r] = m->position[3 * (int64_t)node[k] + r] - s.centroid[r];
+        s.radius = fmax(s.radius, sqrt(sf_dot3(arm, arm)));
+    }
+    return s;
+}
+
+/* The components that are held at each node, and 8 where it is tied to another layer. */
+static uint8_t *mark_nodes(const sf_model *m, sf_error *err) {
+    uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
+    for (int64_t k = 0; mark && k < m->fixed_count; k++)
+        mark[m->fixed_node[k]] |= m->fixed_mask[k];
+    for (int64_t k = 0; mark && k < m->tie_count; k++) {
+        mark[m->tie_node[k]] |= 8;
+        mark[m->tie_other[k]] |= 8;
+    }
+    return mark;
+}
+
+/* False for a face that is tied, in a symmetry plane or glued to the base: nothing can touch it. */
+static bool is_open(const uint8_t *mark, const int32_t node[3], const shape *s) {
+    uint8_t all = mark[node[0]] & mark[node[1]] & mark[node[2]];
+    for (int r = 0; r < 3; r++)
+        if ((all >> r) & 1 && fabs(s->normal[r]) > ALONG)
+            return false;
+    return !(all & 8);
+}
+
+/* The open faces, with the grid that finds them by their place. */
+typedef struct faces {
+    int64_t count;
+    int32_t *node;    /* [count][3] */
+    shape *shape;     /* [count] */
+    double *position; /* [count][3] m, centroids, for the grid */
+    double *radius;   /* [count] m */
+    double low[3], high[3], largest;
+    sf_grid grid;
+} faces;
+
+static void faces_free(faces *f) {
+    sf_grid_free(&f->grid);
+    free(f->node);
+    free(f->shape);
+    free(f->position);
+    free(f->radius);
+    *f = (faces){0};
+}
+
+static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
+    int64_t all = 0;
+    uint8_t *mark = mark_nodes(m, err);
+    *f = (faces){.low = {INFINITY, INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY, -INFINITY}};
+    if (mark && sf_skin_triangles(m, &all, &f->node, err) == SF_OK) {
+        f->shape = sf_alloc(err, (unsigned long)all, sizeof *f->shape, "skin of the pad");
+        f->position = sf_alloc(err, 3 * (unsigned long)all, sizeof(double), "skin of the pad");
+        f->radius = sf_alloc(err, (unsigned long)all, sizeof(double), "skin of the pad");
+    }
+    for (int64_t i = 0; err->status == SF_OK && i < all; i++) {
+        const shape s = shape_of(m, &f->node[3 * i]);
+        if (!is_open(mark, &f->node[3 * i], &s))
+            continue;
+        int64_t k = f->count++;
+        memmove(&f->node[3 * k], &f->node[3 * i], 3 * sizeof *f->node);
+        f->shape[k] = s;
+        f->radius[k] = s.radius;
+        f->largest = fmax(f->largest, s.radius);
+        memcpy(&f->position[3 * k], s.centroid, sizeof s.centroid);
+    }
+    for (int64_t i = 0; i < 3 * m->node_count; i++) {
+        f->low[i % 3] = fmin(f->low[i % 3], m->position[i]);
+        f->high[i % 3] = fmax(f->high[i % 3], m->position[i]);
+    }
+    free(mark);
+    if (err->status == SF_OK && f->count > 0)
+        sf_grid_build(&f->grid, f->count, f->position, f->radius, err);
+    if (err->status != SF_OK)
+        faces_free(f);
+    return err->status;
+}
+
+/* ---- can the foam touch itself? ---- */
+
+/* Length (m) of the ray from face i outwards inside the pad's box, at most `most`. */
+static double length_in_box(const faces *f, int64_t i, double most) {
+    const shape *s = &f->shape[i];
+    for (int r = 0; r < 3; r++) {
+        double n = s->normal[r], end = n > 0 ? f->high[r] : f->low[r];
+        if (fabs(n) > 1e-9)
+            most = fmin(most, (end - s->centroid[r]) / n);
+    }
+    return most;
+}
+
+/* True if the ray from face i, of this length (m), meets the outside of another face. */
+static bool meets_face(const sf_model *m, const faces *f, int64_t i, double length, int32_t *near) {
+    enum { MOST = 512 };
+    const shape *s = &f->shape[i];
+    double step = 2 * f->largest;
+    for (double at = 0; at < length + step; at += step) {
+        double place[3];
+        for (int r = 0; r < 3; r++)
+            place[r] = s->centroid[r] + at * s->normal[r];
+        int64_t count = sf_grid_gather(&f->grid, place, step, MOST, near);
+        for (int64_t k = 0; k < count && k < MOST; k++) {
+            const int32_t *n = &f->node[3 * (int64_t)near[k]];
+            if (near[k] == i || sf_dot3(f->shape[near[k]].normal, s->normal) > 0)
+                continue;
+            double travel =
+                -sf_triangle_travel(&m->position[3 * (int64_t)n[0]], &m->position[3 * (int64_t)n[1]],
+                                    &m->position[3 * (int64_t)n[2]], s->normal, s->centroid);
+            if (travel > 0 && travel < length)
+                return true;
+        }
+    }
+    return false;
+}
+
+static sf_status can_touch(const sf_model *m, const faces *f, bool *touches, sf_error *err) {
+    static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
+    int32_t *near = sf_alloc(err, 512, sizeof *near, "skin of the pad");
+    double anvil = f->high[2] - m->anvil.depth;
+    *touches = false;
+    for (int64_t i = 0; near && i < f->count && !*touches; i++) {
+        const shape *s = &f->shape[i];
+        double length = length_in_box(f, i, m->thickness), height = s->centroid[2] - anvil;
+        bool over = m->anvil.depth > 0 && s->normal[2] < DOWN && height > LEAST * m->thickness;
+        *touches = (over && -height / s->normal[2] < m->thickness) ||
+                   (length > LEAST * m->thickness && meets_face(m, f, i, length, near));
+    }
+    free(near);
+    return err->status;
+}
+
+sf_status sf_skin_find(const sf_case *c, sf_model *m, sf_error *err) {
+    faces f;
+    bool touches = c->self_contact == SF_SELF_CONTACT_ON;
+    if (c->self_contact == SF_SELF_CONTACT_OFF || faces_find(m, &f, err) != SF_OK)
+        return err->status;
+    if (f.count > 0 && (touches || can_touch(m, &f, &touches, err) == SF_OK) && touches) {
+        m->skin_count = f.count;
+        m->skin_triangle = f.node;
+        m->skin_friction = c->self_friction;
+        f.node = NULL;
+    }
+    faces_free(&f);
+    return err->status;
+}

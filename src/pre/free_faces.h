@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The surface of the pad, and the part of it that may touch the pad itself or the anvil. */
+#ifndef SF_PRE_FREE_FACES_H
+#define SF_PRE_FREE_FACES_H
+
+#include "base/error.h"
+#include "case/case.h"
+#include "model/model.h"
+
+/* The free faces of the model's cells as triangles, turned outwards: *node [*count][3], owned by the caller.
+ * Faces between layers are among them, once for each layer. */
+sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **node, sf_error *err);
+
+/* Sets the model's skin by pad.self_contact: "off" none; "on" the surface but for faces that are tied to
+ * another layer or held along their normal; "auto" the same if the foam can touch itself or the anvil, that
+ * is, if a ray from a face outwards meets another face of it, or the anvil, within the pad's thickness.
+ * Needs cells, constraints, ties, thickness and the anvil's depth. */
+sf_status sf_skin_find(const sf_case *c, sf_model *model, sf_error *err);
+
+#endif

@@ -1,0 +1,491 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/contact/self_contact.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/grid.h"
+#include "base/mat3.h"
+#include "base/threads.h"
+
+enum { CANDIDATES = SF_SELF_CANDIDATES, NOTHING = -1, ANVIL = -2, MAX_SWEEPS = 500 };
+static const double NEAR = 1.2;     /* spacings: reach of the candidates */
+static const double ENTRY = 0.01;   /* of the spacing: no deeper does a node begin to touch */
+static const double DEEPEST = 0.5;  /* of the spacing: no deeper does it go on */
+static const double RETURN = 0.1;   /* m s-1: no faster is a depth taken back */
+static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
+static const double FACING = -0.7;  /* largest cosine, at rest, of neighbours that look at each other */
+static const double EDGE = 0.05;    /* of a face, in its barycentric coordinates: it reaches so far beyond */
+static const double SWEEP_TOLERANCE = 1e-5; /* largest change of a force, relative to the largest force */
+
+/* ---- positions ---- */
+
+/* Position, motion in the last step, and motion in the next one without these forces, of the nodes listed. */
+static void move_nodes(const sf_model *m, const sf_skin *skin, sf_state *s, double dt_v, int64_t count,
+                       const int32_t *list) {
+#pragma omp parallel for if (count > SF_FEW_POINTS) default(none) shared(m, skin, s, dt_v, count, list)      \
+    schedule(static)
+    for (int64_t k = 0; k < count; k++) {
+        int64_t p = list[k];
+        double now[3] = {0}, last[3] = {0}, change[3] = {0};
+        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1]; e++) {
+            int64_t i = skin->rows.node[e];
+            double phi = skin->rows.value[e], inverse = phi * dt_v / m->mass[i];
+            for (int r = 0; r < 3; r++) {
+                now[r] += phi * s->d[3 * i + r];
+                last[r] += phi * s->v[3 * i + r];
+                change[r] += inverse * (s->force[3 * i + r] - s->reaction[3 * i + r]);
+            }
+        }
+        for (int r = 0; r < 3; r++) {
+            s->self_position[3 * p + r] = m->position[3 * (int64_t)skin->node[p] + r] + now[r];
+            s->self_motion[3 * p + r] = s->dt_old * last[r];
+            s->self_step[3 * p + r] = s->dt * (last[r] + change[r]);
+        }
+    }
+}
+
+static void facet_normal(const sf_skin *skin, const sf_state *s, int64_t f, double normal[3]) {
+    const int32_t *n = &skin->facet[3 * f];
+    double side[2][3];
+    for (int k = 0; k < 2; k++)
+        for (int r = 0; r < 3; r++)
+            side[k][r] =
+                s->self_position[3 * (int64_t)n[k + 1] + r] - s->self_position[3 * (int64_t)n[0] + r];
+    sf_cross3(side[0], side[1], normal);
+}
+
+/* Can the node come down to the anvil? Not if it is held, or rests on it already. */
+static bool can_fall(const sf_skin *skin, int64_t p) {
+    return !skin->rests[p] && !(skin->held[p] & SF_FIX_Z);
+}
+
+/* ---- candidates ---- */
+
+/* The neighbourhood of a node on the skin: the nodes within RINGS facets of it. Its facets are no candidates
+ * but where they look at the node from rest on, as those beside the tip of a slit do: a crease of a smooth
+ * surface or of a corner that is narrower lies below the resolution of the cloud, and the foam's own stress
+ * keeps its sides apart. */
+enum { RINGS = 1 };
+typedef struct neighbourhood {
+    uint8_t *is_near; /* [count] of the skin */
+    int32_t *list;    /* [count] those with 1 in it */
+    int64_t count;
+} neighbourhood;
+
+static void find_neighbourhood(const sf_skin *skin, int64_t p, neighbourhood *n) {
+    while (n->count > 0)
+        n->is_near[n->list[--n->count]] = 0;
+    n->list[n->count++] = (int32_t)p;
+    n->is_near[p] = 1;
+    for (int64_t ring = 0, first = 0; ring < RINGS; ring++) {
+        int64_t last = n->count;
+        for (; first < last; first++)
+            for (int64_t k = skin->ring_ptr[n->list[first]]; k < skin->ring_ptr[n->list[first] + 1]; k++)
+                for (int c = 0; c < 3; c++) {
+                    int32_t other = skin->facet[3 * (int64_t)skin->ring[k] + c];
+                    if (!n->is_near[other])
+                        n->list[n->count++] = other;
+                    n->is_near[other] = 1;
+                }
+    }
+}
+
+static bool is_candidate(const sf_skin *skin, const neighbourhood *n, int64_t p, int64_t f) {
+    const int32_t *facet = &skin->facet[3 * f];
+    if (facet[0] == p || facet[1] == p || facet[2] == p)
+        return false;
+    if (!n->is_near[facet[0]] && !n->is_near[facet[1]] && !n->is_near[facet[2]])
+        return true;
+    return sf_dot3(&skin->normal[3 * p], &skin->facet_normal[3 * f]) < FACING;
+}
+
+/* Keeps the candidates of node p: facets in reach but for those of its own neighbourhood; and lists the nodes
+ * that have some, or can reach the anvil, with the nodes of their facets, as 1 in `used`. */
+static void choose_candidates(const sf_skin *skin, sf_state *s, int64_t p, double reach, int64_t found,
+                              const int32_t *near, neighbourhood *n, uint8_t *used) {
+    int32_t *own = &s->self_candidate[CANDIDATES * p];
+    int count = 0;
+    find_neighbourhood(skin, p, n);
+    for (int64_t k = 0; k < found && count < CANDIDATES; k++)
+        if (is_candidate(skin, n, p, near[k]))
+            own[count++] = near[k];
+    for (int k = 0; k < count; k++)
+        for (int a = 0; a < 3; a++)
+            used[skin->facet[3 * (int64_t)own[k] + a]] = 1;
+    bool falls = can_fall(skin, p) && s->self_position[3 * p + 2] - skin->anvil < reach;
+    used[p] |= count > 0 || falls;
+    for (int k = count; k < CANDIDATES; k++)
+        own[k] = NOTHING;
+}
+
+/* The lists of nodes whose positions and normals a step needs, from those that are used. */
+static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
+    s->self_close_count = s->self_near_count = 0;
+    for (int64_t p = 0; p < skin->count; p++)
+        if (used[p])
+            s->self_close[s->self_close_count++] = (int32_t)p;
+    for (int64_t k = 0; k < s->self_close_count; k++)
+        for (int64_t e = skin->ring_ptr[s->self_close[k]]; e < skin->ring_ptr[s->self_close[k] + 1]; e++)
+            for (int c = 0; c < 3; c++)
+                used[skin->facet[3 * (int64_t)skin->ring[e] + c]] = 1;
+    for (int64_t p = 0; p < skin->count; p++)
+        if (used[p])
+            s->self_near[s->self_near_count++] = (int32_t)p;
+}
+
+static sf_status list_candidates(const sf_skin *skin, sf_state *s, sf_error *err) {
+    enum { MOST = 256 };
+    double reach = NEAR * skin->spacing;
+    unsigned long facets = (unsigned long)skin->facet_count;
+    double *centre = sf_alloc(err, 3 * facets, sizeof *centre, "candidates of contact"),
+           *radius = sf_alloc(err, facets, sizeof *radius, "candidates of contact");
+    uint8_t *used = sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact");
+    neighbourhood n = {sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact"),
+                       sf_alloc(err, (unsigned long)skin->count, sizeof *n.list, "candidates of contact"), 0};
+    sf_grid grid = {0};
+    for (int64_t f = 0; err->status == SF_OK && f < skin->facet_count; f++) {
+        double corner[3][3], square = 0;
+        for (int k = 0; k < 3; k++)
+            memcpy(corner[k], &s->self_position[3 * (int64_t)skin->facet[3 * f + k]], sizeof corner[k]);
+        for (int r = 0; r < 3; r++)
+            centre[3 * f + r] = (corner[0][r] + corner[1][r] + corner[2][r]) / 3;
+        for (int k = 0; k < 3; k++) {
+            for (int r = 0; r < 3; r++)
+                corner[k][r] -= centre[3 * f + r];
+            square = fmax(square, sf_dot3(corner[k], corner[k]));
+        }
+        radius[f] = sqrt(square);
+    }
+    if (err->status == SF_OK && sf_grid_build(&grid, skin->facet_count, centre, radius, err) == SF_OK) {
+        for (int64_t p = 0; p < skin->count; p++) {
+            int32_t near[MOST];
+            int64_t found = sf_grid_query(&grid, &s->self_position[3 * p], reach, MOST, near);
+            choose_candidates(skin, s, p, reach, found < MOST ? found : MOST, near, &n, used);
+        }
+        list_nodes(skin, s, used);
+        s->self_room = reach;
+    }
+    sf_grid_free(&grid);
+    free(centre);
+    free(radius);
+    free(used);
+    free(n.is_near);
+    free(n.list);
+    return err->status;
+}
+
+/* Subtracts what node and facet travel towards each other in a step. False: the list must be made anew. */
+static bool has_room(const sf_skin *skin, sf_state *s) {
+    double travel = 2 * skin->spread * s->fastest;
+    s->self_room -= s->dt_old * travel;
+    return s->step > 0 && s->self_room > fmax(0.3 * NEAR * skin->spacing, 2 * s->dt * travel);
+}
+
+/* ---- gaps ---- */
+
+/* Outward normals of the nodes that may touch, weighted by the areas of their facets. */
+static void find_normals(const sf_skin *skin, sf_state *s) {
+    for (int64_t k = 0; k < s->self_close_count; k++) {
+        int64_t p = s->self_close[k];
+        double one[3], *own = &s->self_normal[3 * p];
+        memset(own, 0, 3 * sizeof *own);
+        for (int64_t e = skin->ring_ptr[p]; e < skin->ring_ptr[p + 1]; e++) {
+            facet_normal(skin, s, skin->ring[e], one);
+            for (int r = 0; r < 3; r++)
+                own[r] += one[r];
+        }
+        for (int r = 0; r < 3; r++) /* the other half lies beyond a symmetry plane */
+            own[r] *= !((skin->held[p] >> r) & 1);
+        sf_unit3(own);
+    }
+}
+
+/* A node and what it touches. */
+typedef struct touch {
+    int64_t node, facet; /* facet: ANVIL for the plane */
+    double weight[3];    /* of the facet's nodes; zeros for the plane */
+    double normal[3];    /* outward from the facet */
+    double gap;          /* m, now; of a depth the part that the step takes back */
+} touch;
+
+/* The weights of a facet's nodes at a point of its plane, `normal` (twice its area long) being its own. */
+static void weigh_point(const sf_skin *skin, const sf_state *s, int64_t f, const double point[3],
+                        const double normal[3], double weight[3]) {
+    const int32_t *n = &skin->facet[3 * f];
+    double square = sf_dot3(normal, normal);
+    for (int k = 0; k < 3; k++) {
+        double from[3], along[3], moment[3];
+        const double *b = &s->self_position[3 * (int64_t)n[(k + 1) % 3]],
+                     *c = &s->self_position[3 * (int64_t)n[(k + 2) % 3]];
+        for (int r = 0; r < 3; r++) {
+            from[r] = point[r] - b[r];
+            along[r] = c[r] - b[r];
+        }
+        sf_cross3(along, from, moment);
+        weight[k] = sf_dot3(moment, normal) / square;
+    }
+}
+
+/* The pair of node and facet, if the node lies before or behind the facet and its own surface looks against
+ * it. The normal is the mean of both surfaces: smooth over the facets, and the same seen from either side,
+ * where facets that are tilted against each other would interlock. The gap is along it, so that the forces on
+ * node and facet lie on one line. */
+static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, touch *out) {
+    const int32_t *n = &skin->facet[3 * f];
+    const double *x = &s->self_position[3 * p], *a = &s->self_position[3 * (int64_t)n[0]];
+    double own[3], arm[3], point[3];
+    facet_normal(skin, s, f, own);
+    double area = sqrt(sf_dot3(own, own));
+    *out = (touch){.node = p, .facet = f};
+    if (!(area > 0) || sf_dot3(&s->self_normal[3 * p], own) >= OPPOSED * area)
+        return false;
+    weigh_point(skin, s, f, x, own, out->weight);
+    for (int k = 0; k < 3; k++)
+        if (out->weight[k] < -EDGE)
+            return false;
+    for (int r = 0; r < 3; r++) {
+        arm[r] = x[r] - a[r];
+        out->normal[r] = -s->self_normal[3 * p + r];
+        for (int k = 0; k < 3; k++)
+            out->normal[r] += out->weight[k] * s->self_normal[3 * (int64_t)n[k] + r];
+    }
+    for (int r = 0; r < 3; r++)
+        out->normal[r] *= !((skin->held[p] >> r) & 1);
+    sf_unit3(out->normal);
+    double across = sf_dot3(out->normal, own);
+    if (!(across > 0.5 * area))
+        return false;
+    out->gap = sf_dot3(arm, own) / across;
+    for (int r = 0; r < 3; r++)
+        point[r] = x[r] - out->gap * out->normal[r];
+    weigh_point(skin, s, f, point, own, out->weight);
+    return true;
+}
+
+/* Displacement of the node relative to its partner, of a field over the skin's nodes. */
+static void relative(const sf_skin *skin, const touch *q, const double *field, double out[3]) {
+    memcpy(out, &field[3 * q->node], 3 * sizeof *out);
+    for (int k = 0; k < 3 && q->facet >= 0; k++)
+        for (int r = 0; r < 3; r++)
+            out[r] -= q->weight[k] * field[3 * (int64_t)skin->facet[3 * q->facet + k] + r];
+}
+
+/* The partner that node p touches at the end of the step: of those that it may touch, the nearest. */
+static bool find_partner(const sf_model *m, const sf_skin *skin, const sf_state *s, int64_t p, touch *out) {
+    const int32_t *own = &s->self_candidate[CANDIDATES * p];
+    double spacing = m->spacing[skin->node[p]], best = INFINITY, ahead[3];
+    bool touched = s->self_partner[p] != NOTHING;
+    double limit = -(touched ? DEEPEST : ENTRY) * spacing, back = -RETURN * s->dt;
+    for (int k = 0; k < CANDIDATES && own[k] != NOTHING; k++) {
+        touch q;
+        if (!meet_facet(skin, s, p, own[k], &q) || q.gap < limit || fabs(q.gap) >= best)
+            continue;
+        relative(skin, &q, s->self_step, ahead);
+        if (fmax(q.gap, back) + sf_dot3(ahead, q.normal) >= 0)
+            continue;
+        best = fabs(q.gap);
+        *out = q;
+    }
+    double height = s->self_position[3 * p + 2] - skin->anvil;
+    if (can_fall(skin, p) && height + s->self_step[3 * p + 2] < 0 && fabs(height) < best) {
+        *out = (touch){.node = p, .facet = ANVIL, .normal = {0, 0, 1}, .gap = height};
+        best = fabs(height);
+    }
+    return best < INFINITY;
+}
+
+/* ---- forces ---- */
+
+/* Adds `scale` times the row of the pair over the coefficients, times `q`, over the masses or not. */
+static void scatter(const sf_model *m, const sf_skin *skin, const touch *pair, const double q[3],
+                    bool accelerate, double *out) {
+    for (int k = -1; k < (pair->facet >= 0 ? 3 : 0); k++) {
+        int64_t p = k < 0 ? pair->node : skin->facet[3 * pair->facet + k];
+        double weight = k < 0 ? 1 : -pair->weight[k];
+        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1] && weight != 0; e++) {
+            int64_t i = skin->rows.node[e];
+            double phi = weight * skin->rows.value[e] / (accelerate ? m->mass[i] : 1);
+            for (int r = 0; r < 3; r++)
+                out[3 * i + r] += phi * q[r];
+        }
+    }
+}
+
+/* The row of the pair times a field over the coefficients. */
+static void gather(const sf_skin *skin, const touch *pair, const double *field, double out[3]) {
+    memset(out, 0, 3 * sizeof *out);
+    for (int k = -1; k < (pair->facet >= 0 ? 3 : 0); k++) {
+        int64_t p = k < 0 ? pair->node : skin->facet[3 * pair->facet + k];
+        double weight = k < 0 ? 1 : -pair->weight[k];
+        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1] && weight != 0; e++)
+            for (int r = 0; r < 3; r++)
+                out[r] += weight * skin->rows.value[e] * field[3 * (int64_t)skin->rows.node[e] + r];
+    }
+}
+
+/* Acceleration of the pair's node relative to its partner by a unit force; `push` is zero, and left so. */
+static double mobility_of(const sf_model *m, const sf_skin *skin, const touch *pair, double *push) {
+    static const double unit[3] = {1, 0, 0}, back[3] = {-1, 0, 0};
+    double out[3];
+    scatter(m, skin, pair, unit, true, push);
+    gather(skin, pair, push, out);
+    scatter(m, skin, pair, back, true, push);
+    return out[0];
+}
+
+/* The pairs of a step, their mobilities and motions without forces. */
+typedef struct solve {
+    int64_t count;
+    touch *pair;
+    double *mobility;  /* kg-1 */
+    double (*step)[3]; /* m */
+    double shift;      /* s2, dt times the distance of the half steps */
+} solve;
+
+/* One Gauss-Seidel update of the force on a pair's node; returns the size of its change. */
+static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w, int64_t a) {
+    const touch *pair = &w->pair[a];
+    double *q = &s->self_force[3 * pair->node], moved[3], new[3], change[3], largest = 0;
+    double mobility = w->shift * w->mobility[a], friction = m->skin_friction;
+    gather(skin, pair, s->self_push, moved);
+    for (int r = 0; r < 3; r++)
+        moved[r] = w->step[a][r] + w->shift * moved[r];
+    double across = sf_dot3(moved, pair->normal), old = sf_dot3(q, pair->normal),
+           p = fmax(0, old - (pair->gap + across) / mobility), size = 0;
+    for (int r = 0; r < 3; r++) {
+        new[r] = friction > 0 && p > 0
+                     ? q[r] - old * pair->normal[r] - (moved[r] - across * pair->normal[r]) / mobility
+                     : 0;
+        size += new[r] * new[r];
+    }
+    double bound = size > 0 ? fmin(1, friction * p / sqrt(size)) : 0;
+    for (int r = 0; r < 3; r++) {
+        new[r] = p * pair->normal[r] + bound *new[r];
+        change[r] = new[r] - q[r];
+        q[r] = new[r];
+        largest = fmax(largest, fabs(change[r]));
+    }
+    if (largest > 0)
+        scatter(m, skin, pair, change, true, s->self_push);
+    return largest;
+}
+
+static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w) {
+    for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
+        double change = 0, largest = 0;
+        for (int64_t a = 0; a < w->count; a++) {
+            int64_t k = sweep % 2 ? w->count - 1 - a : a;
+            change = fmax(change, relax_pair(m, skin, s, w, k));
+            largest = fmax(largest, sf_dot3(&s->self_force[3 * w->pair[k].node], w->pair[k].normal));
+        }
+        if (change <= SWEEP_TOLERANCE * largest)
+            return;
+    }
+    s->contact_unsettled++;
+}
+
+/* Half of the work of the force on a pair in the last step: each step's force works over the steps before and
+ * after it. */
+static void book(const sf_model *m, const sf_skin *skin, sf_state *s, const touch *pair,
+                 const double force[3]) {
+    double motion[3];
+    relative(skin, pair, s->self_motion, motion);
+    double lost = -0.5 * sf_dot3(force, motion),
+           normal = m->skin_friction > 0 ? -0.5 * sf_dot3(force, pair->normal) * sf_dot3(motion, pair->normal)
+                                         : lost;
+    s->ledger.contact += normal;
+    s->ledger.friction += lost - normal;
+    if (pair->facet == ANVIL)
+        s->ledger.anvil += lost;
+}
+
+/* The pair of node p in the last step; its normal is that of the present. */
+static touch last_pair(const sf_skin *skin, const sf_state *s, int64_t p) {
+    touch q = {.node = p, .facet = (int64_t)s->self_partner[p], .normal = {0, 0, 1}};
+    memcpy(q.weight, &s->self_weight[3 * p], sizeof q.weight);
+    if (q.facet >= 0) {
+        facet_normal(skin, s, q.facet, q.normal);
+        double size = sqrt(sf_dot3(q.normal, q.normal));
+        for (int r = 0; r < 3; r++)
+            q.normal[r] /= size > 0 ? size : 1;
+    }
+    return q;
+}
+
+/* Books the last step's pairs, finds those of this step, and carries their forces over. */
+static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
+    s->self_penetration = 0;
+    for (int64_t k = 0; k < s->self_close_count; k++) {
+        int64_t p = s->self_close[k];
+        double *q = &s->self_force[3 * p];
+        if (s->self_partner[p] != NOTHING) {
+            const touch last = last_pair(skin, s, p);
+            book(m, skin, s, &last, q);
+        }
+        touch *found = &w->pair[w->count];
+        double old = sqrt(sf_dot3(q, q));
+        if (!find_partner(m, skin, s, p, found)) {
+            s->self_partner[p] = NOTHING;
+            memset(q, 0, 3 * sizeof *q);
+            continue;
+        }
+        if (s->self_partner[p] != (double)found->facet && m->skin_friction == 0)
+            for (int r = 0; r < 3; r++)
+                q[r] = old * found->normal[r];
+        s->self_partner[p] = (double)found->facet;
+        memcpy(&s->self_weight[3 * p], found->weight, sizeof found->weight);
+        s->self_penetration = fmax(s->self_penetration, -found->gap);
+        found->gap = fmax(found->gap, -RETURN * s->dt);
+        w->mobility[w->count] = mobility_of(m, skin, found, s->self_push);
+        relative(skin, found, s->self_step, w->step[w->count]);
+        w->count++;
+    }
+}
+
+sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
+    const sf_skin *skin = &op->skin;
+    if (skin->count == 0)
+        return SF_OK;
+    double dt_v = 0.5 * (s->dt_old + s->dt);
+    if (!has_room(skin, s)) {
+        for (int64_t p = 0; p < skin->count; p++)
+            s->self_near[p] = (int32_t)p;
+        move_nodes(m, skin, s, dt_v, skin->count, s->self_near);
+        SF_TRY(list_candidates(skin, s, err));
+    } else {
+        move_nodes(m, skin, s, dt_v, s->self_near_count, s->self_near);
+    }
+    find_normals(skin, s);
+    unsigned long most = (unsigned long)s->self_close_count;
+    solve w = {.shift = s->dt * dt_v,
+               .pair = sf_alloc(err, most, sizeof *w.pair, "pairs in contact"),
+               .mobility = sf_alloc(err, most, sizeof *w.mobility, "pairs in contact"),
+               .step = sf_alloc(err, most, sizeof *w.step, "pairs in contact")};
+    if (err->status == SF_OK)
+        find_pairs(m, skin, s, &w);
+    if (w.count > 0) {
+        for (int64_t a = 0; a < w.count; a++)
+            scatter(m, skin, &w.pair[a], &s->self_force[3 * w.pair[a].node], true, s->self_push);
+        relax(m, skin, s, &w);
+        memset(s->self_push, 0, 3 * (size_t)m->node_count * sizeof *s->self_push);
+    }
+    for (int64_t a = 0; a < w.count; a++) {
+        const double *q = &s->self_force[3 * w.pair[a].node];
+        scatter(m, skin, &w.pair[a], q, false, s->force);
+        book(m, skin, s, &w.pair[a], q);
+    }
+    free(w.pair);
+    free(w.mobility);
+    free(w.step);
+    return err->status;
+}
+
+void sf_self_contact_outside(const sf_skin *skin, const sf_state *s, sf_wrench *outside) {
+    for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
+        int64_t p = s->self_close[k];
+        if (s->self_partner[p] == ANVIL)
+            sf_wrench_add(outside, &s->self_position[3 * p], &s->self_force[3 * p]);
+    }
+}

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contact of the pad with itself and with the anvil, by whole programs: a block with a cut against the whole
+ * block, a tile on feet whose plate comes down to the floor, momentum, energy, the same bits for any number
+ * of threads and after a restart; when a pad has such a contact. */
+#include "program_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "extreme.h"
+#include "post_check.h"
+
+/* A block of 40 mm, cut at half height from x = 0 to 36 mm: a wedge that is `slit` mm wide at x = 0. */
+static const char CUT[] =
+    "DefineConstant[ slit = 0.1, cells = 8 ];\n"
+    "Point(1) = {0,0,0}; Point(2) = {36,0,0}; Point(3) = {40,0,0}; Point(4) = {0,0,20}; Point(5) = {36,0,20};\n"
+    "Point(6) = {40,0,20}; Point(7) = {0,0,20 + slit}; Point(8) = {0,0,40}; Point(9) = {36,0,40};\n"
+    "Point(10) = {40,0,40};\n"
+    "Line(1) = {1,2}; Line(2) = {2,3}; Line(3) = {1,4}; Line(4) = {2,5}; Line(5) = {3,6}; Line(6) = {4,5};\n"
+    "Line(7) = {5,6}; Line(9) = {5,9}; Line(10) = {6,10}; Line(11) = {8,9}; Line(12) = {9,10};\n"
+    "If (slit > 0)\nLine(8) = {7,8}; Line(13) = {7,5}; u = 13;\nElse\nLine(8) = {4,8}; u = 6;\nEndIf\n"
+    "Curve Loop(1) = {1,4,-6,-3}; Curve Loop(2) = {2,5,-7,-4}; Curve Loop(3) = {u,9,-11,-8};\n"
+    "Curve Loop(4) = {7,10,-12,-9};\n"
+    "Plane Surface(1) = {1}; Plane Surface(2) = {2}; Plane Surface(3) = {3}; Plane Surface(4) = {4};\n"
+    "Transfinite Curve {1,6,11} = 9*cells/8 + 1;\nIf (slit > 0)\nTransfinite Curve {13} = 9*cells/8 + 1;\nEndIf\n"
+    "Transfinite Curve {2,7,12} = 2; Transfinite Curve {3,4,5,8,9,10} = cells/2 + 1;\n"
+    "Transfinite Surface {:}; Recombine Surface {:};\n"
+    "Extrude {0,40,0} { Surface{1:4}; Layers{cells}; Recombine; }\n"
+    "Physical Volume(\"pad\") = Volume{:};\n"
+    "Physical Surface(\"base\") = Surface In BoundingBox{-1,-1,-0.01,41,41,0.01};\n"
+    "Physical Surface(\"top\") = Surface In BoundingBox{-1,-1,39.99,41,41,40.01};\n"
+    "l() = Surface In BoundingBox{-0.01,-1,-1,0.01,41,41}; r() = Surface In BoundingBox{39.99,-1,-1,40.01,41,41};\n"
+    "f() = Surface In BoundingBox{-1,-0.01,-1,41,0.01,41}; b() = Surface In BoundingBox{-1,39.99,-1,41,40.01,41};\n"
+    "Physical Surface(\"left\") = l(); Physical Surface(\"right\") = r(); Physical Surface(\"front\") = f();\n"
+    "Physical Surface(\"back\") = b();\n";
+
+static const char CUT_CASE[] =
+    "geometry: { file = \"cut.geo\"; missile_file = \"geo/platen.geo\"; length_unit = \"mm\";\n"
+    "  parameters = { slit = 0.1; cells = 8; }; missile_parameters = { side = 200.0; }; };\n"
+    "pad: { mesh_error_limit = 1.0; sliding = [\"left\", \"right\", \"front\", \"back\"]; };\n"
+    "material: {\n@include \"materials/eva35.cfg\"\n};\n"
+    "missile: { motion = \"motion.csv\"; friction = 0.5; shape = \"surface\"; };\n"
+    "solver: { end_time = \"24 ms\"; };\n"
+    "output: { frame_interval = \"24 ms\"; };\n";
+
+typedef struct figures {
+    double force, energy_error, contact, penetration, momentum, angular;
+} figures;
+
+/* Largest magnitude of a column of out/history.csv. */
+static double largest_in_history(const program_place *p, const char *column) {
+    program_result r = program_shell(
+        p,
+        "awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) if ($k == \"%s\") c = k; next } { v = $c < 0 ? -$c : $c; "
+        "if (v > m) m = v } END { print m + 0 }' out/history.csv",
+        column);
+    assert_int_equal(r.code, 0);
+    return strtod(r.out, NULL);
+}
+
+static figures run(const program_place *p, const char *overrides) {
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", overrides);
+    program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
+    program_succeed(p, "post", "r.h5 -o out --force");
+    return (figures){.force = largest_in_history(p, "contact_force_N"),
+                     .energy_error = largest_in_history(p, "energy_error_1"),
+                     .contact = largest_in_history(p, "energy_contact_J"),
+                     .penetration = largest_in_history(p, "penetration_mm"),
+                     .momentum = largest_in_history(p, "momentum_error_space_1"),
+                     .angular = largest_in_history(p, "angular_momentum_error_1")};
+}
+
+static void a_cut_block_is_as_stiff_as_the_whole_one(void **state) {
+    const program_place *p = *state;
+    program_write_text(p, "cut.geo", CUT);
+    program_write_text(p, "case.cfg", CUT_CASE);
+    program_write_text(p, "motion.csv", "time_ms,displacement_mm\n0,0\n24,24\n");
+    figures whole = run(p, "--set geometry.parameters.slit=0.0"), cut = run(p, ""),
+            open = run(p, "--set pad.self_contact='\"off\"'"), rough = run(p, "--set pad.self_friction=0.5");
+    print_message(
+        "at 60 %%: whole %.2f N, cut %.2f N, with friction %.2f N, without contact %.2f N; penetration %.2g "
+        "mm, energy error %.1e, momentum %.1e, angular %.1e, with friction %.1e\n",
+        whole.force, cut.force, rough.force, open.force, cut.penetration, cut.energy_error, cut.momentum,
+        cut.angular, rough.angular);
+    assert_relative(cut.force, whole.force, 0.005);
+    assert_relative(rough.force, whole.force, 0.005);
+    assert_true(fabs(open.force / whole.force - 1) > 0.02);
+    assert_true(cut.penetration < 0.01 * 5 && cut.energy_error < 1e-3);
+    assert_true(cut.momentum < 1e-12 && cut.angular < 1e-12);
+    assert_true(rough.momentum < 1e-12 && rough.angular < 1e-6); /* friction acts across the gap */
+}
+
+static void use_tile(const program_place *p) {
+    program_shell(
+        p,
+        "cp \"$SF_SOURCE_DIR/geo/tile_feet.geo\" geo/ && sed 's#\\.\\./\\.\\./geo#geo#; s#\\.\\./materials#materials#' "
+        "\"$SF_SOURCE_DIR/examples/tile-feet/case.cfg\" > case.cfg");
+}
+
+static void a_tile_on_feet_comes_down_to_the_floor(void **state) {
+    const program_place *p = *state;
+    use_tile(p);
+    figures held = run(p, "");
+    double below = program_file_number(p, "out/summary.json", "below_anvil_mm"),
+           strain = program_file_number(p, "out/summary.json", "max_mean_strain"),
+           a_max = largest_in_history(p, "acceleration_cfc1000_g");
+    program_shell(p, "cp r.h5 first.h5");
+    run(p, "--set pad.self_contact='\"off\"'");
+    double through = program_file_number(p, "out/summary.json", "below_anvil_mm");
+    print_message("a_max %.2f g, %.3g mm below the floor, without contact %.3g mm; mean strain %.3f\n", a_max,
+                  below, through, strain);
+    assert_true(below < 0.05 && through > 10 * below && through > 0.2);
+    assert_true(strain > 0.5 && strain < 0.9);
+    assert_true(held.energy_error < 1e-3 && held.penetration < 0.01 * 6.7);
+    assert_true(held.momentum < 1e-12 && held.angular < 1e-12);
+}
+
+/* Bits of the histories: of two threads, and of a run that was resumed within the contact. */
+static void the_bits_do_not_depend_on_threads_or_restarts(void **state) {
+    const program_place *p = *state;
+    use_tile(p);
+    const char *coarse =
+        "--set geometry.parameters.spacing=10.0 --set pad.mesh_error_limit=1 --set solver.end_time='\"18 ms\"'";
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", coarse);
+    program_succeed(p, "solve", "m.h5 -o one.h5 --force -t 1");
+    program_succeed(p, "solve", "m.h5 -o two.h5 --force -t 2");
+    program_succeed(p, "solve", "m.h5 -o three.h5 --force -t 2 --end-time '14 ms'");
+    program_succeed(p, "solve", "m.h5 --restart three.h5 -t 1 --end-time '18 ms'");
+    for (int k = 0; k < 3; k++) {
+        static const char *const name[] = {"one", "two", "three"};
+        program_succeed(p, "post", "%s.h5 -o %s --force", name[k], name[k]);
+    }
+    assert_int_equal(program_shell(p, "cmp one/history.csv two/history.csv").code, 0);
+    assert_int_equal(program_shell(p, "cmp one/history.csv three/history.csv").code, 0);
+    assert_true(program_shell(p, "test $(wc -l < one/history.csv) -gt 200").code == 0);
+}
+
+static bool touches(const program_place *p, const char *words) {
+    program_result r = program_succeed(p, "pre", "%s", words);
+    return strstr(r.out, "may touch each other") != NULL;
+}
+
+static void only_pads_that_can_touch_themselves_have_the_contact(void **state) {
+    const program_place *p = *state;
+    use_tile(p);
+    const char *examples = "'%s/examples/%s/case.cfg' -o m.h5 --force --set pad.mesh_error_limit=1 %s";
+    static const struct {
+        const char *name, *overrides;
+        bool touches;
+    } cases[] = {
+        {"eva50-v4.5", "--set geometry.parameters.fine_spacing=20.0", false},
+        {"eva50-v4.5", "--set geometry.parameters.fine_spacing=20.0 --set pad.self_contact='\"on\"'", true},
+        {"layers", "", false},
+        {"cored", "--set geometry.parameters.spacing=10.0", true},
+        {"tile-feet", "", true},
+        {"tile-feet", "--set pad.self_contact='\"off\"'", false}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char words[1024];
+        snprintf(words, sizeof words, examples, getenv("SF_SOURCE_DIR"), cases[k].name, cases[k].overrides);
+        if (touches(p, words) != cases[k].touches)
+            fail_msg("%s %s", cases[k].name, cases[k].overrides);
+    }
+    program_result r = program_run(p, "pre", "case.cfg -o m.h5 --force --set pad.self_friction=-1.0");
+    assert_int_equal(r.code, 2);
+    assert_non_null(strstr(r.err, "pad.self_friction"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_cut_block_is_as_stiff_as_the_whole_one),
+        cmocka_unit_test(a_tile_on_feet_comes_down_to_the_floor),
+        cmocka_unit_test(the_bits_do_not_depend_on_threads_or_restarts),
+        cmocka_unit_test(only_pads_that_can_touch_themselves_have_the_contact),
+    };
+    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+}
