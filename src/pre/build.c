@@ -108,10 +108,11 @@ static void take_domains(sf_domains *d, sf_dual *dual, int64_t first, int64_t n,
     append_list(&m->edge_ptr, &m->edge_node, &m->edge_nnz, &dual->edge_ptr, &dual->edge_node, first, n, err);
 }
 
-/* The surface that the missile may touch is the pad's upper side, and only that. */
+/* A part of the surface that the missile may touch faces it; what looks away, as the far side of a tube,
+ * waits. */
 static sf_status check_facing(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual,
                               const sf_node_set *contact, sf_error *err) {
-    static const double LEAST = 1e-3, MOST_AWAY = 1e-2; /* of the area */
+    static const double LEAST = 1e-3; /* of the area */
     sf_surface_sides sides;
     if (sf_surface_find_sides(mesh, dual, contact, c->missile_card.direction, &sides, err) != SF_OK)
         return err->status;
@@ -122,12 +123,6 @@ static sf_status check_facing(const sf_case *c, const sf_mesh *mesh, const sf_du
             "%g, %g): are pad.contact and pad.fixed exchanged, or is the pad upside down?",
             contact->name, c->missile_card.direction[0], c->missile_card.direction[1],
             c->missile_card.direction[2]);
-    if (sides.away > MOST_AWAY * sides.area)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "pad.contact: %.3g %% of the surface group \"%s\" face away from the missile: it may hold "
-            "the pad's upper side only",
-            100 * sides.away / sides.area, contact->name);
     return SF_OK;
 }
 

@@ -332,8 +332,7 @@ sf_status sf_surface_find_sides(const sf_mesh *mesh, const sf_dual *dual, const 
         face_area(mesh, &dual->face[f], a);
         double along = sf_dot3(a, direction);
         sides->area += length(a);
-        sides->facing -= along;
-        sides->away += along > 0.5 * length(a) ? length(a) : 0;
+        sides->facing += fmax(0, -along);
     }
     free(member);
     return err->status;

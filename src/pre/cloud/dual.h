@@ -78,8 +78,7 @@ sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_nod
 
 typedef struct sf_surface_sides {
     double area;   /* m2 */
-    double facing; /* m2, projected against the direction; negative: the group faces along it */
-    double away;   /* m2, of the faces whose outward normal is within 60 degrees of the direction */
+    double facing; /* m2, of its faces that look against the direction, projected on it */
 } sf_surface_sides;
 
 /* Finds the orientation of the group against a body that comes along `direction` (unit vector). */
