@@ -141,6 +141,43 @@ static void the_bits_do_not_depend_on_threads_or_restarts(void **state) {
     assert_true(program_shell(p, "test $(wc -l < one/history.csv) -gt 200").code == 0);
 }
 
+/* A cover that lies loose on a soft foam: pressed, it acts as a glued one; a cover that slides along the
+ * undeformed interface does not. */
+static void a_loose_cover_acts_as_a_glued_one_while_it_is_pressed(void **state) {
+    const program_place *p = *state;
+    program_shell(
+        p, "cp \"$SF_SOURCE_DIR\"/examples/layers/*.c* . && cp \"$SF_SOURCE_DIR/geo/layers.geo\" geo/ && "
+           "sed -i 's#\\.\\./\\.\\./geo#geo#; s#\\.\\./materials#materials#' case.cfg");
+    const char *coarse =
+        "--set geometry.parameters.fine_spacing=10.0 --set geometry.parameters.outer_spacing=20.0 --set "
+        "pad.mesh_error_limit=1 ";
+    char words[512];
+    figures glued = run(p, coarse);
+    double tied = program_file_number(p, "out/summary.json", "a_max_g");
+    snprintf(words, sizeof words, "%s --set pad.loose_interfaces='[\"upper/cover\"]'", coarse);
+    figures loose = run(p, words);
+    double open = program_file_number(p, "out/summary.json", "a_max_g");
+    print_message("a_max %.2f g glued, %.2f g loose; momentum %.1e, angular %.1e, penetration %.2g mm\n",
+                  tied, open, loose.momentum, loose.angular, loose.penetration);
+    assert_relative(open, tied, 0.02);
+    assert_true(glued.energy_error < 1e-3 && loose.energy_error < 1e-3);
+    assert_true(loose.momentum < 1e-12 && loose.angular < 1e-9);
+    static const struct {
+        const char *words, *sentence;
+    } bad[] = {
+        {"--set pad.loose_interfaces='[\"upper/nothing\"]'", "does not name two layers"},
+        {"--set pad.loose_interfaces='[\"upper/cover\"]' --set pad.sliding_interfaces='[\"cover/upper\"]'",
+         "are the same interface"},
+        {"--set pad.loose_interfaces='[\"lower/cover\"]'", "do not touch"},
+        {"--set pad.loose_interfaces='[\"upper/cover\"]' --set pad.self_contact='\"off\"'",
+         "need pad.self_contact"}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        program_result r = program_run(p, "pre", "case.cfg -o bad.h5 %s %s", coarse, bad[k].words);
+        if (r.code == 0 || !strstr(r.err, bad[k].sentence))
+            fail_msg("%s: %s", bad[k].words, r.err);
+    }
+}
+
 static bool touches(const program_place *p, const char *words) {
     program_result r = program_succeed(p, "pre", "%s", words);
     return strstr(r.out, "may touch each other") != NULL;
@@ -166,7 +203,9 @@ static void only_pads_that_can_touch_themselves_have_the_contact(void **state) {
         if (touches(p, words) != cases[k].touches)
             fail_msg("%s %s", cases[k].name, cases[k].overrides);
     }
-    program_result r = program_run(p, "pre", "case.cfg -o m.h5 --force --set pad.self_friction=-1.0");
+    program_result r = program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.self_contact='\"off\"'");
+    assert_non_null(strstr(r.err, "it passes through where they meet"));
+    r = program_run(p, "pre", "case.cfg -o m.h5 --force --set pad.self_friction=-1.0");
     assert_int_equal(r.code, 2);
     assert_non_null(strstr(r.err, "pad.self_friction"));
 }
@@ -176,6 +215,7 @@ int main(void) {
         cmocka_unit_test(a_cut_block_is_as_stiff_as_the_whole_one),
         cmocka_unit_test(a_tile_on_feet_comes_down_to_the_floor),
         cmocka_unit_test(the_bits_do_not_depend_on_threads_or_restarts),
+        cmocka_unit_test(a_loose_cover_acts_as_a_glued_one_while_it_is_pressed),
         cmocka_unit_test(only_pads_that_can_touch_themselves_have_the_contact),
     };
     return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);

@@ -77,6 +77,9 @@ typedef struct sf_case {
     int interface_count; /* pairs of layers that slide on each other; all others are tied */
     char interface_name[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE]; /* "NAME/NAME" */
     int interface_layer[SF_CASE_MAX_GROUPS][2];                 /* their places in `layer` */
+    int loose_count;                                            /* likewise, of layers that only touch */
+    char loose_name[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    int loose_layer[SF_CASE_MAX_GROUPS][2];
     bool position_given;
     double missile_position[2];   /* m, x and y of the impact point, if given */
     int freedom;                  /* SF_MISSILE_GUIDED or SF_MISSILE_FREE */

@@ -226,33 +226,65 @@ static int find_layer(const sf_case *c, const char *name, size_t length) {
     return -1;
 }
 
-/* Two different layers, "NAME/NAME". */
-static sf_status find_interface(const sf_case_reader *reader, const char *name, int layer[2], sf_error *err) {
+/* The interfaces of a key, "NAME/NAME" each. */
+typedef struct interface_list {
+    const char *key;
+    int count;
+    const char (*name)[SF_CASE_NAME_SIZE];
+    int (*layer)[2];
+} interface_list;
+
+/* Two different layers. */
+static sf_status find_interface(const sf_case_reader *reader, const interface_list *list, int k,
+                                sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    const char *slash = strchr(name, '/');
+    int *layer = list->layer[k];
+    const char *name = list->name[k], *slash = strchr(name, '/');
     layer[0] = slash ? find_layer(reader->out, name, (size_t)(slash - name)) : -1;
     layer[1] = slash ? find_layer(reader->out, slash + 1, strlen(slash + 1)) : -1;
     if (layer[0] >= 0 && layer[1] >= 0 && layer[0] != layer[1])
         return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: pad.sliding_interfaces: \"%s\" does not name two layers of materials, for example "
-                   "\"cover/core\"",
-                   sf_case_where_is(reader, "pad.sliding_interfaces", where), name);
+                   "%s: %s: \"%s\" does not name two layers of materials, for example \"cover/core\"",
+                   sf_case_where_is(reader, list->key, where), list->key, name);
 }
 
-/* Interface k, in either order of its layers, is not among those before it. */
-static sf_status check_interface_once(const sf_case_reader *reader, int k, sf_error *err) {
+/* Interface k of a list is, in either order of its layers, not among the first `count` of another. */
+static sf_status check_interface_once(const sf_case_reader *reader, const interface_list *list, int k,
+                                      const interface_list *others, int count, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
-    const sf_case *c = reader->out;
-    const int *own = c->interface_layer[k];
-    for (int j = 0; j < k; j++) {
-        const int *other = c->interface_layer[j];
+    const int *own = list->layer[k];
+    for (int j = 0; j < count; j++) {
+        const int *other = others->layer[j];
         if ((own[0] == other[0] && own[1] == other[1]) || (own[0] == other[1] && own[1] == other[0]))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: pad.sliding_interfaces: \"%s\" and \"%s\" are the same interface",
-                           sf_case_where_is(reader, "pad.sliding_interfaces", where), c->interface_name[j],
-                           c->interface_name[k]);
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: \"%s\" and \"%s\" are the same interface",
+                           sf_case_where_is(reader, list->key, where), list->key, others->name[j],
+                           list->name[k]);
     }
+    return SF_OK;
+}
+
+static sf_status check_interfaces(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    sf_case *c = reader->out;
+    const interface_list list[] = {{"pad.sliding_interfaces", c->interface_count,
+                                    (const char(*)[SF_CASE_NAME_SIZE])c->interface_name, c->interface_layer},
+                                   {"pad.loose_interfaces", c->loose_count,
+                                    (const char(*)[SF_CASE_NAME_SIZE])c->loose_name, c->loose_layer}};
+    for (int i = 0; i < 2; i++) {
+        if (!reader->layers && list[i].count > 0)
+            return SF_FAIL(err, SF_ERR_INPUT,
+                           "%s: %s: the pad has one material; layers are the groups of materials",
+                           sf_case_where_is(reader, list[i].key, where), list[i].key);
+        for (int k = 0; k < list[i].count; k++)
+            if (find_interface(reader, &list[i], k, err) != SF_OK ||
+                check_interface_once(reader, &list[i], k, &list[i], k, err) != SF_OK ||
+                check_interface_once(reader, &list[i], k, &list[0], i ? list[0].count : 0, err) != SF_OK)
+                return err->status;
+    }
+    if (c->loose_count > 0 && c->self_contact == SF_SELF_CONTACT_OFF)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.loose_interfaces need pad.self_contact",
+                       sf_case_where_is(reader, "pad.loose_interfaces", where));
     return SF_OK;
 }
 
@@ -260,21 +292,13 @@ static sf_status check_interface_once(const sf_case_reader *reader, int k, sf_er
 static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     sf_case *c = reader->out;
-    if (!reader->layers && c->interface_count > 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.sliding_interfaces: the pad has one material; layers are the groups of "
-                       "materials",
-                       sf_case_where_is(reader, "pad.sliding_interfaces", where));
+    SF_TRY(check_interfaces(reader, err));
     if (reader->layers && sf_case_is_given(reader, "pad", "group"))
         return SF_FAIL(
             err, SF_ERR_INPUT,
             "%s: pad.group: the groups of materials name the pad's volumes; only one of the two may "
             "be given",
             sf_case_where_is(reader, "pad.group", where));
-    for (int k = 0; k < c->interface_count; k++)
-        if (find_interface(reader, c->interface_name[k], c->interface_layer[k], err) != SF_OK ||
-            check_interface_once(reader, k, err) != SF_OK)
-            return err->status;
     for (int k = 0; k < c->layer_count; k++) {
         size_t used = k ? strlen(c->pad_group) : 0;
         snprintf(c->pad_group + used, sizeof c->pad_group - used, "%s%s", k ? "\", \"" : "",

@@ -621,8 +621,8 @@ static sf_status check_first_step(const sf_model *m, double first, int64_t criti
 }
 
 /* Faces of a slit that touch each other do not pass through each other. */
-static sf_status find_skin(const sf_case *c, sf_model *m, sf_error *err) {
-    SF_TRY(sf_skin_find(c, m, err));
+static sf_status find_skin(const sf_case *c, sf_model *m, sf_build_report *report, sf_error *err) {
+    SF_TRY(sf_skin_find(c, m, report->unheld, err));
     if (m->skin_count > 0)
         m->slit_fraction = 0;
     else
@@ -639,6 +639,12 @@ static void tell_slits(const sf_model *m, const sf_build_report *r, const sf_sin
             "%.4g) mm do not act on each other; its faces pass through each other where they meet",
             1e3 * r->hidden_distance, 1e3 * r->hidden_position[0], 1e3 * r->hidden_position[1],
             1e3 * r->hidden_position[2]);
+    if (!isnan(r->unheld[0]))
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "pad.self_contact is \"off\", and the face at (%.4g, %.4g, %.4g) mm has another face of the pad, "
+            "or the anvil, before it: it passes through where they meet",
+            1e3 * r->unheld[0], 1e3 * r->unheld[1], 1e3 * r->unheld[2]);
 }
 
 /* After the checks that say more of the missile: a sheet on its edge, for one. */
@@ -656,8 +662,9 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     int64_t critical = 0;
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
-        sf_hold_find(m, &report->hold, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
-        find_skin(c, m, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
+        sf_hold_find(m, &report->hold, err) == SF_OK && (sf_layers_loosen(c, m), true) &&
+        place(c, report, surface, m, err) == SF_OK && find_skin(c, m, report, err) == SF_OK &&
+        take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
             sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&

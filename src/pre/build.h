@@ -24,6 +24,7 @@ typedef struct sf_build_report {
     double worst_position[3]; /* m */
     int64_t hidden_count;     /* as in sf_domains */
     double hidden_distance, hidden_position[3];
+    double unheld[3];  /* m, a face that will pass through another one or the anvil; NaN: none */
     double first_step; /* s, before any safety factor */
     double slowdown;   /* -, first step over the mean one of a compression (estimate_slowdown) */
     bool contact_held; /* every contact point is held along z: nothing to drop on */

@@ -212,28 +212,37 @@ static bool meets_face(const sf_model *m, const faces *f, int64_t i, double leng
     return false;
 }
 
-static sf_status can_touch(const sf_model *m, const faces *f, bool *touches, sf_error *err) {
+/* *first: a face that can touch another one, or the anvil; -1: none can. */
+static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first, sf_error *err) {
     static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
     int32_t *near = sf_alloc(err, 512, sizeof *near, "skin of the pad");
     double anvil = f->high[2] - m->anvil.depth;
-    *touches = false;
-    for (int64_t i = 0; near && i < f->count && !*touches; i++) {
+    *first = -1;
+    for (int64_t i = 0; near && i < f->count && *first < 0; i++) {
         const shape *s = &f->shape[i];
         double length = length_in_box(f, i, m->thickness), height = s->centroid[2] - anvil;
         bool over = m->anvil.depth > 0 && s->normal[2] < DOWN && height > LEAST * m->thickness;
-        *touches = (over && -height / s->normal[2] < m->thickness) ||
-                   (length > LEAST * m->thickness && meets_face(m, f, i, length, near));
+        if ((over && -height / s->normal[2] < m->thickness) ||
+            (length > LEAST * m->thickness && meets_face(m, f, i, length, near)))
+            *first = i;
     }
     free(near);
     return err->status;
 }
 
-sf_status sf_skin_find(const sf_case *c, sf_model *m, sf_error *err) {
+sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error *err) {
     faces f;
-    bool touches = c->self_contact == SF_SELF_CONTACT_ON;
-    if (c->self_contact == SF_SELF_CONTACT_OFF || faces_find(m, &f, err) != SF_OK)
+    int64_t first = -1;
+    unheld[0] = NAN;
+    if (faces_find(m, &f, err) != SF_OK)
         return err->status;
-    if (f.count > 0 && (touches || can_touch(m, &f, &touches, err) == SF_OK) && touches) {
+    if (f.count > 0 && c->loose_count > 0)
+        first = 0;
+    else if (f.count > 0)
+        find_touching(m, &f, &first, err);
+    if (first >= 0 && c->self_contact == SF_SELF_CONTACT_OFF)
+        memcpy(unheld, f.shape[first].centroid, sizeof f.shape[first].centroid);
+    else if (err->status == SF_OK && f.count > 0 && (first >= 0 || c->self_contact == SF_SELF_CONTACT_ON)) {
         m->skin_count = f.count;
         m->skin_triangle = f.node;
         m->skin_friction = c->self_friction;

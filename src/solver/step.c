@@ -90,10 +90,26 @@ static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed)
     return fastest;
 }
 
+/* True if foam has come through the plane of the anvil, which holds the base alone. */
+static bool is_below_anvil(const sf_model *m, const sf_state *s) {
+    static const double DEPTH = 0.1; /* of the spacing */
+    double top = -INFINITY;
+    for (int64_t i = 0; i < m->node_count; i++)
+        top = fmax(top, m->position[3 * i + 2]);
+    for (int64_t i = 0; m->anvil.depth > 0 && i < m->node_count; i++)
+        if (m->position[3 * i + 2] + s->d[3 * i + 2] < top - m->anvil.depth - DEPTH * m->spacing[i])
+            return true;
+    return false;
+}
+
 /* Returns the likely cause of contact or stabilisation that feeds the pad. */
-static const char *cause_of_feeding(const sf_state *s) {
-    static const double CRUSHED = 0.95;
-    return s->smallest_jacobian <= 0
+static const char *cause_of_feeding(const sf_model *m, const sf_state *s) {
+    static const double CRUSHED = 0.95, FOLDS = 0.3; /* strain; kernel.stabilisation */
+    return m->skin_count == 0 && is_below_anvil(m, s)
+               ? "foam has passed through the anvil; pad.self_contact = \"on\" keeps it above"
+           : m->skin_count > 0 && m->run.stabilisation < FOLDS && s->ledger.stabilisation < s->ledger.contact
+               ? "foam that folds needs a larger kernel.stabilisation, such as 0.3"
+           : s->smallest_jacobian <= 0
                ? "the foam has turned inside out, as where it folds onto itself or passes "
                  "through the anvil"
            : s->largest_compression > CRUSHED
@@ -120,13 +136,15 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
             s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
             100 * m->run.energy_limit,
             sf_missile_is_driven(m) ? "largest work of the motion" : "impact energy", (long long)node, x[0],
-            x[1], x[2], speed, cause_of_feeding(s));
+            x[1], x[2], speed, cause_of_feeding(m, s));
     return SF_FAIL(err, SF_ERR_NUMERIC,
                    "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step "
-                   "%.3g s); fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: the run is unstable or "
-                   "the limit too strict; try a smaller solver.step_safety",
+                   "%.3g s); fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: %s",
                    s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt,
-                   (long long)node, x[0], x[1], x[2], speed);
+                   (long long)node, x[0], x[1], x[2], speed,
+                   m->skin_count > 0 || is_below_anvil(m, s)
+                       ? cause_of_feeding(m, s)
+                       : "the run is unstable or the limit too strict; try a smaller solver.step_safety");
 }
 
 /* Angular momentum and moment of the reaction of node i about the origin. */

@@ -74,20 +74,23 @@ typedef struct pair_table {
 
 static void list_pairs(const sf_case *c, int count, pair_table *pairs) {
     *pairs = (pair_table){.count = count};
-    for (int k = 0; k < c->interface_count; k++) {
-        const int *layer = c->interface_layer[k];
+    for (int k = 0; k < c->interface_count + c->loose_count; k++) { /* what is loose slides, too */
+        const int *layer =
+            k < c->interface_count ? c->interface_layer[k] : c->loose_layer[k - c->interface_count];
         pairs->slides[layer[0]][layer[1]] = pairs->slides[layer[1]][layer[0]] = 1;
     }
 }
 
 static sf_status check_pairs(const sf_case *c, const pair_table *pairs, sf_error *err) {
-    for (int k = 0; k < c->interface_count; k++) {
-        const int *layer = c->interface_layer[k];
+    for (int k = 0; k < c->interface_count + c->loose_count; k++) {
+        const int *layer =
+            k < c->interface_count ? c->interface_layer[k] : c->loose_layer[k - c->interface_count];
         if (!pairs->touch[layer[0]][layer[1]])
             return SF_FAIL(err, SF_ERR_INPUT,
-                           "pad.sliding_interfaces: the layers \"%s\" and \"%s\" do not touch: they share no "
+                           "pad.%s_interfaces: the layers \"%s\" and \"%s\" do not touch: they share no "
                            "face of the mesh",
-                           c->layer[layer[0]].name, c->layer[layer[1]].name);
+                           k < c->interface_count ? "sliding" : "loose", c->layer[layer[0]].name,
+                           c->layer[layer[1]].name);
     }
     return SF_OK;
 }
@@ -126,8 +129,8 @@ static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_
         const double *x = &mesh->position[3 * (int64_t)face->node[3]];
         return SF_FAIL(
             err, SF_ERR_INPUT,
-            "pad.sliding_interfaces: the interface of \"%s\" and \"%s\" at (%.4g, %.4g, %.4g) mm is "
-            "not normal to x, y or z: an interface that slides must be",
+            "pad.sliding_interfaces, pad.loose_interfaces: the interface of \"%s\" and \"%s\" at (%.4g, %.4g, "
+            "%.4g) mm is not normal to x, y or z: an interface that slides must be",
             c->layer[low].name, c->layer[high].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     }
     pairs->touch[a][b] = pairs->touch[b][a] = 1;
@@ -359,6 +362,23 @@ static uint8_t join(const sf_layer_tie *t, uint8_t held, int32_t *const parent[3
         parent[c][b] = a;
     }
     return mask;
+}
+
+void sf_layers_loosen(const sf_case *c, sf_model *m) {
+    int64_t kept = 0;
+    for (int64_t k = 0; k < m->tie_count; k++) {
+        int a = m->node_material[m->tie_node[k]], b = m->node_material[m->tie_other[k]];
+        bool loose = false;
+        for (int j = 0; j < c->loose_count; j++)
+            loose = loose || (c->loose_layer[j][0] == a && c->loose_layer[j][1] == b) ||
+                    (c->loose_layer[j][0] == b && c->loose_layer[j][1] == a);
+        if (loose)
+            continue;
+        m->tie_node[kept] = m->tie_node[k];
+        m->tie_other[kept] = m->tie_other[k];
+        m->tie_mask[kept++] = m->tie_mask[k];
+    }
+    m->tie_count = kept;
 }
 
 sf_status sf_layers_hold(const sf_layers *l, uint8_t *mask, uint8_t *base, sf_model *m, sf_error *err) {

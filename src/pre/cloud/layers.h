@@ -51,5 +51,8 @@ sf_status sf_layers_split(sf_mesh *mesh, const sf_dual *dual, const sf_layers *l
  * fixed_base), and writes to the model the ties that follow neither from that nor from each other. */
 sf_status sf_layers_hold(const sf_layers *layers, uint8_t *mask, uint8_t *base, sf_model *model,
                          sf_error *err);
+/* Removes the ties of loose interfaces, after they have told what holds the layers: from there on the layers
+ * only touch (the model's skin). */
+void sf_layers_loosen(const sf_case *c, sf_model *model);
 
 #endif

@@ -9,7 +9,7 @@
 #include "base/mat3.h"
 #include "base/threads.h"
 
-enum { CANDIDATES = SF_SELF_CANDIDATES, NOTHING = -1, ANVIL = -2, MAX_SWEEPS = 500 };
+enum { CANDIDATES = SF_SELF_CANDIDATES, NOTHING = -1, ANVIL = -2, MAX_SWEEPS = 60 };
 static const double NEAR = 1.2;     /* spacings: reach of the candidates */
 static const double ENTRY = 0.01;   /* of the spacing: no deeper does a node begin to touch */
 static const double DEEPEST = 0.5;  /* of the spacing: no deeper does it go on */
@@ -17,7 +17,9 @@ static const double RETURN = 0.1;   /* m s-1: no faster is a depth taken back */
 static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
 static const double FACING = -0.7;  /* largest cosine, at rest, of neighbours that look at each other */
 static const double EDGE = 0.05;    /* of a face, in its barycentric coordinates: it reaches so far beyond */
-static const double SWEEP_TOLERANCE = 1e-5; /* largest change of a force, relative to the largest force */
+static const double SWEEP_TOLERANCE = 1e-5,
+                    UNSETTLED = 1e-3; /* largest change of a force, relative to the
+                                           largest force: the sweeps end; it is told */
 
 /* ---- positions ---- */
 
@@ -35,7 +37,8 @@ static void move_nodes(const sf_model *m, const sf_skin *skin, sf_state *s, doub
             for (int r = 0; r < 3; r++) {
                 now[r] += phi * s->d[3 * i + r];
                 last[r] += phi * s->v[3 * i + r];
-                change[r] += inverse * (s->force[3 * i + r] - s->reaction[3 * i + r]);
+                change[r] += inverse * (s->force[3 * i + r] - s->reaction[3 * i + r]) +
+                             phi * dt_v * s->self_push[3 * i + r];
             }
         }
         for (int r = 0; r < 3; r++) {
@@ -228,6 +231,16 @@ static void weigh_point(const sf_skin *skin, const sf_state *s, int64_t f, const
     }
 }
 
+/* Weights that are rounding cost as much as others: they become zero, and the sum stays one. */
+static void drop_traces(double weight[3]) {
+    static const double TRACE = 1e-9;
+    int largest = weight[1] > weight[0] ? 1 : 0;
+    largest = weight[2] > weight[largest] ? 2 : largest;
+    for (int k = 0; k < 3; k++)
+        weight[k] = k != largest && fabs(weight[k]) < TRACE ? 0 : weight[k];
+    weight[largest] = 1 - weight[(largest + 1) % 3] - weight[(largest + 2) % 3];
+}
+
 /* The pair of node and facet, if the node lies before or behind the facet and its own surface looks against
  * it. The normal is the mean of both surfaces: smooth over the facets, and the same seen from either side,
  * where facets that are tilted against each other would interlock. The gap is along it, so that the forces on
@@ -261,6 +274,7 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
     for (int r = 0; r < 3; r++)
         point[r] = x[r] - out->gap * out->normal[r];
     weigh_point(skin, s, f, point, own, out->weight);
+    drop_traces(out->weight);
     return true;
 }
 
@@ -272,15 +286,23 @@ static void relative(const sf_skin *skin, const touch *q, const double *field, d
             out[r] -= q->weight[k] * field[3 * (int64_t)skin->facet[3 * q->facet + k] + r];
 }
 
+/* True if facet f is the last partner or meets it: the same contact goes on. */
+static bool goes_on(const sf_skin *skin, int64_t last, int64_t f) {
+    for (int a = 0; a < 3 && last >= 0; a++)
+        for (int b = 0; b < 3; b++)
+            if (skin->facet[3 * last + a] == skin->facet[3 * f + b])
+                return true;
+    return false;
+}
+
 /* The partner that node p touches at the end of the step: of those that it may touch, the nearest. */
 static bool find_partner(const sf_model *m, const sf_skin *skin, const sf_state *s, int64_t p, touch *out) {
     const int32_t *own = &s->self_candidate[CANDIDATES * p];
-    double spacing = m->spacing[skin->node[p]], best = INFINITY, ahead[3];
-    bool touched = s->self_partner[p] != NOTHING;
-    double limit = -(touched ? DEEPEST : ENTRY) * spacing, back = -RETURN * s->dt;
+    double spacing = m->spacing[skin->node[p]], best = INFINITY, back = -RETURN * s->dt, ahead[3];
     for (int k = 0; k < CANDIDATES && own[k] != NOTHING; k++) {
         touch q;
-        if (!meet_facet(skin, s, p, own[k], &q) || q.gap < limit || fabs(q.gap) >= best)
+        double deepest = goes_on(skin, (int64_t)s->self_partner[p], own[k]) ? DEEPEST : ENTRY;
+        if (!meet_facet(skin, s, p, own[k], &q) || q.gap < -deepest * spacing || fabs(q.gap) >= best)
             continue;
         relative(skin, &q, s->self_step, ahead);
         if (fmax(q.gap, back) + sf_dot3(ahead, q.normal) >= 0)
@@ -373,8 +395,9 @@ static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, co
 }
 
 static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w) {
+    double change = 0, largest = 0;
     for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
-        double change = 0, largest = 0;
+        change = largest = 0;
         for (int64_t a = 0; a < w->count; a++) {
             int64_t k = sweep % 2 ? w->count - 1 - a : a;
             change = fmax(change, relax_pair(m, skin, s, w, k));
@@ -383,7 +406,7 @@ static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const sol
         if (change <= SWEEP_TOLERANCE * largest)
             return;
     }
-    s->contact_unsettled++;
+    s->contact_unsettled += change > UNSETTLED * largest;
 }
 
 /* Half of the work of the force on a pair in the last step: each step's force works over the steps before and
@@ -444,11 +467,27 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
     }
 }
 
+/* Accelerations by the last step's forces of missile and anvil into self_push: a cover below the missile
+ * would else meet the foam without the missile's load. */
+static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf_state *s) {
+    for (int64_t k = 0; k < s->contact_near_count; k++) {
+        int64_t c = s->contact_near[k];
+        const double *q = &s->contact_force[3 * c];
+        for (int64_t e = rows->ptr[c]; e < rows->ptr[c + 1] && sf_dot3(q, q) > 0; e++) {
+            int64_t i = rows->node[e];
+            for (int r = 0; r < 3; r++)
+                s->self_push[3 * i + r] += rows->value[e] / m->mass[i] * q[r];
+        }
+    }
+}
+
 sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
     const sf_skin *skin = &op->skin;
     if (skin->count == 0)
         return SF_OK;
     double dt_v = 0.5 * (s->dt_old + s->dt);
+    size_t bytes = 3 * (size_t)m->node_count * sizeof *s->self_push;
+    push_from_outside(m, &op->rows, s);
     if (!has_room(skin, s)) {
         for (int64_t p = 0; p < skin->count; p++)
             s->self_near[p] = (int32_t)p;
@@ -457,6 +496,7 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
     } else {
         move_nodes(m, skin, s, dt_v, s->self_near_count, s->self_near);
     }
+    memset(s->self_push, 0, bytes);
     find_normals(skin, s);
     unsigned long most = (unsigned long)s->self_close_count;
     solve w = {.shift = s->dt * dt_v,
@@ -469,7 +509,7 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
         for (int64_t a = 0; a < w.count; a++)
             scatter(m, skin, &w.pair[a], &s->self_force[3 * w.pair[a].node], true, s->self_push);
         relax(m, skin, s, &w);
-        memset(s->self_push, 0, 3 * (size_t)m->node_count * sizeof *s->self_push);
+        memset(s->self_push, 0, bytes);
     }
     for (int64_t a = 0; a < w.count; a++) {
         const double *q = &s->self_force[3 * w.pair[a].node];
