@@ -64,6 +64,7 @@ typedef struct sf_case {
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
     int self_contact;                      /* SF_SELF_CONTACT_* */
+    bool stabilised;                       /* kernel.stabilisation is given */
     double self_friction;                  /* -, Coulomb coefficient of the pad against itself */
     double mesh_error_limit;               /* -, expected error of a_max above which the case is refused */
     int kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */

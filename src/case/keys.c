@@ -115,7 +115,7 @@ static const sf_key keys[] = {
     {"kernel", "condition_limit", SF_KEY_NUMBER, "1e4", AT(condition_limit),
      "condition number of the moment matrix above which the support is enlarged", .low = 10.0, .high = 1e12},
     {"kernel", "stabilisation", SF_KEY_NUMBER, "0.1", AT(run.stabilisation),
-     "coefficient of the stabilisation stiffness", .high = 10.0},
+     "coefficient of the stabilisation stiffness; of a pad that touches itself (`pad.self_contact`) 0.3 unless it is given", .high = 10.0},
     /* solver */
     {"solver", "end_time", SF_KEY_QUANTITY, NULL, AT(run.end_time),
      "latest end of the run, at least 3 step_limit", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},

@@ -363,6 +363,7 @@ static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
 sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
+    reader->out->stabilised = sf_case_is_given(reader, "kernel", "stabilisation");
     if (!reader->layers && sf_case_check_card(reader, err) != SF_OK)
         return err->status;
     if (check_layers(reader, err) != SF_OK)

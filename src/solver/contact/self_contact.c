@@ -17,9 +17,9 @@ static const double RETURN = 0.1;   /* m s-1: no faster is a depth taken back */
 static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
 static const double FACING = -0.7;  /* largest cosine, at rest, of neighbours that look at each other */
 static const double EDGE = 0.05;    /* of a face, in its barycentric coordinates: it reaches so far beyond */
-static const double SWEEP_TOLERANCE = 1e-5,
-                    UNSETTLED = 1e-3; /* largest change of a force, relative to the
-                                           largest force: the sweeps end; it is told */
+/* Largest change of a force, relative to the largest force, at which the sweeps end, and beyond which it is
+ * told that they did not settle. */
+static const double SWEEP_TOLERANCE = 1e-5, UNSETTLED = 1e-3;
 
 /* ---- positions ---- */
 
@@ -320,7 +320,7 @@ static bool find_partner(const sf_model *m, const sf_skin *skin, const sf_state 
 
 /* ---- forces ---- */
 
-/* Adds `scale` times the row of the pair over the coefficients, times `q`, over the masses or not. */
+/* Adds the row of the pair over the coefficients, times `q`, to `out`; `accelerate`: over the masses. */
 static void scatter(const sf_model *m, const sf_skin *skin, const touch *pair, const double q[3],
                     bool accelerate, double *out) {
     for (int k = -1; k < (pair->facet >= 0 ? 3 : 0); k++) {
@@ -369,7 +369,7 @@ typedef struct solve {
 /* One Gauss-Seidel update of the force on a pair's node; returns the size of its change. */
 static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w, int64_t a) {
     const touch *pair = &w->pair[a];
-    double *q = &s->self_force[3 * pair->node], moved[3], new[3], change[3], largest = 0;
+    double *q = &s->self_force[3 * pair->node], moved[3], next[3], change[3], largest = 0;
     double mobility = w->shift * w->mobility[a], friction = m->skin_friction;
     gather(skin, pair, s->self_push, moved);
     for (int r = 0; r < 3; r++)
@@ -377,16 +377,16 @@ static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, co
     double across = sf_dot3(moved, pair->normal), old = sf_dot3(q, pair->normal),
            p = fmax(0, old - (pair->gap + across) / mobility), size = 0;
     for (int r = 0; r < 3; r++) {
-        new[r] = friction > 0 && p > 0
-                     ? q[r] - old * pair->normal[r] - (moved[r] - across * pair->normal[r]) / mobility
-                     : 0;
-        size += new[r] * new[r];
+        next[r] = friction > 0 && p > 0
+                      ? q[r] - old * pair->normal[r] - (moved[r] - across * pair->normal[r]) / mobility
+                      : 0;
+        size += next[r] * next[r];
     }
     double bound = size > 0 ? fmin(1, friction * p / sqrt(size)) : 0;
     for (int r = 0; r < 3; r++) {
-        new[r] = p * pair->normal[r] + bound *new[r];
-        change[r] = new[r] - q[r];
-        q[r] = new[r];
+        next[r] = p * pair->normal[r] + bound * next[r];
+        change[r] = next[r] - q[r];
+        q[r] = next[r];
         largest = fmax(largest, fabs(change[r]));
     }
     if (largest > 0)
@@ -470,8 +470,8 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
 /* Accelerations by the last step's forces of missile and anvil into self_push: a cover below the missile
  * would else meet the foam without the missile's load. */
 static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf_state *s) {
-    for (int64_t k = 0; k < s->contact_near_count; k++) {
-        int64_t c = s->contact_near[k];
+    for (int64_t c = 0; c < sf_model_points(m);
+         c++) { /* the list of near points is not there after a restart */
         const double *q = &s->contact_force[3 * c];
         for (int64_t e = rows->ptr[c]; e < rows->ptr[c + 1] && sf_dot3(q, q) > 0; e++) {
             int64_t i = rows->node[e];
