@@ -69,6 +69,9 @@ typedef struct sf_anvil_card {
     double friction; /* -, Coulomb coefficient against a resting pad */
 } sf_anvil_card;
 
+/* Least stabilisation of foam that folds: with less it does so from node to node. */
+#define SF_FOLD_STABILISATION 0.3
+
 typedef struct sf_run_options {
     double end_time;            /* s */
     double step_safety;         /* -, fraction of the stability limit */

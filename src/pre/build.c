@@ -509,9 +509,6 @@ static sf_status check_depth(const sf_model *m, sf_error *err) {
                    1e3 * depth, 1e3 * m->thickness);
 }
 
-/* Foam that folds does so from node to node with a weaker stabilisation. */
-static const double FOLDS = 0.3;
-
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->frame_time = sf_alloc(err, (unsigned long)c->frame_time_count, sizeof *m->frame_time, "frame times");
     if (!m->frame_time)
@@ -529,7 +526,7 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->run = c->run;
     m->run.kinematic = c->kinematic;
     if (m->skin_count > 0 && !c->stabilised)
-        m->run.stabilisation = FOLDS;
+        m->run.stabilisation = SF_FOLD_STABILISATION;
     return check_depth(m, err);
 }
 

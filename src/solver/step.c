@@ -104,10 +104,11 @@ static bool is_below_anvil(const sf_model *m, const sf_state *s) {
 
 /* Returns the likely cause of contact or stabilisation that feeds the pad. */
 static const char *cause_of_feeding(const sf_model *m, const sf_state *s) {
-    static const double CRUSHED = 0.95, FOLDS = 0.3; /* strain; kernel.stabilisation */
+    static const double CRUSHED = 0.95;
     return m->skin_count == 0 && is_below_anvil(m, s)
                ? "foam has passed through the anvil; pad.self_contact = \"on\" keeps it above"
-           : m->skin_count > 0 && m->run.stabilisation < FOLDS && s->ledger.stabilisation < s->ledger.contact
+           : m->skin_count > 0 && m->run.stabilisation < SF_FOLD_STABILISATION &&
+                   s->ledger.stabilisation < s->ledger.contact
                ? "foam that folds needs a larger kernel.stabilisation, such as 0.3"
            : s->smallest_jacobian <= 0
                ? "the foam has turned inside out, as where it folds onto itself or passes "
