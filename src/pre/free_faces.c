@@ -188,17 +188,17 @@ static double length_in_box(const faces *f, int64_t i, double most) {
     return most;
 }
 
-/* True if the ray from face i, of this length (m), meets the outside of another face. */
+/* True if the ray from face i, of this length (m), meets the outside of another face. `near` [f->count] is
+ * work space. */
 static bool meets_face(const sf_model *m, const faces *f, int64_t i, double length, int32_t *near) {
-    enum { MOST = 512 };
     const shape *s = &f->shape[i];
     double step = 2 * f->largest;
     for (double at = 0; at < length + step; at += step) {
         double place[3];
         for (int r = 0; r < 3; r++)
             place[r] = s->centroid[r] + at * s->normal[r];
-        int64_t count = sf_grid_gather(&f->grid, place, step, MOST, near);
-        for (int64_t k = 0; k < count && k < MOST; k++) {
+        int64_t count = sf_grid_gather(&f->grid, place, step, f->count, near);
+        for (int64_t k = 0; k < count; k++) {
             const int32_t *n = &f->node[3 * (int64_t)near[k]];
             if (near[k] == i || sf_dot3(f->shape[near[k]].normal, s->normal) > 0)
                 continue;
@@ -215,7 +215,7 @@ static bool meets_face(const sf_model *m, const faces *f, int64_t i, double leng
 /* *first: a face that can touch another one, or the anvil; -1: none can. */
 static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first, sf_error *err) {
     static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
-    int32_t *near = sf_alloc(err, 512, sizeof *near, "skin of the pad");
+    int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
     double anvil = f->high[2] - m->anvil.depth;
     *first = -1;
     for (int64_t i = 0; near && i < f->count && *first < 0; i++) {
