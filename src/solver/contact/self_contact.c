@@ -468,8 +468,8 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
 }
 
 /* Accelerations by the last step's forces of missile and anvil into self_push: a cover below the missile
- * would else meet the foam without the missile's load. All points are read, as the list of near points is empty
- * after a restart. */
+ * would else meet the foam without the missile's load. All points are read, as the list of near points is
+ * empty after a restart. */
 static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf_state *s) {
     for (int64_t c = 0; c < sf_model_points(m); c++) {
         const double *q = &s->contact_force[3 * c];
