@@ -48,7 +48,7 @@ ALLOWED = {
     "programs/softfall-solve": {"remove": "results and checkpoint of an earlier run, with --force"},
     "study/examples": {"list": "the folder of the examples"},
     "study/run_folder": {"open": "the folder of a drop, to ask whether a run has it locked"},
-    "gui/cache": {"remove": "makes the user's folder of caches, which is not softfall's own"},
+    "gui/activity": {"remove": "makes the user's folder of caches, which is not softfall's own"},
     "gui/gmsh/window": {"library": "the user's own geometry in the user's own window, as in gmsh, and a picture of it"},
     "study/material_file": {"remove": "a material that it has just written and that is refused"},
 }

@@ -2,16 +2,166 @@
 #include "base/program.h"
 
 #include "base/text.h"
-#include "base/threads.h"
+
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
+
+/* ---- OpenMP's environment ---- */
+
+/* The OpenMP runtime reads its variables of the environment before main and prints lines of its own about
+ * values that it does not know; some values end the program later by a signal. Therefore a program that links
+ * this file looks at them first: it keeps a known variable with a possible value, leaves one with another
+ * value out and warns, and takes away all other OMP_ and GOMP_ variables without a word, as their defaults are
+ * right for softfall (stacks are small, loops are not nested). */
+
+static const struct {
+    const char *name;
+    const char
+        *words; /* possible values, "|" between them; NULL: numbers from 1 to `most`, "," between them */
+    long most;
+    bool needed; /* an impossible value is refused, not left out */
+} known[] = {
+    {"OMP_NUM_THREADS", NULL, SF_MOST_THREADS, true},
+    {"OMP_THREAD_LIMIT", NULL, 1000000000, true},
+    {"OMP_WAIT_POLICY", "active|passive", 0, false},
+    {"OMP_PROC_BIND", "true|false|master|primary|close|spread", 0, false},
+    {"OMP_PLACES", "threads|cores|sockets", 0, false},
+    {"OMP_DYNAMIC", "true|false", 0, false},
+    {"GOMP_SPINCOUNT", NULL, 1000000000, false},
+    {"GOMP_CPU_AFFINITY", "none", 0, false}, /* OMP_PLACES and taskset do the same */
+};
+enum { KNOWN = sizeof known / sizeof *known };
+
+/* Written before main, by one thread. */
+static struct {
+    int which; /* 1 + index of the variable; 0: all is well */
+    char value[40];
+} fault;
+
+/* No memory is initialised yet: no function of a library and no sanitizer may be called after this line. */
+#ifdef __clang__
+#define FIRST __attribute__((no_sanitize("address", "thread", "undefined"), no_builtin))
+#else
+#define FIRST                                                                                                \
+    __attribute__((no_sanitize("address", "thread", "undefined"),                                            \
+                   optimize("no-tree-loop-distribute-patterns")))
+#endif
+
+/* Returns the rest of the text behind the prefix; NULL if the text begins otherwise. */
+FIRST static const char *after(const char *text, const char *prefix) {
+    for (; *prefix; text++, prefix++)
+        if (*text != *prefix)
+            return NULL;
+    return text;
+}
+
+FIRST static const char *skip_blanks(const char *text) {
+    while (*text == ' ' || *text == '\t')
+        text++;
+    return text;
+}
+
+/* One number; NULL if it is not from 1 to `most`. */
+FIRST static const char *read_number(const char *text, long most) {
+    long value = 0;
+    const char *first = text;
+    for (; *text >= '0' && *text <= '9' && value <= most; text++)
+        value = 10 * value + (*text - '0');
+    return text > first && value >= 1 && value <= most ? skip_blanks(text) : NULL;
+}
+
+FIRST static bool are_numbers(const char *text, long most) {
+    for (;;) {
+        text = read_number(skip_blanks(text), most);
+        if (!text || *text != ',')
+            return text && *text == '\0';
+        text++;
+    }
+}
+
+/* The words without regard to case. */
+FIRST static bool is_word(const char *text, const char *words) {
+    text = skip_blanks(text);
+    while (*words) {
+        const char *at = text;
+        for (; *words && *words != '|' && (*at | 0x20) == *words; at++)
+            words++;
+        if ((*words == '|' || *words == '\0') && at > text && *skip_blanks(at) == '\0')
+            return true;
+        while (*words && *words != '|')
+            words++;
+        words += *words == '|';
+    }
+    return false;
+}
+
+FIRST static void keep_fault(int which, const char *value) {
+    size_t k = 0;
+    if (fault.which > 0 && known[fault.which - 1].needed)
+        return;
+    fault.which = which + 1;
+    for (; value[k] && k + 1 < sizeof fault.value; k++)
+        fault.value[k] = value[k];
+    fault.value[k] = '\0';
+}
+
+/* True if the variable stays in the environment. */
+FIRST static bool stays(const char *entry) {
+    for (int k = 0; k < KNOWN; k++) {
+        const char *value = after(entry, known[k].name);
+        if (!value || *value++ != '=')
+            continue;
+        if (*value == '\0')
+            return false;
+        if (known[k].words ? is_word(value, known[k].words) : are_numbers(value, known[k].most))
+            return true;
+        keep_fault(k, value);
+        return false;
+    }
+#ifdef __SANITIZE_THREAD__
+    if (after(entry, "OMP_TOOL_LIBRARIES="))
+        return true; /* libarcher, without which the sanitizer does not see what barriers order */
+#endif
+    return !after(entry, "OMP_") && !after(entry, "GOMP_");
+}
+
+FIRST static void clean(int argc, char **argv, char **environment) {
+    char **to = environment;
+    (void)argc;
+    (void)argv;
+    for (char **from = environment; *from; from++)
+        if (stays(*from))
+            *to++ = *from;
+    *to = NULL;
+}
+
+/* The only place before the constructors of the libraries. */
+__attribute__((section(".preinit_array"), used)) static void (*const at_start)(int, char **, char **) = clean;
+
+/* SF_ERR_INPUT if a number of threads was impossible; tells `sink` of another variable that was left out. */
+static sf_status check_environment(const sf_sink *sink, sf_error *err) {
+    if (fault.which == 0)
+        return SF_OK;
+    int k = fault.which - 1;
+    if (!known[k].needed) {
+        sf_sink_tell(sink, SF_WARNING, "%s=\"%s\" of the environment has no effect; softfall takes %s",
+                     known[k].name, fault.value, known[k].words ? known[k].words : "a number above 0");
+        return SF_OK;
+    }
+    return SF_FAIL(err, SF_ERR_INPUT, "the environment has %s=\"%s\"; a number from 1 to %ld is possible",
+                   known[k].name, fault.value, known[k].most);
+}
+
+/* ---- start and end ---- */
 
 enum { LEAST_STACK = 1 << 20, USUAL_STACK = 1 << 23 /* bytes */ };
 
@@ -35,7 +185,7 @@ sf_status sf_program_begin(char **argv, sf_error *err) {
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     sf_sink sink = sf_program_sink(program_invocation_short_name);
-    SF_TRY(sf_openmp_environment_check(&sink, err));
+    SF_TRY(check_environment(&sink, err));
     return check_stack(argv, err);
 }
 

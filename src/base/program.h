@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* For the programs alone: printing, and exit codes from status codes. No library calls this. */
-#ifndef SF_CORE_PROGRAM_H
-#define SF_CORE_PROGRAM_H
+#ifndef SF_BASE_PROGRAM_H
+#define SF_BASE_PROGRAM_H
 
 #include "base/error.h"
+
+enum { SF_MOST_THREADS = 1024 };
 
 /* main calls it first. Ignores SIGPIPE and SIGXFSZ, so that a closed standard output (`softfall-pre ... |
  * head -1`) and a limit of file sizes become failed writes with their sentences, and do not end the program

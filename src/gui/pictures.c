@@ -1,13 +1,381 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/pictures.h"
 
+#include "base/units.h"
 #include "gui/gmsh/window.h"
-#include "gui/outcome.h"
+#include "io/h5.h"
 #include "io/plain_file.h"
 #include "model/model_io.h"
+#include "post/figures/figures.h"
 #include "post/figures/verdict.h"
+#include "post/view/cut.h"
+#include "pre/model_report.h"
+
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* ---- shape of a drop ---- */
+
+/* A face of a cell: its nodes around it, and sorted. */
+typedef struct face {
+    int32_t node[4], sorted[4]; /* -1 in the fourth place of a triangle, in the first of the sorted ones */
+} face;
+
+static void sort_nodes(face *f) {
+    memcpy(f->sorted, f->node, sizeof f->sorted);
+    for (int i = 1; i < 4; i++)
+        for (int j = i; j > 0 && f->sorted[j] < f->sorted[j - 1]; j--) {
+            int32_t other = f->sorted[j];
+            f->sorted[j] = f->sorted[j - 1];
+            f->sorted[j - 1] = other;
+        }
+}
+
+static int by_nodes(const void *a, const void *b) {
+    const face *x = a, *y = b;
+    for (int k = 0; k < 4; k++)
+        if (x->sorted[k] != y->sorted[k])
+            return x->sorted[k] < y->sorted[k] ? -1 : 1;
+    return 0;
+}
+
+static int64_t list_faces(const sf_cells *c, face *out) {
+    int64_t count = 0;
+    for (int64_t k = 0; k < c->cell_count; k++) {
+        const int(*faces)[4];
+        int n = sf_cell_faces(c->type[k], &faces);
+        for (int f = 0; f < n; f++, count++) {
+            for (int v = 0; v < 4 && out; v++)
+                out[count].node[v] = faces[f][v] < 0 ? -1 : c->node[c->ptr[k] + faces[f][v]];
+            if (out)
+                sort_nodes(&out[count]);
+        }
+    }
+    return count;
+}
+
+/* Keeps those that are alone. */
+static int64_t keep_skin(face *list, int64_t count) {
+    int64_t kept = 0;
+    for (int64_t k = 0, next; k < count; k = next) {
+        for (next = k + 1; next < count && by_nodes(&list[k], &list[next]) == 0; next++)
+            ;
+        if (next == k + 1)
+            list[kept++] = list[k];
+    }
+    return kept;
+}
+
+/* Numbers the nodes of the skin in the order of the model. */
+static sf_status number_nodes(const sf_cells *c, const face *list, sf_shape *s, sf_error *err) {
+    int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's picture");
+    for (int64_t k = 0; place && k < s->pad.face_count; k++)
+        for (int v = 0; v < 4; v++)
+            if (list[k].node[v] >= 0)
+                place[list[k].node[v]] = 1;
+    for (int64_t i = 0; place && i < c->node_count; i++)
+        s->pad.node_count += place[i];
+    s->pad_node = sf_alloc(err, (unsigned long)s->pad.node_count, sizeof *s->pad_node, "the pad's picture");
+    s->pad.position =
+        sf_alloc(err, 3 * (unsigned long)s->pad.node_count, sizeof(double), "the pad's picture");
+    int64_t next = 0;
+    for (int64_t i = 0; i < c->node_count && err->status == SF_OK; i++)
+        if (place[i]) {
+            place[i] = (int32_t)next;
+            s->pad_node[next] = i;
+            for (int d = 0; d < 3; d++)
+                s->pad.position[3 * next + d] = c->position[3 * i + d] / s->unit;
+            next++;
+        }
+    for (int64_t k = 0; k < 4 * s->pad.face_count && err->status == SF_OK; k++) {
+        int32_t node = list[k / 4].node[k % 4];
+        s->pad.face[k] = node < 0 ? -1 : place[node];
+    }
+    free(place);
+    return err->status;
+}
+
+static sf_status find_skin(const sf_cells *c, sf_shape *s, sf_error *err) {
+    int64_t count = list_faces(c, NULL);
+    face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
+    if (!list)
+        return err->status;
+    list_faces(c, list);
+    qsort(list, (size_t)count, sizeof *list, by_nodes);
+    s->pad.face_count = keep_skin(list, count);
+    s->pad.face =
+        sf_alloc(err, 4 * (unsigned long)s->pad.face_count, sizeof *s->pad.face, "the pad's picture");
+    if (s->pad.face)
+        number_nodes(c, list, s, err);
+    free(list);
+    return err->status;
+}
+
+static sf_status take_missile(int64_t nodes, const double *position, int64_t triangles,
+                              const int32_t *triangle, sf_shape *s, sf_error *err) {
+    unsigned long n = 3 * (unsigned long)nodes;
+    s->missile.position = sf_alloc(err, n, sizeof(double), "the missile's picture");
+    s->missile_position = sf_alloc(err, n, sizeof(double), "the missile's picture");
+    s->missile.face =
+        sf_alloc(err, 4 * (unsigned long)triangles, sizeof *s->missile.face, "the missile's picture");
+    if (err->status != SF_OK)
+        return err->status;
+    s->missile.node_count = nodes;
+    s->missile.face_count = triangles;
+    for (unsigned long k = 0; k < n; k++) {
+        s->missile_position[k] = position[k];
+        s->missile.position[k] = position[k] / s->unit;
+    }
+    for (int64_t k = 0; k < 4 * triangles; k++)
+        s->missile.face[k] = k % 4 == 3 ? -1 : triangle[3 * (k / 4) + k % 4];
+    return SF_OK;
+}
+
+sf_status sf_shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
+    const sf_cells cells = {m->node_count, m->cell_count, m->position,
+                            m->cell_type,  m->cell_ptr,   m->cell_node};
+    *s = (sf_shape){.unit = unit};
+    if (find_skin(&cells, s, err) != SF_OK ||
+        take_missile(m->surface_node_count, m->surface_position, m->surface_triangle_count,
+                     m->surface_triangle, s, err) != SF_OK)
+        sf_shape_free(s);
+    return err->status;
+}
+
+sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_error *err) {
+    const sf_cells cells = {r->node_count, r->cell_count, r->position,
+                            r->cell_type,  r->cell_ptr,   r->cell_node};
+    *s = (sf_shape){.unit = unit};
+    if (find_skin(&cells, s, err) != SF_OK ||
+        take_missile(r->surface_node_count, r->surface_position, r->surface_triangle_count,
+                     r->surface_triangle, s, err) != SF_OK)
+        sf_shape_free(s);
+    return err->status;
+}
+
+void sf_shape_free(sf_shape *s) {
+    free(s->pad.position);
+    free(s->pad.face);
+    free(s->pad_node);
+    free(s->missile.position);
+    free(s->missile.face);
+    free(s->missile_position);
+    *s = (sf_shape){0};
+}
+
+static void gather(const sf_shape *s, const sf_frame *fields, sf_shape_frame *out) {
+    const double *u = fields->field[SF_FRAME_DISPLACEMENT], *mises = fields->field[SF_FRAME_VON_MISES];
+    for (int64_t k = 0; k < s->pad.node_count; k++) {
+        for (int d = 0; d < 3 && u; d++)
+            out->pad[3 * k + d] = u[3 * s->pad_node[k] + d] / s->unit;
+        if (mises)
+            out->stress[k] = 1e-3 * mises[s->pad_node[k]];
+    }
+}
+
+sf_status sf_shape_read_frame(const sf_shape *s, const sf_results *r, const sf_frame_head *head,
+                              sf_shape_frame *out, sf_error *err) {
+    sf_frame fields = {{0}};
+    *out = (sf_shape_frame){0};
+    if (sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err) != SF_OK)
+        return err->status;
+    out->pad = sf_alloc(err, 3 * (unsigned long)s->pad.node_count, sizeof(double), "a frame");
+    out->missile = sf_alloc(err, 3 * (unsigned long)s->missile.node_count, sizeof(double), "a frame");
+    if (fields.field[SF_FRAME_VON_MISES])
+        out->stress = sf_alloc(err, (unsigned long)s->pad.node_count, sizeof(double), "a frame");
+    if (err->status == SF_OK)
+        gather(s, &fields, out);
+    for (int64_t k = 0; k < s->missile.node_count && err->status == SF_OK; k++) {
+        double place[3];
+        sf_results_place(r, head, &s->missile_position[3 * k], place);
+        for (int d = 0; d < 3; d++)
+            out->missile[3 * k + d] = (place[d] - s->missile_position[3 * k + d]) / s->unit;
+    }
+    sf_frame_free(&fields);
+    if (err->status != SF_OK)
+        sf_shape_frame_free(out);
+    return err->status;
+}
+
+void sf_shape_frame_free(sf_shape_frame *f) {
+    free(f->pad);
+    free(f->stress);
+    free(f->missile);
+    *f = (sf_shape_frame){0};
+}
+
+/* ---- figures and checks in the tree ---- */
+
+/* Keys of the report of softfall-pre (pre/model_report.c) that the tree shows, in its order. */
+static const char *const keys[SF_CHECK_ENTRIES] = {
+    "nodes",      "cells",      "missile", "drop_height", "impact_point", "spacing_under_missile",
+    "mesh_error", "first_step", "memory",  "run_time",
+};
+
+sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err) {
+    sf_h5 *file = NULL;
+    char *text = NULL;
+    out->count = 0;
+    if (sf_h5_open(model, &file, err) == SF_OK)
+        sf_h5_read_text(file, "/provenance/report", &text, err);
+    for (int k = 0; text && k < SF_CHECK_ENTRIES; k++) {
+        sf_check_entry *e = &out->entry[out->count];
+        char name[SF_CHECK_NAME - 16];
+        if (!sf_model_report_find(text, keys[k], name, sizeof name, e->value, sizeof e->value))
+            continue; /* a prescribed motion has no drop height */
+        snprintf(e->name, sizeof e->name, "3Checks/%02d%s", k, name);
+        out->count++;
+    }
+    free(text);
+    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
+    sf_h5_close(&file, &ignored);
+    return err->status;
+}
+
+void sf_checks_show(const sf_check_entries *checks) {
+    for (int k = 0; k < checks->count; k++) {
+        const sf_check_entry *e = &checks->entry[k];
+        sf_window_put(
+            &(sf_entry){.name = e->name, .kind = SF_ENTRY_SHOWN, .text = e->value, .help = e->value});
+    }
+}
+
+void sf_checks_clear(const sf_check_entries *checks) {
+    for (int k = 0; k < checks->count; k++)
+        sf_window_remove(checks->entry[k].name);
+}
+
+void sf_checks_sentence(const char *text, char *out, size_t size) {
+    const char *last = NULL, *line = text;
+    *out = '\0';
+    while (line && *line) {
+        const char *end = strchr(line, '\n');
+        if (*line != '\n' && strncmp(line, "softfall-", 9) == 0)
+            last = line;
+        line = end ? end + 1 : NULL;
+    }
+    const char *colon = last ? strstr(last, ": ") : NULL;
+    if (colon)
+        snprintf(out, size, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
+}
+
+void sf_checks_progress(const char *text, char *out, size_t size) {
+    const char *last = NULL, *line = text;
+    size_t used = 0;
+    while (line && *line) {
+        const char *end = strchr(line, '\n');
+        if (strncmp(line, "t ", 2) == 0)
+            last = line;
+        line = end ? end + 1 : NULL;
+    }
+    for (; last && *last && *last != '\n' && used + 1 < size; last++)
+        if (*last != ' ' || (used > 0 && out[used - 1] != ' '))
+            out[used++] = *last;
+    out[used] = '\0';
+}
+
+static const char GOOD[] = "LightGreen", FAIR[] = "Khaki", BAD[] = "LightCoral";
+
+static const char *const names[] = {"4Results/1verdict",
+                                    "4Results/2a_max",
+                                    "4Results/3HIC",
+                                    "4Results/4rebound",
+                                    "4Results/5largest indentation",
+                                    "4Results/6largest local strain"};
+enum { VERDICT, A_MAX, HIC, REBOUND, INDENTATION, STRAIN, ENTRIES };
+enum { FILTER = 1000 }; /* CFC of curve and figures */
+
+void sf_outcome_clear(void) {
+    for (int k = 0; k < ENTRIES; k++)
+        sf_window_remove(names[k]);
+}
+
+static void put(int which, const char *text, const char *colour) {
+    sf_window_put(&(sf_entry){
+        .name = names[which], .kind = SF_ENTRY_SHOWN, .text = text, .help = text, .colour = colour});
+}
+
+static const char *limit_colour(const sf_limit *limit) {
+    return !limit->judged ? NULL : limit->passed ? GOOD : BAD;
+}
+
+/* The digits are those that summary.json has, and more than a reader needs. */
+static void show_limits(const sf_figures *f, const sf_verdict *v) {
+    char text[160];
+    if (v->limit_count < SF_LIMITS)
+        return;
+    snprintf(text, sizeof text, "%.9g g (limit %g g: %s)", f->injury.a_max_g, v->limits[0].bound,
+             sf_limit_phrase(&v->limits[0]));
+    put(A_MAX, text, limit_colour(&v->limits[0]));
+    snprintf(text, sizeof text, "%.9g, window %.2f to %.2f ms (limit %g: %s)", f->injury.hic.value,
+             1e3 * f->injury.hic.t1, 1e3 * f->injury.hic.t2, v->limits[1].bound,
+             sf_limit_phrase(&v->limits[1]));
+    put(HIC, text, limit_colour(&v->limits[1]));
+}
+
+static void show_motion(const sf_figures *f) {
+    char text[160];
+    if (f->rebounded)
+        snprintf(text, sizeof text, "%.9g m/s at %.2f ms", f->v_rebound, 1e3 * f->rebound_time);
+    else
+        snprintf(text, sizeof text, "not reached");
+    if (!f->driven)
+        put(REBOUND, text, NULL);
+    snprintf(text, sizeof text, "%.4g mm", 1e3 * f->max_indentation);
+    put(INDENTATION, text, NULL);
+    snprintf(text, sizeof text, "%.4g", f->max_local_strain);
+    put(STRAIN, text, NULL);
+}
+
+sf_status sf_outcome_show(const sf_results *r, char *line, size_t size, sf_error *err) {
+    sf_figures f = {0};
+    sf_verdict verdict;
+    const sf_limits limits = SF_DEFAULT_LIMITS;
+    if (sf_figures_compute(r, FILTER, &f, err) == SF_OK) {
+        sf_verdict_compute(r, &f, &limits, &verdict);
+        sf_verdict_line(&verdict, line, size);
+        put(VERDICT, line,
+            verdict.grade == SF_GRADE_VALID     ? GOOD
+            : verdict.grade == SF_GRADE_REMARKS ? FAIR
+                                                : BAD);
+        if (f.touched) {
+            show_limits(&f, &verdict);
+            show_motion(&f);
+        }
+    }
+    sf_figures_free(&f);
+    return err->status;
+}
+
+static void plot(const char *title, int64_t count, const double *time, const double *value, double scale) {
+    double *x = malloc(2 * (size_t)count * sizeof *x + 1), *y = x ? x + count : NULL;
+    for (int64_t k = 0; x && k < count; k++) {
+        x[k] = 1e3 * time[k];
+        y[k] = value[k] / scale;
+    }
+    if (x)
+        sf_view_plot(title, "t [ms]", count, x, y);
+    free(x);
+}
+
+void sf_outcome_plot(const sf_results *r) {
+    const sf_history *h = &r->history;
+    sf_figures f = {0};
+    sf_error none = SF_ERROR_INIT;
+    char title[64];
+    if (sf_figures_compute(r, FILTER, &f, &none) == SF_OK) {
+        snprintf(title, sizeof title, "%s%sacceleration, CFC %d [g]", f.turns ? "resultant " : "",
+                 f.kinematic ? "kinematic " : "", FILTER);
+        plot(title, f.filtered.count, f.filtered.time, f.filtered.value, 1);
+    } else {
+        plot("raw, along the direction [g]", h->rows, h->time, h->acceleration, SF_STANDARD_GRAVITY);
+    }
+    sf_figures_free(&f);
+}
+
+/* ---- frames ---- */
 
 static const char FRAME[] = "1Drop/83frame";
 

@@ -1,12 +1,85 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pictures of the window: the geometry of a case, the model that softfall-pre has made, or the frames of
- * a run. Each replaces the one before. */
+/* Makes bodies that can be shown from model and results: the skin of the pad, and the missile. */
 #ifndef SF_GUI_PICTURES_H
 #define SF_GUI_PICTURES_H
 
-#include "gui/children.h"
+#include "gui/activity.h"
 #include "gui/fields.h"
-#include "gui/shape.h"
+#include "gui/gmsh/window.h"
+#include "model/model.h"
+#include "post/results/results.h"
+#include <stddef.h>
+
+/* A mesh, borrowed. */
+typedef struct sf_cells {
+    int64_t node_count, cell_count;
+    const double *position; /* [node_count][3] m */
+    const uint8_t *type;
+    const int64_t *ptr;
+    const int32_t *node;
+} sf_cells;
+
+/* Pad and missile. */
+typedef struct sf_shape {
+    double unit; /* m per unit of the pictures */
+    sf_body pad;
+    int64_t *pad_node; /* [pad.node_count] node of the model that each node of the skin is; owned */
+    sf_body missile;
+    double *missile_position; /* [missile.node_count][3] m, at t = 0; owned */
+} sf_shape;
+
+/* The faces that belong to one cell only, in the length unit `unit`. Release with sf_shape_free. */
+sf_status sf_shape_of_model(const sf_model *model, double unit, sf_shape *shape, sf_error *err);
+sf_status sf_shape_of_results(const sf_results *results, double unit, sf_shape *shape, sf_error *err);
+void sf_shape_free(sf_shape *shape);
+
+/* One frame: displacement of pad and missile in units, and the pad's von Mises stress (kPa), for the nodes of
+ * the bodies. Arrays from sf_alloc, owned by the caller; `stress` NULL if the frame has none. */
+typedef struct sf_shape_frame {
+    double *pad, *stress, *missile;
+} sf_shape_frame;
+sf_status sf_shape_read_frame(const sf_shape *shape, const sf_results *results, const sf_frame_head *head,
+                              sf_shape_frame *frame, sf_error *err);
+void sf_shape_frame_free(sf_shape_frame *frame);
+
+/* Shows the checks of softfall-pre, and the sentences of programs, from their output. */
+
+enum { SF_CHECK_ENTRIES = 10, SF_CHECK_NAME = 80, SF_CHECK_VALUE = 200 };
+
+typedef struct sf_check_entry {
+    char name[SF_CHECK_NAME]; /* in the tree: "3Checks/00nodes" */
+    char value[SF_CHECK_VALUE];
+} sf_check_entry;
+
+typedef struct sf_check_entries {
+    int count;
+    sf_check_entry entry[SF_CHECK_ENTRIES];
+} sf_check_entries;
+
+/* Reads the checks that softfall-pre left in model.h5 (/provenance/report). */
+sf_status sf_checks_read(const char *model, sf_check_entries *checks, sf_error *err);
+/* Puts them into the branch Checks of the tree, and removes them from it. */
+void sf_checks_show(const sf_check_entries *checks);
+void sf_checks_clear(const sf_check_entries *checks);
+
+/* The last sentence of a program's output, without the program's name. */
+void sf_checks_sentence(const char *text, char *out, size_t size);
+/* The solver's last line of progress, without double blanks; "" if there is none. */
+void sf_checks_progress(const char *text, char *out, size_t size);
+
+/* The figures of a run in the tree, by the functions of softfall-post. */
+
+/* Puts them into the branch Results, coloured by pass and fail; returns the sentence of the verdict in
+ * `line`. A run that has not ended or never touched has what is known. */
+sf_status sf_outcome_show(const sf_results *results, char *line, size_t size, sf_error *err);
+/* Empties the branch. */
+void sf_outcome_clear(void);
+/* The curve of the figures so far, filtered as they are; the raw one, and its title says so, of a run that
+ * has no figures yet. */
+void sf_outcome_plot(const sf_results *results);
+
+/* The pictures of the window: the geometry of a case, the model that softfall-pre has made, or the frames of
+ * a run. Each replaces the one before. */
 
 /* The missile's place by the case alone, until softfall-pre has computed the exact one. */
 typedef struct sf_pictures_place {

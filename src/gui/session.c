@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/session.h"
 
-#include "gui/cache.h"
-#include "gui/children.h"
+#include "gui/activity.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"

@@ -3,7 +3,7 @@
 
 #include "base/lanes.h"
 #include "base/mat3.h"
-#include "base/threads.h"
+#include "base/lanes.h"
 #include "solver/contact/contact.h"
 #include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/gmsh/window.h"
 
+#include "io/plain_file.h"
+#include "report/json.h"
+
 #include <gmshc.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/plain_file.h"
-#include "report/json.h"
+/* ---- window ---- */
 
 /* The first error among gmsh's lines since gmshLoggerStart, which this ends. */
 static sf_status take_error(const char *path, sf_error *err) {
@@ -397,4 +400,187 @@ sf_status sf_window_write_picture(const char *path, sf_error *err) {
     int ierr = 0;
     gmshWrite(path, &ierr);
     return ierr == 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "gmsh cannot write the picture %s", path);
+}
+
+/* ---- views ---- */
+
+/* The views of gmsh have fixed tags: a body has one of displacements and one of the values that colour it. */
+enum { MOVES = 101, VALUES = 201 };
+/* gmsh's numbers of kinds of elements, of views, of ranges and of colours. */
+enum { TRIANGLE = 2, QUADRANGLE = 3, DISPLACEMENT = 5, GRAPH = 4, TOP_RIGHT = 3, OWN_RANGE = 2, GREY = 9 };
+
+/* A model of gmsh that is not shown holds the mesh of a body. It stays when its picture goes, until the
+ * geometry is read anew: gmsh's window may still point to what it held. */
+static char models[SF_PICTURES][48];
+
+static void name_model(sf_picture which) {
+    static int serial;
+    snprintf(models[which], sizeof models[which], "softfall %s %d",
+             which == SF_PICTURE_PAD ? "pad" : "missile", ++serial);
+}
+
+static bool has_view(int tag) {
+    int ierr = 0, *tags = NULL;
+    size_t count = 0;
+    bool found = false;
+    gmshViewGetTags(&tags, &count, &ierr);
+    for (size_t k = 0; k < count; k++)
+        found = found || tags[k] == tag;
+    gmshFree(tags);
+    return found;
+}
+
+static void set_option(int tag, const char *option, double value) {
+    char name[64];
+    int ierr = 0, index = has_view(tag) ? gmshViewGetIndex(tag, &ierr) : -1;
+    if (ierr != 0 || index < 0)
+        return;
+    snprintf(name, sizeof name, "View[%d].%s", index, option);
+    sf_window_option(name, value);
+}
+
+static void set_text(int tag, const char *option, const char *value) {
+    char name[64];
+    int ierr = 0, index = gmshViewGetIndex(tag, &ierr);
+    snprintf(name, sizeof name, "View[%d].%s", index, option);
+    if (ierr == 0 && index >= 0)
+        gmshOptionSetString(name, value, &ierr);
+}
+
+static void remove_view(int tag) {
+    int ierr = 0;
+    if (has_view(tag))
+        gmshViewRemove(tag, &ierr);
+}
+
+/* The faces of so many corners as elements of the model's one entity. */
+static sf_status add_faces(const sf_body *b, int corners, size_t *first, sf_error *err) {
+    size_t count = 0;
+    int ierr = 0;
+    size_t *tag = sf_alloc(err, (unsigned long)b->face_count, sizeof *tag, "a picture"),
+           *node = sf_alloc(err, (unsigned long)b->face_count, 4 * sizeof *node, "a picture");
+    for (int64_t k = 0; k < b->face_count && err->status == SF_OK; k++) {
+        if ((b->face[4 * k + 3] < 0 ? 3 : 4) != corners)
+            continue;
+        for (int c = 0; c < corners; c++)
+            node[count * (size_t)corners + (size_t)c] = (size_t)b->face[4 * k + c] + 1;
+        tag[count++] = (*first)++;
+    }
+    if (count > 0 && err->status == SF_OK)
+        gmshModelMeshAddElementsByType(1, corners == 3 ? TRIANGLE : QUADRANGLE, tag, count, node,
+                                       count * (size_t)corners, &ierr);
+    free(tag);
+    free(node);
+    return err->status;
+}
+
+static sf_status add_mesh(const sf_body *b, sf_error *err) {
+    int ierr = 0;
+    size_t first = 1;
+    size_t *tag = sf_alloc(err, (unsigned long)b->node_count, sizeof *tag, "a picture");
+    for (int64_t k = 0; k < b->node_count && tag; k++)
+        tag[k] = (size_t)k + 1;
+    gmshModelAddDiscreteEntity(2, 1, NULL, 0, &ierr);
+    if (tag)
+        gmshModelMeshAddNodes(2, 1, tag, (size_t)b->node_count, b->position, 3 * (size_t)b->node_count, NULL,
+                              0, &ierr);
+    free(tag);
+    if (err->status == SF_OK && add_faces(b, 3, &first, err) == SF_OK)
+        add_faces(b, 4, &first, err);
+    return err->status;
+}
+
+void sf_view_remove(sf_picture which) {
+    set_option(MOVES + (int)which, "ExternalView", -1);
+    remove_view(MOVES + (int)which);
+    remove_view(VALUES + (int)which);
+}
+
+/* gmsh forgets the options of a view with it. */
+static void dress(sf_picture which) {
+    int ierr = 0, moves = MOVES + (int)which, values = VALUES + (int)which;
+    bool grey = which == SF_PICTURE_MISSILE;
+    set_option(moves, "VectorType", DISPLACEMENT);
+    set_option(moves, "DisplacementFactor", 1);
+    set_option(moves, "ExternalView", grey ? -1 : gmshViewGetIndex(values, &ierr));
+    set_option(moves, "ShowScale", !grey);
+    set_option(moves, "Light", 1);
+    set_option(moves, "ShowElement", 1);
+    set_option(moves, "ShowTime", grey ? 0 : 1);
+    if (!grey) {
+        set_option(values, "Visible", 0);
+        return;
+    }
+    set_option(moves, "ColormapNumber", GREY);
+    set_option(moves, "RangeType", OWN_RANGE); /* so wide that every value has the colour of its middle */
+    set_option(moves, "CustomMin", -1e12);
+    set_option(moves, "CustomMax", 1e12);
+}
+
+sf_status sf_view_begin(sf_picture which, const char *title, const sf_body *body, sf_error *err) {
+    char *shown = NULL;
+    int ierr = 0;
+    sf_view_remove(which);
+    name_model(which);
+    gmshModelGetCurrent(&shown, &ierr);
+    gmshModelAdd(models[which], &ierr);
+    add_mesh(body, err);
+    if (shown)
+        gmshModelSetCurrent(shown, &ierr);
+    gmshFree(shown);
+    if (which == SF_PICTURE_PAD)
+        gmshViewAdd("von Mises stress [kPa]", VALUES + (int)which, &ierr);
+    gmshViewAdd(title, MOVES + (int)which, &ierr);
+    dress(which);
+    return err->status;
+}
+
+void sf_view_add(sf_picture which, int frame, double time, const sf_body *body, const double *displacement,
+                 const double *value) {
+    sf_error err = SF_ERROR_INIT;
+    int ierr = 0;
+    size_t count = (size_t)body->node_count;
+    size_t *tag = sf_alloc(&err, count, sizeof *tag, "a picture");
+    for (size_t k = 0; k < count && tag; k++)
+        tag[k] = k + 1;
+    if (tag && value)
+        gmshViewAddHomogeneousModelData(VALUES + (int)which, frame, models[which], "NodeData", tag, count,
+                                        (double *)value, count, time, 1, 0, &ierr);
+    if (tag)
+        gmshViewAddHomogeneousModelData(MOVES + (int)which, frame, models[which], "NodeData", tag, count,
+                                        (double *)displacement, 3 * count, time, 3, 0, &ierr);
+    free(tag);
+    dress(which);
+}
+
+void sf_view_show_frame(int frame) {
+    for (int which = 0; which < SF_PICTURE_CURVE; which++) {
+        if (has_view(VALUES + which))
+            set_option(VALUES + which, "TimeStep", frame);
+        if (has_view(MOVES + which))
+            set_option(MOVES + which, "TimeStep", frame);
+    }
+}
+
+void sf_view_plot(const char *title, const char *x_label, int64_t count, const double *x, const double *y) {
+    enum { TAG = MOVES + SF_PICTURE_CURVE };
+    int ierr = 0;
+    double *data = malloc(4 * (size_t)count * sizeof *data + 1);
+    remove_view(TAG);
+    for (int64_t k = 0; data && k < count; k++)
+        memcpy(&data[4 * k], (double[]){x[k], 0, 0, y[k]}, 4 * sizeof *data);
+    if (data && count > 1) {
+        gmshViewAdd(title, TAG, &ierr);
+        gmshViewAddListData(TAG, "SP", (int)count, data, 4 * (size_t)count, &ierr);
+        set_option(TAG, "Type", GRAPH);
+        set_option(TAG, "AutoPosition", TOP_RIGHT);
+        set_text(TAG, "AxesLabelX", x_label);
+        set_option(TAG, "Axes", 3);
+        set_option(TAG, "PointSize", 1);
+        set_option(TAG, "LineWidth", 2);
+        set_option(TAG, "ShowScale", 1);
+        set_option(TAG, "NbIso", 5);
+        set_option(TAG, "IntervalsType", 2);
+    }
+    free(data);
 }

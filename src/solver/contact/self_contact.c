@@ -7,7 +7,7 @@
 
 #include "base/grid.h"
 #include "base/mat3.h"
-#include "base/threads.h"
+#include "base/lanes.h"
 
 enum { CANDIDATES = SF_SELF_CANDIDATES, NOTHING = -1, ANVIL = -2, MAX_SWEEPS = 60 };
 static const double NEAR = 1.2;     /* spacings: reach of the candidates */

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/rigid.h"
-
 #include "base/mat3.h"
 
 enum { MOST_ITERATIONS = 20 };
