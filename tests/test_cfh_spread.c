@@ -5,7 +5,7 @@
 #include "model_fixture.h"
 
 #include "case/case.h"
-#include "study/cfh/spread_report.h"
+#include "study/cfh/cfh_report.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <omp.h>

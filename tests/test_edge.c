@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The changes of a_max and HIC with speed and thickness that softfall-post estimates from one drop, against
- * drops with 1 % more and less of each (post/figures/edge.h). */
+ * drops with 1 % more and less of each (post/figures/figures.c). */
 #include "program_fixture.h"
 
 #include <math.h>

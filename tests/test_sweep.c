@@ -6,9 +6,8 @@
 
 #include "study/sweep/analysis.h"
 #include "study/sweep/campaign.h"
-#include "study/sweep/cost.h"
 #include "study/sweep/drops.h"
-#include "study/sweep/sweep_plot.h"
+#include "study/sweep/sweep_report.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Texts and numbers as a user writes them (base/text.h), and every character in a JSON text. */
 #include "base/text.h"
-#include "report/json.h"
+#include "report/row.h"
 
 #include "program_fixture.h"
 #include <math.h>

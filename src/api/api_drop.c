@@ -1,19 +1,57 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "api/api_drop.h"
+/* libsoftfall: drops, their results and figures, models in files. */
+#include "api/api.h"
+#include "build_info.h"
+#include "model/columns.h"
+#include "model/flight.h"
+#include "model/model_io.h"
+#include "post/figures/figures.h"
+#include "solver/operators.h"
+#include "solver/run/frame.h"
+#include "solver/run/recorder.h"
+#include "solver/run/run.h"
+#include "solver/state.h"
+#include "solver/step.h"
 
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/api.h"
-#include "build_info.h"
-#include "model/model_io.h"
-#include "solver/run/frame.h"
-#include "solver/run/run.h"
-#include "solver/step.h"
+/* A drop behind its handle. */
 
-/* Drops: created, and advanced in time. */
+struct softfall_drop {
+    sf_model model; /* arrays borrowed from the caller's model */
+    sf_operators operators;
+    sf_state state;
+    sf_recorder recorder;
+    int threads; /* 0: as OpenMP would */
+    softfall_ending ending;
+    sf_error failure; /* of a step */
+    softfall_quantity column[SF_HISTORY_COUNT], field[SF_FRAME_FIELDS];
+};
+
+/* Sets the number of threads of the drop and returns the number before. */
+static int enter(const softfall_drop *drop) {
+    int before = omp_get_max_threads();
+    if (drop->threads > 0)
+        omp_set_num_threads(drop->threads);
+    return before;
+}
+
+/* Fills the lists of columns and fields. */
+static void list_quantities(softfall_drop *d) {
+    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
+        const sf_history_column *column = sf_history_column_get(k);
+        d->column[k] = (softfall_quantity){column->name, column->units, column->description, 1};
+    }
+    for (int k = 0; k < SF_FRAME_FIELDS; k++) {
+        const sf_frame_field_info *f = sf_frame_field_get((sf_frame_field)k);
+        d->field[k] = (softfall_quantity){f->name, f->units, f->description, f->components};
+    }
+}
+
+/* ---- drops: created, and advanced in time ---- */
 
 static const softfall_drop_options by_default;
 
@@ -40,8 +78,8 @@ softfall_status softfall_drop_create(const softfall_model *model, const softfall
     if (o->end_time > 0)
         d->model.run.end_time = o->end_time;
     sf_recorder_begin(&d->recorder);
-    softfall_drop_list(d);
-    int before = softfall_drop_enter(d);
+    list_quantities(d);
+    int before = enter(d);
     if (sf_model_check(&d->model, &err) == SF_OK &&
         sf_operators_build(&d->model, &d->operators, &err) == SF_OK)
         sf_state_create(&d->model, &d->state, &err);
@@ -78,7 +116,7 @@ static void step(softfall_drop *d) {
 
 softfall_status softfall_drop_step(softfall_drop *d, softfall_ending *ending, softfall_error *error) {
     if (d->ending == SOFTFALL_RUNNING && d->failure.status == SF_OK) {
-        int before = softfall_drop_enter(d);
+        int before = enter(d);
         step(d);
         omp_set_num_threads(before);
     }
@@ -100,18 +138,7 @@ softfall_status softfall_drop_run(softfall_drop *d, int (*observe)(void *user, c
     return status;
 }
 
-/* Results of a drop: its last step, its history, the fields over its nodes. */
-
-void softfall_drop_list(softfall_drop *d) {
-    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
-        const sf_history_column *column = sf_history_column_get(k);
-        d->column[k] = (softfall_quantity){column->name, column->units, column->description, 1};
-    }
-    for (int k = 0; k < SF_FRAME_FIELDS; k++) {
-        const sf_frame_field_info *f = sf_frame_field_get((sf_frame_field)k);
-        d->field[k] = (softfall_quantity){f->name, f->units, f->description, f->components};
-    }
-}
+/* ---- results of a drop: its last step, its history, the fields over its nodes ---- */
 
 int64_t softfall_drop_steps(const softfall_drop *d) {
     return d->recorder.history.rows;
@@ -162,13 +189,13 @@ static sf_status take_field(const softfall_drop *d, const char *name, double *va
 softfall_status softfall_drop_field(const softfall_drop *d, const char *name, double *values, int64_t size,
                                     softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
-    int before = softfall_drop_enter(d);
+    int before = enter(d);
     take_field(d, name, values, size, &err);
     omp_set_num_threads(before);
     return softfall_return(&err, error);
 }
 
-/* Models: reading, writing and their properties. */
+/* ---- models: reading, writing and their properties ---- */
 
 const char *softfall_version(void) {
     return SF_VERSION;
@@ -245,4 +272,110 @@ softfall_model_info softfall_model_describe(const softfall_model *model) {
 
 const double *softfall_model_positions(const softfall_model *m) {
     return m->model.position;
+}
+
+/* ---- figures ---- */
+
+#define ONE(...) +1
+struct softfall_figures {
+    int count;
+    softfall_quantity figure[SF_FIGURES(ONE)];
+    double value[SF_FIGURES(ONE)];
+};
+
+static sf_status check_filter(double filter, sf_error *err) {
+    if (filter == 60 || filter == 180 || filter == 600 || filter == 1000)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT, "filter: %g; the channel frequency classes are 60, 180, 600 and 1000",
+                   filter);
+}
+
+/* True if the library offers the figure: a number of sf_figures. */
+static bool is_offered(const sf_figure *figure) {
+    return !figure->fact && figure->row.type != SF_ROW_TEXT;
+}
+
+static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    sf_figures f = {0};
+    if (check_filter(filter, err) != SF_OK || sf_figures_compute(results, filter, &f, err) != SF_OK)
+        return err->status;
+    softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
+    for (size_t k = 0; made && k < count; k++)
+        if (is_offered(&list[k])) {
+            made->figure[made->count] = (softfall_quantity){list[k].row.key, "", list[k].row.meaning, 1};
+            made->value[made->count++] = sf_row_number(&list[k].row, &f);
+        }
+    sf_figures_free(&f);
+    return err->status;
+}
+
+/* The drop as its results file would show it; the arrays stay the drop's. */
+static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
+    const sf_model *m = &d->model;
+    *r = (sf_results){.node_count = m->node_count,
+                      .position = m->position,
+                      .volume = m->volume,
+                      .symmetry_factor = m->symmetry_factor,
+                      .thickness = m->thickness,
+                      .informed_strain = sf_model_informed_strain(m),
+                      .expected_mesh_error = m->expected_mesh_error > 0 ? m->expected_mesh_error : NAN,
+                      .slit_fraction = m->slit_fraction,
+                      .anvil_depth = m->anvil.depth,
+                      .density = sf_model_density(m),
+                      .given_back = sf_model_whole(m) * d->state.given_back,
+                      .air = m->air,
+                      .speed_scatter = m->run.speed_scatter,
+                      .thickness_tolerance = m->run.thickness_tolerance,
+                      .impact_x = m->missile.impact_known ? m->missile.impact[0] : NAN,
+                      .impact_y = m->missile.impact_known ? m->missile.impact[1] : NAN,
+                      .missile_mass = m->missile.mass,
+                      .missile_speed = m->missile.speed,
+                      .gravity_along = sf_missile_free_fall(m),
+                      .kinematic = m->run.kinematic != 0,
+                      .driven = sf_missile_is_driven(m),
+                      .history = d->recorder.history};
+    sf_flight_gravity(&m->missile, r->gravity);
+    if (r->history.rows < 3)
+        return SF_FAIL(err, SF_ERR_INPUT, "the drop has %lld steps: figures need 3 at least",
+                       (long long)r->history.rows);
+    return SF_OK;
+}
+
+softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, softfall_figures **out,
+                                      softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_results r;
+    *out = NULL;
+    if (view(drop, &r, &err) == SF_OK)
+        compute(&r, filter, out, &err);
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_results_figures(const char *path, double filter, softfall_figures **out,
+                                         softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_results r = {0};
+    *out = NULL;
+    if (sf_results_open(path, &r, &err) == SF_OK)
+        compute(&r, filter, out, &err);
+    sf_results_close(&r);
+    return softfall_return(&err, error);
+}
+
+void softfall_figures_free(softfall_figures *figures) {
+    free(figures);
+}
+
+const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count) {
+    *count = figures->count;
+    return figures->figure;
+}
+
+double softfall_figure(const softfall_figures *figures, const char *key) {
+    for (int k = 0; k < figures->count; k++)
+        if (strcmp(figures->figure[k].name, key) == 0)
+            return figures->value[k];
+    return NAN;
 }

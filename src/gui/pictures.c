@@ -18,6 +18,15 @@
 
 /* ---- shape of a drop ---- */
 
+/* A mesh, borrowed. */
+typedef struct cell_list {
+    int64_t node_count, cell_count;
+    const double *position; /* [node_count][3] m */
+    const uint8_t *type;
+    const int64_t *ptr;
+    const int32_t *node;
+} cell_list;
+
 /* A face of a cell: its nodes around it, and sorted. */
 typedef struct face {
     int32_t node[4], sorted[4]; /* -1 in the fourth place of a triangle, in the first of the sorted ones */
@@ -41,7 +50,7 @@ static int by_nodes(const void *a, const void *b) {
     return 0;
 }
 
-static int64_t list_faces(const sf_cells *c, face *out) {
+static int64_t list_faces(const cell_list *c, face *out) {
     int64_t count = 0;
     for (int64_t k = 0; k < c->cell_count; k++) {
         const int(*faces)[4];
@@ -69,7 +78,7 @@ static int64_t keep_skin(face *list, int64_t count) {
 }
 
 /* Numbers the nodes of the skin in the order of the model. */
-static sf_status number_nodes(const sf_cells *c, const face *list, sf_shape *s, sf_error *err) {
+static sf_status number_nodes(const cell_list *c, const face *list, sf_shape *s, sf_error *err) {
     int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's picture");
     for (int64_t k = 0; place && k < s->pad.face_count; k++)
         for (int v = 0; v < 4; v++)
@@ -97,7 +106,7 @@ static sf_status number_nodes(const sf_cells *c, const face *list, sf_shape *s, 
     return err->status;
 }
 
-static sf_status find_skin(const sf_cells *c, sf_shape *s, sf_error *err) {
+static sf_status find_skin(const cell_list *c, sf_shape *s, sf_error *err) {
     int64_t count = list_faces(c, NULL);
     face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
     if (!list)
@@ -134,8 +143,8 @@ static sf_status take_missile(int64_t nodes, const double *position, int64_t tri
 }
 
 sf_status sf_shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
-    const sf_cells cells = {m->node_count, m->cell_count, m->position,
-                            m->cell_type,  m->cell_ptr,   m->cell_node};
+    const cell_list cells = {m->node_count, m->cell_count, m->position,
+                             m->cell_type,  m->cell_ptr,   m->cell_node};
     *s = (sf_shape){.unit = unit};
     if (find_skin(&cells, s, err) != SF_OK ||
         take_missile(m->surface_node_count, m->surface_position, m->surface_triangle_count,
@@ -145,8 +154,8 @@ sf_status sf_shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_erro
 }
 
 sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_error *err) {
-    const sf_cells cells = {r->node_count, r->cell_count, r->position,
-                            r->cell_type,  r->cell_ptr,   r->cell_node};
+    const cell_list cells = {r->node_count, r->cell_count, r->position,
+                             r->cell_type,  r->cell_ptr,   r->cell_node};
     *s = (sf_shape){.unit = unit};
     if (find_skin(&cells, s, err) != SF_OK ||
         take_missile(r->surface_node_count, r->surface_position, r->surface_triangle_count,

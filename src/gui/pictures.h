@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes bodies that can be shown from model and results: the skin of the pad, and the missile. */
+/* The window shows a drop: its bodies, the checks of softfall-pre, the figures, the frames. */
 #ifndef SF_GUI_PICTURES_H
 #define SF_GUI_PICTURES_H
 
@@ -10,16 +10,7 @@
 #include "post/results/results.h"
 #include <stddef.h>
 
-/* A mesh, borrowed. */
-typedef struct sf_cells {
-    int64_t node_count, cell_count;
-    const double *position; /* [node_count][3] m */
-    const uint8_t *type;
-    const int64_t *ptr;
-    const int32_t *node;
-} sf_cells;
-
-/* Pad and missile. */
+/* Bodies that can be shown: the skin of the pad, and the missile. */
 typedef struct sf_shape {
     double unit; /* m per unit of the pictures */
     sf_body pad;

@@ -2,7 +2,7 @@
 #include "io/h5.h"
 
 #include "io/plain_file.h"
-#include "io/seal.h"
+#include "io/replace.h"
 #include <errno.h>
 #include <hdf5.h>
 #include <limits.h>

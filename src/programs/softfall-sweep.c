@@ -3,19 +3,17 @@
 #include "base/program.h"
 #include "base/units.h"
 #include "io/process.h"
-#include "study/engine.h"
-#include "study/manifest.h"
+#include "study/batch.h"
 #include "study/setup.h"
-#include "study/sweep/cost.h"
 #include "study/sweep/drops.h"
-#include "study/sweep/sweep_plot.h"
 #include "study/sweep/sweep_report.h"
 
 #include <malloc.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { KEY_DRY = 256, TABLE_ROWS = 10 };
+enum { TABLE_ROWS = 10 };
 /* Bytes. Larger blocks are not of the heap, where what is kept of each of very many rows would lie between
  * them: with 100,000 rows it grew to many times what was in use. */
 enum { LARGE_BLOCK = 16384 };
@@ -30,12 +28,6 @@ typedef struct job {
     char names[24][32];  /* of the pictures */
     const char *list[24 + 3];
 } job;
-
-static void take_option(int key, const char *text, void *own, sf_error *err) {
-    job *j = own;
-    (void)text, (void)err;
-    *(key == KEY_DRY ? &j->dry : &j->yes) = true;
-}
 
 /* Pictures with their scripts; runs.csv and sweep.key go their own way. */
 static void name_output(job *j) {
@@ -141,11 +133,12 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     return err->status;
 }
 
-static const struct argp_option options[] = {
-    {"dry-run", KEY_DRY, NULL, 0, "print the table and what it will take, and end", 1},
-    {"yes", 'y', NULL, 0,
+static const sf_option options[] = {
+    {"dry-run", 0, NULL, "print the table and what it will take, and end", .member = offsetof(job, dry),
+     .group = 1},
+    {"yes", 'y', NULL,
      "take a plan of more than a million runs, and begin although the estimate says that the disk is too small",
-     1},
+     .member = offsetof(job, yes), .group = 1},
     {0}};
 
 static const sf_study_program program = {
@@ -157,7 +150,6 @@ static const sf_study_program program = {
         "indicative, not a certification.",
     .drops = true,
     .options = options,
-    .take = take_option,
     .run = run};
 
 int main(int argc, char **argv) {

@@ -8,11 +8,26 @@
 #define SF_REPORT_ROW_H
 
 #include "report/html.h"
-#include "report/json.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+
+/* Writes strictly valid JSON (RFC 8259): a number that is not finite becomes null, texts are escaped and
+ * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. */
+typedef struct sf_json {
+    FILE *file;
+    int depth;
+    bool empty; /* nothing yet in the innermost object or array */
+} sf_json;
+
+void sf_json_open(sf_json *json, const char *key, char bracket); /* bracket: '{' or '[' */
+void sf_json_close(sf_json *json, char bracket);                 /* '}' or ']' */
+void sf_json_number(sf_json *json, const char *key, double value);
+/* A negative integer becomes null: all of ours are counts. */
+void sf_json_integer(sf_json *json, const char *key, int64_t value);
+void sf_json_bool(sf_json *json, const char *key, bool value);
+void sf_json_text(sf_json *json, const char *key, const char *text); /* NULL: null */
 
 typedef enum sf_row_type {
     SF_ROW_NUMBER,  /* double */

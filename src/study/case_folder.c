@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include "io/tree.h"
+#include "io/staging.h"
 #include "pre/mesh/mesher.h"
 #include <stdio.h>
 #include <stdlib.h>

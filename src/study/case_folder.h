@@ -15,7 +15,7 @@ typedef struct sf_case_folder_request {
     const char *origin;           /* of the case, for the README: "the example eva50-v4.5"; NULL: its path */
 } sf_case_folder_request;
 
-/* Makes the folder, as a whole or not at all (io/tree.h). The texts of the case stay as they are but for the
+/* Makes the folder, as a whole or not at all (io/staging.h). The texts of the case stay as they are but for the
  * overrides and the names of files; gmsh runs on each geometry twice, here and in the new folder, to learn
  * what it reads and that its mesh is the same. Warnings about the case go to `sink`.
  *

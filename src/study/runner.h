@@ -7,7 +7,7 @@
 #ifndef SF_CAMPAIGN_RUNNER_H
 #define SF_CAMPAIGN_RUNNER_H
 
-#include "study/drop.h"
+#include "study/batch.h"
 #include "base/error.h"
 #include "post/figures/signal.h"
 #include "post/figures/verdict.h"

@@ -2,7 +2,7 @@
 #include "gui/gmsh/window.h"
 
 #include "io/plain_file.h"
-#include "report/json.h"
+#include "report/row.h"
 
 #include <gmshc.h>
 #include <math.h>

@@ -3,9 +3,8 @@
 
 #include "base/mat3.h"
 #include "base/units.h"
-#include "post/figures/edge.h"
-#include "post/results/results_check.h"
 #include "post/figures/strain_field.h"
+#include "post/results/results.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <math.h>
@@ -353,18 +352,87 @@ static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
     f->steps = r->has_summary ? r->steps : r->history.rows - 1;
 }
 
-static void take_edge(const sf_results *results, sf_figures *f) {
-    sf_edge edge;
-    sf_edge_estimate(results, &edge);
-    f->a_max_by_speed = edge.a_max_by_speed;
-    f->a_max_by_thickness = edge.a_max_by_thickness;
-    f->a_max_by_stress = edge.a_max_by_stress;
-    f->hic_by_speed = edge.hic_by_speed;
-    f->hic_by_thickness = edge.hic_by_thickness;
-    f->hic_by_stress = edge.hic_by_stress;
-    f->a_max_scatter = edge.a_max_scatter;
-    f->hic_scatter = edge.hic_scatter;
+/* ---- the edge ---- */
+
+/* The edge on which a figure may stand: how a_max and HIC change with the speed, the pad's thickness and the
+ * foam's stress, estimated from the run's own force over indentation (docs/theory.md, section 12).
+ *
+ * Near the turn F = C h^(p - n) d^n, with the thickness h, the indentation d, the contact area ~ d^p and the
+ * energy E = F d / (n + 1), so that with e = (dF/dd) E / F^2 = n / (n + 1)
+ *
+ *     d ln a_max = 2 e d ln v,  (p - (1 + p) e) d ln h,  (1 - e) d ln C;
+ *     d ln HIC = 1.5 d ln a_max, and d ln v in addition.
+ *
+ * The slope is that of the steepest of five secants before the turn, the first where the missile slows down
+ * from a half to a quarter of its speed: later ones are bent by the rate of a smooth foam, but see a lock-up.
+ * It lags behind the slope at the turn: e is 1.24 times that of the secant, calibrated to seven drops. While
+ * a foam locks up the estimate is an upper one: up to three times the change beyond the lock-up, where the
+ * force no longer grows as steeply (tests/test_edge.c).
+ */
+
+/* Secants of the force, by the speed where they begin and end over that at contact. */
+static const double secants[][2] = {{0.5, 0.25}, {0.35, 0.2}, {0.25, 0.12}, {0.2, 0.08}, {0.15, 0.04}};
+static const double LAG = 1.24; /* of e over that of the steepest */
+static const double PERCENT = 0.01;
+
+/* The first row from `first` on in which the missile has slowed down to this speed; -1: none. */
+static int64_t row_of_speed(const sf_history *h, int64_t first, double speed) {
+    for (int64_t i = first; i < h->rows; i++)
+        if (h->velocity[i] <= speed)
+            return i;
+    return -1;
 }
+
+static int64_t row_of_indentation(const sf_history *h, int64_t first, double indentation) {
+    for (int64_t i = first; i < h->rows; i++)
+        if (h->indentation[i] >= indentation)
+            return i;
+    return -1;
+}
+
+/* The steepest secant: (dF/dd) / F, m-1; NaN: there is none. */
+static double steepest(const sf_history *h, int64_t first) {
+    double growth = NAN;
+    for (size_t k = 0; k < sizeof secants / sizeof *secants; k++) {
+        int64_t from = row_of_speed(h, first, secants[k][0] * h->velocity[first]),
+                to = row_of_speed(h, first, secants[k][1] * h->velocity[first]);
+        if (from < 0 || to <= from || !(h->contact_force[from] > 0) ||
+            !(h->indentation[to] > h->indentation[from]))
+            continue;
+        growth = fmax(growth, log(h->contact_force[to] / h->contact_force[from]) /
+                                  (h->indentation[to] - h->indentation[from]));
+    }
+    return growth;
+}
+
+/* The run has rebounded. Sets nothing of a driven or free missile, or where the force tells nothing. */
+static void estimate_edge(const sf_results *r, sf_figures *f) {
+    const sf_history *h = &r->history;
+    if (r->driven || r->turns)
+        return;
+    int64_t first = 0;
+    while (first + 1 < h->rows && !(h->contact_nodes[first + 1] > 0))
+        first++;
+    int64_t deepest = sf_history_row_of_largest(h, h->indentation),
+            half = row_of_indentation(h, first, 0.5 * h->indentation[deepest]);
+    double growth = steepest(h, first);
+    if (half < 0 || isnan(growth) || !(h->contact_area[half] > 0))
+        return;
+    double force = h->contact_force[sf_history_row_of_largest(h, h->contact_force)],
+           e = LAG * growth * h->energy_kinetic_missile[first] / force,
+           p = fmin(1, fmax(0, log(h->contact_area[deepest] / h->contact_area[half]) / log(2)));
+    f->a_max_by_speed = PERCENT * 2 * e;
+    f->a_max_by_thickness = PERCENT * (p - (1 + p) * e);
+    f->a_max_by_stress = PERCENT * (1 - e);
+    f->hic_by_speed = 1.5 * f->a_max_by_speed + PERCENT;
+    f->hic_by_thickness = 1.5 * f->a_max_by_thickness;
+    f->hic_by_stress = 1.5 * f->a_max_by_stress;
+    double speed = r->speed_scatter / PERCENT, thickness = r->thickness_tolerance / r->thickness / PERCENT;
+    f->a_max_scatter = hypot(f->a_max_by_speed * speed, f->a_max_by_thickness * thickness);
+    f->hic_scatter = hypot(f->hic_by_speed * speed, f->hic_by_thickness * thickness);
+}
+
+/* ---- all figures ---- */
 
 /* Names the acceleration that the curves show, and what it has passed. */
 static void name_acceleration(sf_figures *f) {
@@ -418,7 +486,7 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
     f->raw_peak_rows = count_peak_rows(&f->raw);
     compute_rebound(results, f);
     if (f->rebounded)
-        take_edge(results, f);
+        estimate_edge(results, f);
 done:
     if (err->status != SF_OK)
         sf_figures_free(f);

@@ -8,7 +8,7 @@
 #define SF_POST_FIGURES_H
 
 #include "post/figures/injury.h"
-#include "post/figures/layer_figures.h"
+#include "post/figures/strain_field.h"
 #include "post/results/results.h"
 #include "report/row.h"
 #include <stddef.h>

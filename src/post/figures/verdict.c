@@ -3,7 +3,7 @@
 
 #include "base/units.h"
 #include "base/text.h"
-#include "post/results/results_check.h"
+#include "post/results/results.h"
 #include <stdio.h>
 #include <string.h>
 

@@ -6,13 +6,13 @@
  * parts left out: history rows that are not complete or not finite, and frames without their scalars. In a
  * file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
  * errors. */
-#ifndef SF_POST_RESULTS_H
-#define SF_POST_RESULTS_H
+#ifndef SF_POST_RESULTS_RESULTS_H
+#define SF_POST_RESULTS_RESULTS_H
 
-#include "base/mat3.h"
 #include "base/error.h"
-#include "model/columns.h"
+#include "base/mat3.h"
 #include "io/h5.h"
+#include "model/columns.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -135,5 +135,16 @@ double sf_results_cross_section(const sf_results *results);
 
 /* True if the missile ever touched the pad. */
 bool sf_results_touched(const sf_results *results);
+
+/* True for the statuses finished, rebound and interrupted. */
+bool sf_results_ended_well(const sf_results *results);
+
+/* Adds a sentence to the notes; further ones are dropped when they are full. */
+void sf_results_note(sf_results *results, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The same of a sentence that only says how the run ended. */
+void sf_results_note_ending(sf_results *results, const char *sentence);
+
+/* Refuses with SF_ERR_IO and a sentence naming the dataset, the value and the bound. */
+sf_status sf_results_check_finite(const double *values, int64_t count, const char *path, sf_error *err);
 
 #endif

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "io/folder.h"
-#include "io/seal.h"
+#include "io/replace.h"
 #include "model/columns.h"
 #include "model/flight.h"
 #include "model/model.h"

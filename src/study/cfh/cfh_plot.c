@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/cfh/cfh_plot.h"
+#include "study/cfh/cfh_report.h"
 
-#include "study/cfh/spread_report.h"
 #include "report/chart.h"
 #include <math.h>
 #include <string.h>

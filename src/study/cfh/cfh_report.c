@@ -3,10 +3,9 @@
 
 #include "build_info.h"
 #include "study/cfh/series.h"
-#include "study/cfh/spread_report.h"
 #include "report/chart.h"
 #include "report/html.h"
-#include "report/json.h"
+#include "report/row.h"
 #include "post/results/origin.h"
 #include "post/view/report.h"
 #include <math.h>

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+static const double STRAIN_MARGIN = 0.02; /* beyond the end of its data: worth a warning */
 _Static_assert((int)SF_CFH_CHECKS <= (int)SF_CFH_MAX_POINTS, "the checks are simulated as one batch");
 
 __attribute__((format(printf, 2, 3))) static void add_note(sf_cfh_point *point, const char *format, ...) {
@@ -25,7 +26,7 @@ static void note_extrapolation(const sf_runner_result *r, const sf_cfh_foams *fo
         const sf_cfh_foam *foam = &foams->foam[k];
         bool layer = foams->count > 1;
         double strain = layer && k < r->layer_count ? r->layer_strain[k] : layer ? NAN : r->max_local_strain;
-        if (strain > foam->end + SF_CFH_STRAIN_MARGIN)
+        if (strain > foam->end + STRAIN_MARGIN)
             add_note(p, "largest local strain%s%s%s %.3f, %s %.3f: extrapolated curve",
                      layer ? " of the layer \"" : "", layer ? foam->name : "", layer ? "\"" : "", strain,
                      foam->words, foam->end);

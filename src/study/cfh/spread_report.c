@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/cfh/spread_report.h"
+#include "study/cfh/cfh_report.h"
 
 #include <math.h>
 

@@ -5,7 +5,6 @@
 
 #include "study/sweep/effects.h"
 #include "study/sweep/sample.h"
-#include "study/sweep/quadratic.h"
 
 enum { SF_SURFACE_ROWS = 20000, SF_OFFSET_LEVELS = 12 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/sweep_plot.h"
+#include "study/sweep/sweep_report.h"
 
 #include "report/chart.h"
 #include <limits.h>

@@ -4,8 +4,7 @@
 #include "build_info.h"
 #include "report/chart.h"
 #include "report/html.h"
-#include "report/json.h"
-#include "study/sweep/sweep_plot.h"
+#include "report/row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

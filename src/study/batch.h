@@ -1,14 +1,60 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A drop of a campaign, and what runs a batch of them. */
+#ifndef SF_STUDY_BATCH_H
+#define SF_STUDY_BATCH_H
+
+#include "base/error.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { SF_RUNNER_OVERRIDES = 16 };
+
+/* One drop. Strings are borrowed. */
+typedef struct sf_runner_drop {
+    const char *label;     /* begins the name of its folder */
+    const char *case_path; /* case file */
+    const char *material;  /* file that replaces the case's group material, NULL: none */
+    int override_count;
+    const char *overrides[SF_RUNNER_OVERRIDES]; /* "group.key=value" */
+} sf_runner_drop;
+
+/* The engine of a batch, and the part of the batch that it runs. Strings are borrowed. */
+typedef struct sf_runner_engine {
+    const char *name;    /* NULL or "local": this process; "snakemake" */
+    const char *profile; /* of Snakemake; NULL: none */
+    int per_job;         /* drops of a job; 0: sf_manifest_group_size */
+    double drop_seconds; /* that a drop takes on one core; 0: not known */
+    int job_threads;     /* of a job; 0: one */
+    bool retry;          /* drops that failed earlier are simulated again; else they fail as they did */
+    const int *lock;     /* of the campaign (sf_folder_lock): an engine that outlives this process keeps it;
+                            NULL: none */
+} sf_runner_engine;
+
+/* Engines that run a batch: this program itself, or Snakemake by the workflow that comes with softfall
+ * (share/softfall/Snakefile), on this machine or by a profile on a cluster. */
+
+/* This process runs the drops. */
+bool sf_engine_is_local(const sf_runner_engine *engine);
+
+/* Can the engine be used? SF_ERR_INPUT: it is unknown, a profile without it, no such profile; SF_ERR_IO: it
+ * is not installed, or Slurm's commands are not, with the name of the package. */
+sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err);
+
+/* Runs every group of the manifest by Snakemake, without a profile on `threads` processors of this machine;
+ * returns when no more can be done. What was done is told by the drops' folders and the files of the groups.
+ * `tick`: called with `context` every ten seconds meanwhile. SF_ERR_IO: it cannot be started;
+ * SF_INTERRUPTED. `*code` its exit code. */
+sf_status sf_engine_run(const sf_runner_engine *engine, int threads, const char *manifest,
+                        void (*tick)(void *context), void *context, int *code, sf_error *err);
+
+/* " (sentence)", the last one of sbatch in the log of Snakemake, from byte `begin` on; "" if there is none.
+ */
+void sf_engine_complaint(const char *log, size_t begin, char *text, size_t size);
+
 /* The manifest of a batch: its drops on disk, in groups, for an engine that starts softfall-batch once for
  * each group (docs/formats.md). It says what is to be done; what has been done is told by the drops' folders,
  * so that nobody has to write the manifest again. */
-#ifndef SF_CAMPAIGN_MANIFEST_H
-#define SF_CAMPAIGN_MANIFEST_H
-
-#include "study/drop.h"
-#include "base/error.h"
-#include <stddef.h>
-#include <stdint.h>
 
 #define SF_MANIFEST_FOLDER "batch" /* in the folder of the runs */
 #define SF_MANIFEST_NAME "manifest.tsv"
