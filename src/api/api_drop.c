@@ -299,8 +299,8 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
     size_t count;
     const sf_figure *list = sf_figure_list(&count);
     sf_figures f = {0};
-    if (check_filter(filter, err) != SF_OK || sf_figures_compute(results, filter, &f, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_filter(filter, err));
+    SF_TRY(sf_figures_compute(results, filter, &f, err));
     softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
     for (size_t k = 0; made && k < count; k++)
         if (is_offered(&list[k])) {

@@ -107,8 +107,7 @@ static void read_included(const char *path, const char *text, sf_geo_names *name
 static sf_status read_depth(const char *path, sf_geo_names *names, int depth, sf_error *err) {
     char *text = NULL;
     size_t size = 0;
-    if (sf_plain_read(path, "geometry", LARGEST, &text, &size, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plain_read(path, "geometry", LARGEST, &text, &size, err));
     sf_geo_names_scan(text, names);
     read_included(path, text, names, depth);
     free(text);

@@ -188,8 +188,7 @@ sf_status sf_shape_read_frame(const sf_shape *s, const sf_results *r, const sf_f
                               sf_shape_frame *out, sf_error *err) {
     sf_frame fields = {{0}};
     *out = (sf_shape_frame){0};
-    if (sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err));
     out->pad = sf_alloc(err, 3 * (unsigned long)s->pad.node_count, sizeof(double), "a frame");
     out->missile = sf_alloc(err, 3 * (unsigned long)s->missile.node_count, sizeof(double), "a frame");
     if (fields.field[SF_FRAME_VON_MISES])

@@ -101,8 +101,7 @@ sf_status sf_replace_check(const char *path, sf_error *err) {
     struct stat info;
     if (!*path)
         return SF_FAIL(err, SF_ERR_INPUT, "the name of the output is empty");
-    if (sf_replace_begin(path, partial, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_replace_begin(path, partial, err));
     if (!*split(path, folder))
         return SF_FAIL(err, SF_ERR_INPUT, "the output %s cannot be written: it is a folder", path);
     if (stat(path, &info) == 0)

@@ -78,8 +78,7 @@ static sf_status finish_group(const char *outcome, int count, const sf_manifest_
 
 static sf_status run_group(const options *o, const sf_manifest *m, const char *outcome, sf_error *err) {
     int first, last;
-    if (find_group(m, o, &first, &last, err) != SF_OK)
-        return err->status;
+    SF_TRY(find_group(m, o, &first, &last, err));
     int count = last - first;
     const sf_manifest_run *run = &m->run[first];
     sf_runner runner = {.folder = m->runs, .threads = o->threads, .log = stdout};
@@ -106,8 +105,7 @@ static sf_status list_runs(const sf_manifest *m, sf_error *err) {
     for (int k = 0; k < m->count; k++) {
         sf_runner_state state = SF_DROP_OPEN;
         sf_error failure = SF_ERROR_INIT;
-        if (sf_runner_find_status(&runner, &m->run[k].drop, &state, &failure, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_runner_find_status(&runner, &m->run[k].drop, &state, &failure, err));
         number[state]++;
         printf("%016llx\t%s\t%s\t%s\t%s\n", (unsigned long long)m->run[k].key, m->run[k].group,
                sf_runner_state_name(state), m->run[k].drop.label, failure.text);

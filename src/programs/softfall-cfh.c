@@ -243,11 +243,12 @@ static sf_cfh_plan make_plan(const options *o, const sf_cfh_rig *rig, const sett
 static sf_status write_output(sf_study *study, const sf_cfh_report *report, sf_error *err) {
     char warning[512] = "", draws[SF_CFH_NOTE_SIZE] = "";
     sf_staging *output = &study->output;
-    if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_draws(output, report, err) != SF_OK ||
-        sf_cfh_write_json(output, report, err) != SF_OK ||
-        sf_cfh_plot(output, report, warning, sizeof warning, err) != SF_OK ||
-        sf_cfh_write_page(output, report, err) != SF_OK || sf_staging_commit(output, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_cfh_write_csv(output, report, err));
+    SF_TRY(sf_cfh_write_draws(output, report, err));
+    SF_TRY(sf_cfh_write_json(output, report, err));
+    SF_TRY(sf_cfh_plot(output, report, warning, sizeof warning, err));
+    SF_TRY(sf_cfh_write_page(output, report, err));
+    SF_TRY(sf_staging_commit(output, err));
     sf_cfh_print(stdout, report);
     sf_study_close(study,
                    *warning ? "report.html, cfh.json, cfh.csv" : "report.html, cfh.json, cfh.csv, cfh.png",
@@ -292,9 +293,8 @@ static sf_status find_interval(sf_study *study, const setting *s, const sf_cfh_s
         return err->status;
     }
     sf_cfh_spread_choose(spread, o->checks, 1e-3 * report->plan->unit);
-    if (sf_cfh_simulate_checks(series, &s->draws, &study->runner, spread, err) != SF_OK ||
-        sf_cfh_spread_evaluate(spread, report->rig, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_cfh_simulate_checks(series, &s->draws, &study->runner, spread, err));
+    SF_TRY(sf_cfh_spread_evaluate(spread, report->rig, err));
     report->spread = spread;
     return SF_OK;
 }
@@ -313,8 +313,7 @@ static sf_status simulate(sf_study *study, const setting *s, sf_cfh_report *repo
            o->list_count ? o->list_count : MAX_DROPS, study->runs,
            report->rig->pairs ? "on the rig" : "of free fall");
     fflush(stdout);
-    if (sf_cfh_simulate(&series, &study->runner, points, &report->ending, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_cfh_simulate(&series, &study->runner, points, &report->ending, err));
     sf_cfh_evaluate(points, report->plan->limit, result);
     return find_interval(study, s, &series, report, spread, err);
 }

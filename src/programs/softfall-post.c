@@ -274,9 +274,9 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
     const sf_summary summary = {
         o->results_path, o->compare.reference.path, &j->results, &j->figures, comparison, &j->verdict};
     const sf_report report = {&summary, j->command_line};
-    if (sf_report_write(&j->output, &report, err) != SF_OK ||
-        sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_report_write(&j->output, &report, err));
+    SF_TRY(sf_summary_write(&j->output, &summary, err));
+    SF_TRY(sf_staging_commit(&j->output, err));
     sf_xdmf_remove_old(o->directory, j->data);
     sf_summary_print(stdout, &summary);
     return SF_OK;
@@ -345,8 +345,7 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     if (o->comparing && sf_compare_run(&compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
         return err->status;
     sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);
-    if (write_output(o, j, err) != SF_OK)
-        return err->status;
+    SF_TRY(write_output(o, j, err));
     print_files(j);
     print_warnings(j);
     return SF_OK;

@@ -225,12 +225,10 @@ static void handle_failure(const options *o, const sf_output *output, const sf_s
  * operators are built, and the model's file is closed. */
 static sf_status build(sf_model *model, sf_h5 **model_file, const sf_provenance *provenance,
                        const sf_output *output, sf_operators *operators, sf_state *state, sf_error *err) {
-    if (sf_output_base(output, model, *model_file, provenance, err) != SF_OK ||
-        sf_h5_close(model_file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_output_base(output, model, *model_file, provenance, err));
+    SF_TRY(sf_h5_close(model_file, err));
     sf_model_drop_mesh(model);
-    if (sf_operators_take(model, operators, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_operators_take(model, operators, err));
     malloc_trim(0); /* return the freed work memory of the build */
     return sf_state_create(model, state, err);
 }
@@ -268,8 +266,7 @@ static sf_status solve(const options *o, const char *command, const volatile sig
                                 .model_path = path,
                                 .model_hash = hash};
     snprintf(libraries, sizeof libraries, "HDF5 %s", sf_h5_version());
-    if (sf_output_name(&output, o->output, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_output_name(&output, o->output, err));
     if (o->restart ? sf_checkpoint_open(output.checkpoint, &from, err) : check_output(o, &output, err))
         return err->status;
     if (read_model(o, &from, &model, &model_file, hash, err) != SF_OK ||

@@ -47,12 +47,11 @@ static void name_output(job *j) {
 static sf_status write_report(sf_study *study, job *j, sf_error *err) {
     char warning[320];
     const sf_sweep_report report = {&j->plan, &j->runs, &j->analysis, study->command};
-    if (sf_analysis_make(&j->runs, &j->analysis, err) != SF_OK ||
-        sf_sweep_plot(&study->output, &j->analysis, study->runs, warning, sizeof warning, err) != SF_OK ||
-        sf_sweep_write_page(&study->output, &report, err) != SF_OK ||
-        sf_sweep_write_json(&study->output, &report, err) != SF_OK ||
-        sf_staging_commit(&study->output, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_analysis_make(&j->runs, &j->analysis, err));
+    SF_TRY(sf_sweep_plot(&study->output, &j->analysis, study->runs, warning, sizeof warning, err));
+    SF_TRY(sf_sweep_write_page(&study->output, &report, err));
+    SF_TRY(sf_sweep_write_json(&study->output, &report, err));
+    SF_TRY(sf_staging_commit(&study->output, err));
     sf_sweep_print(stdout, &report);
     sf_study_close(study, "report.html, runs.csv, sweep.json", warning);
     return SF_OK;
@@ -61,9 +60,8 @@ static sf_status write_report(sf_study *study, job *j, sf_error *err) {
 /* Before anything is made. A table of this plan is replaced without --force. */
 static sf_status check(sf_study *study, job *j, sf_error *err) {
     bool known = false;
-    if (sf_plan_read(study->input, j->yes, &j->plan, err) != SF_OK ||
-        sf_sweep_check_inputs(&j->plan, &j->campaign.inputs, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plan_read(study->input, j->yes, &j->plan, err));
+    SF_TRY(sf_sweep_check_inputs(&j->plan, &j->campaign.inputs, err));
     j->campaign.plan = &j->plan;
     j->campaign.look = sf_sweep_check_inputs;
     j->campaign.folder = study->directory;
@@ -84,10 +82,9 @@ static sf_status estimate(const sf_study *study, job *j, sf_error *err) {
     sf_error small = SF_ERROR_INIT;
     const bool elsewhere = study->engine.profile != NULL;
     int64_t open = 0;
-    if (sf_runs_create(&j->plan, &j->runs, err) != SF_OK ||
-        sf_sweep_campaign_status(&j->campaign, &j->runs, &open, err) != SF_OK ||
-        sf_sweep_cost_estimate(&j->runs, open, study->runs, &cost, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_runs_create(&j->plan, &j->runs, err));
+    SF_TRY(sf_sweep_campaign_status(&j->campaign, &j->runs, &open, err));
+    SF_TRY(sf_sweep_cost_estimate(&j->runs, open, study->runs, &cost, err));
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);
     sf_sweep_cost_print(stdout, &cost, elsewhere ? 0 : study->jobs);
     fflush(stdout);
@@ -117,8 +114,8 @@ static sf_status run_campaign(sf_study *study, job *j, sf_error *err) {
     if (check(study, j, err) != SF_OK || estimate(study, j, err) != SF_OK || j->dry)
         return err->status;
     sf_runs_free(&j->runs);
-    if (sf_study_begin(study, j->list, err) != SF_OK || sf_runs_create(&j->plan, &j->runs, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_study_begin(study, j->list, err));
+    SF_TRY(sf_runs_create(&j->plan, &j->runs, err));
     study->runner.engine.drop_seconds = j->drop_seconds;
     const sf_sweep_engine engine = sf_sweep_drops(&study->runner, study->jobs);
     j->campaign.log = stdout;

@@ -262,8 +262,7 @@ static bool take_run(char *line, sf_manifest_run *run) {
 
 sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
     *m = (sf_manifest){0};
-    if (sf_plain_read(path, "manifest", LARGEST, &m->text, NULL, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plain_read(path, "manifest", LARGEST, &m->text, NULL, err));
     char *rest = m->text, *head = strsep(&rest, "\n");
     m->folder = take_value(&rest, "folder");
     m->runs = take_value(&rest, "runs");

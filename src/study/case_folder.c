@@ -319,8 +319,7 @@ static sf_status write_readme(folder *f, sf_error *err) {
 /* Collects every file: first their names, then their texts. */
 static sf_status collect(folder *f, sf_error *err) {
     const sf_case_folder_request *q = f->request;
-    if (sf_case_parts_read(q->case_path, &f->parts, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_case_parts_read(q->case_path, &f->parts, err));
     for (int k = 0; k < q->override_count; k++)
         SF_TRY(sf_case_parts_set(&f->parts, q->overrides[k], err));
     if (!(f->parts.part[0].name = strdup(CASE_NAME)))

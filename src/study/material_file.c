@@ -132,8 +132,7 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
     sf_replacement out;
     const sf_law_curves *curves = sf_material_curves(material);
     for (int64_t k = 0; curves && k < curves->curve_count; k++)
-        if (write_curve(folder, name, curves, k, text, err) != SF_OK)
-            return err->status;
+        SF_TRY(write_curve(folder, name, curves, k, text, err));
     snprintf(file_name, sizeof file_name, "%s.cfg", name);
     FILE *file = open_file(folder, file_name, &out, err);
     if (!file)
@@ -155,8 +154,7 @@ sf_status sf_material_write_checked(const char *folder, const char *name, const 
                                     const sf_material_text *text, sf_error *err) {
     char path[PATH_SIZE];
     sf_error inner = SF_ERROR_INIT;
-    if (sf_material_write(folder, name, material, text, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_material_write(folder, name, material, text, err));
     snprintf(path, sizeof path, "%s/%s.cfg", folder, name);
     if (sf_case_check_material(path, &inner) == SF_OK)
         return SF_OK;

@@ -186,8 +186,7 @@ static sf_status find_programs(programs *p, sf_error *err) {
 
 static sf_status hash_programs(uint64_t *hash, sf_error *err) {
     static programs known;
-    if (find_programs(&known, err) != SF_OK)
-        return err->status;
+    SF_TRY(find_programs(&known, err));
     for (int k = 0; k < 3 && err->status == SF_OK; k++)
         hash_file(hash, known.path[k], err);
     return err->status;
@@ -258,8 +257,7 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
                              const char *const *overrides, sf_run_folder *at, sf_error *err) {
     sf_case c;
     uint64_t key = 0;
-    if (sf_case_read(case_path, count, overrides, NULL, &c, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_case_read(case_path, count, overrides, NULL, &c, err));
     sf_campaign_key(&c, &key, err);
     sf_run_folder_name_key(parent, label, key, at);
     if (err->status == SF_OK && name_folder(c.pad.path, at->pad_folder, err) == SF_OK)
@@ -419,10 +417,9 @@ static sf_status simulate(const sf_run_folder *at, const char *case_path, int co
     snprintf(thread_text, sizeof thread_text, "%d", threads);
     const char *run[] = {solve, at->model, "-o", at->results, "--force", "-t", thread_text, NULL};
     const char *restart[] = {solve, "--restart", at->results, at->model, "-t", thread_text, NULL};
-    if (sf_process_find("softfall-pre", pre, sizeof pre, err) != SF_OK ||
-        sf_process_find("softfall-solve", solve, sizeof solve, err) != SF_OK ||
-        wait_for_orphan(at, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_process_find("softfall-pre", pre, sizeof pre, err));
+    SF_TRY(sf_process_find("softfall-solve", solve, sizeof solve, err));
+    SF_TRY(wait_for_orphan(at, err));
     if (!sf_run_folder_is_finished(at) && !resume(run, restart, at, err) &&
         wait_for_orphan(at, err) == SF_OK &&
         !sf_run_folder_is_finished(at)) { /* it may have begun meanwhile */
@@ -448,8 +445,7 @@ static sf_status simulate(const sf_run_folder *at, const char *case_path, int co
 sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err) {
     int lock = -1;
-    if (sf_folder_own(at->path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_folder_own(at->path, err));
     if (sf_folder_wait_lock(at->path, &lock))
         simulate(at, case_path, count, overrides, threads, err);
     else

@@ -102,8 +102,7 @@ static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_resul
     const char *path = at->results;
     sf_results r;
     sf_figures f = {0};
-    if (sf_results_open(path, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_results_open(path, &r, err));
     if (sf_figures_compute(&r, 1000, &f, err) == SF_OK && !f.touched)
         SF_FAIL(err, SF_ERR_INPUT, "the missile of %s never touched the pad", path);
     if (err->status == SF_OK) {
@@ -182,8 +181,7 @@ static sf_status locate(const sf_runner *runner, const sf_runner_drop *drop, loc
 sf_status sf_runner_find_status(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
                                 sf_error *failure, sf_error *err) {
     located l;
-    if (locate(runner, drop, &l, err) != SF_OK)
-        return err->status;
+    SF_TRY(locate(runner, drop, &l, err));
     *state = sf_run_folder_is_finished(&l.at)           ? SF_DROP_DONE
              : sf_run_folder_is_running(&l.at)          ? SF_DROP_RUNNING
              : sf_run_folder_has_failed(&l.at, failure) ? SF_DROP_FAILED
@@ -279,8 +277,7 @@ static sf_status simulate(void *context, int index, sf_error *err) {
     const batch *b = context;
     const sf_runner_drop *drop = &b->drop[b->pending[index]];
     located l;
-    if (locate(b->runner, drop, &l, err) != SF_OK)
-        return err->status;
+    SF_TRY(locate(b->runner, drop, &l, err));
     if (l.at.key != b->request[b->pending[index]].key)
         return SF_FAIL(err, SF_ERR_IO, "a file that %s leads to " SF_RUNNER_CHANGED "; repeat the command",
                        drop->case_path);
@@ -508,8 +505,7 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
 static sf_status simulate_pending(batch *b, sf_error *failure, sf_error *err) {
     if (b->pending_count == 0)
         return SF_OK;
-    if (sf_folder_own(b->runner->folder, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_folder_own(b->runner->folder, err));
     sf_error *own = sf_alloc(err, (unsigned long)b->pending_count, sizeof *own, "failures");
     for (int k = 0; own && k < b->pending_count; k++)
         own[k] = (sf_error)SF_ERROR_INIT;

@@ -32,8 +32,7 @@ static sf_status take_error(const char *path, sf_error *err) {
 
 sf_status sf_geometry_show(const char *path, sf_error *err) {
     int ierr = 0, failed = 0;
-    if (sf_plain_check(path, "geometry", err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plain_check(path, "geometry", err));
     gmshLoggerStart(&ierr);
     gmshOpen(path, &failed);
     take_error(path, err);
@@ -91,8 +90,7 @@ static sf_status take_triangles(sf_triangles *out, sf_error *err) {
 sf_status sf_geometry_read_surface(const char *path, sf_triangles *surface, sf_error *err) {
     int ierr = 0;
     *surface = (sf_triangles){0};
-    if (sf_geometry_show(path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_geometry_show(path, err));
     gmshModelMeshGenerate(2, &ierr);
     if (ierr == 0)
         take_triangles(surface, err);

@@ -144,8 +144,7 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
                          double shift, sf_region region, double interval, sf_fit *fit, sf_error *err) {
     *fit =
         (sf_fit){.region = region, .first = NAN, .last = NAN, .interval = interval, .r2 = NAN, .rmse_g = NAN};
-    if (check_region(measured, model, left, shift, region, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_region(measured, model, left, shift, region, err));
     double sum = 0, squares = 0, residual = 0, origin = 0, slack = 1e-9;
     double intervals = floor((region.end - region.begin) / interval + slack);
     if (!(intervals < MOST_SAMPLES))
@@ -190,9 +189,8 @@ static sf_status fit_all(const sf_compare_options *options, const sf_series *mod
         sf_region region = k < 0 ? window : options->regions[k];
         for (int j = 0; j < 2; j++) {
             sf_fit *fit = &c->fits[c->fit_count++];
-            if (sf_compare_fit(&c->measured, model, options->left, options->flight, c->shift, region,
-                               intervals[j], fit, err) != SF_OK)
-                return err->status;
+            SF_TRY(sf_compare_fit(&c->measured, model, options->left, options->flight, c->shift, region,
+                                  intervals[j], fit, err));
             fit->is_window = k < 0;
             snprintf(fit->span, sizeof fit->span, "%.3f to %.3f%s", region.begin * 1e3, region.end * 1e3,
                      k < 0 ? " window" : "");
@@ -230,8 +228,7 @@ sf_rows sf_fit_rows(void) {
 /* Reads the measured curve as it is compared. */
 static sf_status read_measured(const sf_compare_options *options, sf_comparison *c, sf_error *err) {
     sf_reference reference;
-    if (sf_reference_read(&options->reference, &reference, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_reference_read(&options->reference, &reference, err));
     c->measured = reference.curve;
     c->raw = reference.raw;
     c->cfc = options->reference.cfc;

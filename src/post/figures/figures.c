@@ -76,8 +76,7 @@ static sf_status filter_resultant(const sf_results *r, const double *const chann
                                   sf_error *err) {
     const sf_history *h = &r->history;
     sf_series raw = {0};
-    if (sf_series_create(h->rows, &raw, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create(h->rows, &raw, err));
     memcpy(raw.time, h->time, (size_t)h->rows * sizeof *raw.time);
     for (int c = 0; c < 3 && err->status == SF_OK; c++) {
         sf_series one = {0};
@@ -132,8 +131,7 @@ static sf_status compute_resultant(const sf_results *r, sf_figures *f, sf_error 
 
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
-    if (sf_series_create(h->rows, &f->raw, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create(h->rows, &f->raw, err));
     memcpy(f->raw.time, h->time, (size_t)h->rows * sizeof *f->raw.time);
     for (int64_t i = 0; i < h->rows; i++)
         f->raw.value[i] = sf_figures_reading(r, i);
@@ -288,8 +286,7 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
 static sf_status add_depth(const sf_results *r, const sf_frame_head *head, double plane, double *depth,
                            sf_error *err) {
     sf_frame frame;
-    if (sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT, &frame, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT, &frame, err));
     const double *u = frame.field[SF_FRAME_DISPLACEMENT];
     for (int64_t i = 0; u && i < r->node_count; i++)
         *depth = fmax(*depth, plane - (r->position[3 * i + 2] + u[3 * i + 2]));

@@ -210,8 +210,7 @@ sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double o
                           sf_record_verdict *verdict, sf_error *err) {
     record r;
     *verdict = (sf_record_verdict){0};
-    if (record_open(raw, curve, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(record_open(raw, curve, &r, err));
     for (int k = 0; k < SF_RECORD_CHECKS; k++) {
         sf_check *row = &verdict->rows[k];
         *row = rules[k];
@@ -235,8 +234,7 @@ sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double o
 sf_status sf_record_offset(const sf_series *raw, const sf_series *axis, double *offset, sf_error *err) {
     record r;
     *offset = NAN;
-    if (record_open(raw, raw, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(record_open(raw, raw, &r, err));
     *offset = base_before(&r, axis);
     record_free(&r);
     return SF_OK;
@@ -248,8 +246,7 @@ sf_status sf_record_find_impacts(const sf_series *raw, sf_record_impact impact[S
     static const double APART = 5e-3; /* s */
     record r;
     *count = 0;
-    if (record_open(raw, raw, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(record_open(raw, raw, &r, err));
     bool inside = false;
     double left = raw->time[0], lowest = 0;
     for (int64_t i = 0; i < raw->count; i++)

@@ -69,8 +69,7 @@ double sf_signal_rate(const sf_series *series) {
 sf_status sf_signal_lead_in(const sf_series *series, double lead, double level, sf_series *out,
                             sf_error *err) {
     double jump = 1e-3 * fmin(lead, series->time[1] - series->time[0]);
-    if (sf_series_create(series->count + 2, out, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create(series->count + 2, out, err));
     out->time[0] = series->time[0] - lead;
     out->time[1] = series->time[0] - jump;
     out->value[0] = out->value[1] = level;
@@ -100,8 +99,7 @@ static double mean_between(const sf_series *series, double begin, double end, in
 
 sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *uniform, sf_error *err) {
     *uniform = (sf_series){0};
-    if (sf_series_check(series, "the curve to resample", err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_check(series, "the curve to resample", err));
     double start = series->time[0];
     double span = series->time[series->count - 1] - start;
     double intervals = floor(span * rate * (1 + 1e-12) + 1e-9);
@@ -109,8 +107,7 @@ sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *un
         return SF_FAIL(err, SF_ERR_INPUT,
                        "a curve of %.3g s cannot be sampled at %.3g Hz: 2 to %g samples are possible", span,
                        rate, MOST_SAMPLES);
-    if (sf_series_create((int64_t)intervals + 1, uniform, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create((int64_t)intervals + 1, uniform, err));
     int64_t segment = 0, last = uniform->count - 1;
     while (segment < series->count - 2 && series->time[segment + 1] <= start + 0.5 / rate)
         segment++;
@@ -183,9 +180,8 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     *filtered = (sf_series){0};
     double step = 0;
     double *work = NULL;
-    if (sf_series_check(uniform, "the curve to filter", err) != SF_OK ||
-        check_uniform(uniform, &step, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_check(uniform, "the curve to filter", err));
+    SF_TRY(check_uniform(uniform, &step, err));
     double pole = 2 * M_PI * cfc * 2.0775;
     if (!(cfc > 0) || pole * step / 2 > 0.45 * M_PI)
         return SF_FAIL(

@@ -124,21 +124,18 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
     if (!(fabs(sf_results_along(r, d) - 1) < 1e-6))
         return SF_FAIL(err, SF_ERR_IO, "/model/missile_direction (%g, %g, %g) is not a unit vector", d[0],
                        d[1], d[2]);
-    if (sf_results_check_finite(r->missile_centre, 3, "/model/missile_centre", err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_results_check_finite(r->missile_centre, 3, "/model/missile_centre", err));
     if (r->turns && (r->driven || r->symmetry_factor != 1))
         return SF_FAIL(err, SF_ERR_IO, "/model/missile_free is 1 of a driven missile or of a part of one");
-    if (check_positive(r->thickness, "/model/thickness", err) != SF_OK ||
-        check_positive(r->density, "/model/density", err) != SF_OK)
-        return err->status;
+    SF_TRY(check_positive(r->thickness, "/model/thickness", err));
+    SF_TRY(check_positive(r->density, "/model/density", err));
     if (!(fabs(r->gravity_along - sf_results_along(r, r->gravity)) <= 1e-9 * (1 + fabs(r->gravity_along))))
         return SF_FAIL(err, SF_ERR_IO, "/model/gravity_along is %g m/s2, and /model/gravity (%g, %g, %g)",
                        r->gravity_along, r->gravity[0], r->gravity[1], r->gravity[2]);
     if (r->driven)
         return SF_OK;
-    if (check_positive(r->missile_mass, "/model/missile_mass", err) != SF_OK ||
-        check_positive(r->missile_speed, "/model/missile_speed", err) != SF_OK)
-        return err->status;
+    SF_TRY(check_positive(r->missile_mass, "/model/missile_mass", err));
+    SF_TRY(check_positive(r->missile_speed, "/model/missile_speed", err));
     return SF_OK;
 }
 
@@ -180,8 +177,7 @@ static sf_status check_row(const sf_results *r, int64_t i, sf_error *err) {
 /* Sets history.rows from the lengths of the columns, `rows` [SF_HISTORY_COUNT]: equal lengths, finite values,
  * times ascending; of a run that did not end well the longest part of which that holds. */
 static sf_status check_history(sf_results *r, const int64_t *rows, sf_error *err) {
-    if (check_lengths(r, rows, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_lengths(r, rows, err));
     for (int64_t i = 0; i < r->history.rows; i++) {
         sf_error problem = SF_ERROR_INIT;
         if (check_row(r, i, &problem) == SF_OK)
@@ -240,8 +236,7 @@ static sf_status read_array(const sf_results *r, const char *path, sf_h5_type ty
                             int64_t columns, void *array, sf_error *err) {
     int64_t dims[2] = {*rows, columns};
     void *data = NULL;
-    if (sf_h5_read(r->file, path, type, columns > 1 ? 2 : 1, dims, &data, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read(r->file, path, type, columns > 1 ? 2 : 1, dims, &data, err));
     *rows = dims[0];
     *(void **)array = data;
     return SF_OK;
@@ -249,8 +244,7 @@ static sf_status read_array(const sf_results *r, const char *path, sf_h5_type ty
 
 static sf_status read_integer(const sf_results *r, const char *path, int64_t *value, sf_error *err) {
     void *data = NULL;
-    if (sf_h5_read(r->file, path, SF_H5_I64, 0, NULL, &data, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read(r->file, path, SF_H5_I64, 0, NULL, &data, err));
     *value = *(int64_t *)data;
     free(data);
     return SF_OK;
@@ -259,8 +253,7 @@ static sf_status read_integer(const sf_results *r, const char *path, int64_t *va
 static sf_status read_numbers(const sf_results *r, const char *path, int64_t count, double *numbers,
                               sf_error *err) {
     double *data = NULL;
-    if (read_array(r, path, SF_H5_F64, &count, 1, &data, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_array(r, path, SF_H5_F64, &count, 1, &data, err));
     memcpy(numbers, data, (size_t)count * sizeof *numbers);
     free(data);
     return SF_OK;
@@ -306,8 +299,7 @@ static sf_status read_gravity(sf_results *r, sf_error *err) {
 
 /* The exact sphere that contact takes for the missile, if it does. */
 static sf_status read_sphere(sf_results *r, sf_error *err) {
-    if (read_optional(r, "/model/sphere_radius", &r->sphere_radius, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_optional(r, "/model/sphere_radius", &r->sphere_radius, err));
     if (!(r->sphere_radius > 0))
         r->sphere_radius = NAN;
     else if (read_vector(r, "/model/sphere_centre", r->sphere_centre, err) == SF_OK)
@@ -338,15 +330,13 @@ static sf_status read_layers(sf_results *r, sf_error *err) {
     int64_t count = -1, nodes = r->node_count;
     if (!sf_h5_exists(r->file, "/model/node_layer"))
         return SF_OK;
-    if (read_array(r, "/model/node_layer", SF_H5_U8, &nodes, 1, &r->node_layer, err) != SF_OK ||
-        read_array(r, "/model/layer_density", SF_H5_F64, &count, 1, &r->layer_density, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_array(r, "/model/node_layer", SF_H5_U8, &nodes, 1, &r->node_layer, err));
+    SF_TRY(read_array(r, "/model/layer_density", SF_H5_F64, &count, 1, &r->layer_density, err));
     if (count < 1 || count > SF_MATERIAL_MAX)
         return SF_FAIL(err, SF_ERR_IO, "/model/layer_density: %lld layers, 1 to %d are possible",
                        (long long)count, SF_MATERIAL_MAX);
     r->layer_count = (int)count;
-    if (read_array(r, "/model/layer_informed_strain", SF_H5_F64, &count, 1, &r->layer_informed, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_array(r, "/model/layer_informed_strain", SF_H5_F64, &count, 1, &r->layer_informed, err));
     for (int64_t i = 0; i < r->node_count; i++)
         if (r->node_layer[i] >= count)
             return SF_FAIL(err, SF_ERR_IO, "/model/node_layer: node %lld is of layer %d, of 0 to %lld",
@@ -382,10 +372,9 @@ static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_er
 static sf_status read_model(sf_results *r, sf_error *err) {
     int64_t pointers = -1;
     r->node_count = r->cell_count = r->cell_nnz = r->surface_node_count = r->surface_triangle_count = -1;
-    if (read_array(r, "/model/position", SF_H5_F64, &r->node_count, 3, &r->position, err) != SF_OK ||
-        read_array(r, "/model/volume", SF_H5_F64, &r->node_count, 1, &r->volume, err) != SF_OK ||
-        read_array(r, "/model/cell_type", SF_H5_U8, &r->cell_count, 1, &r->cell_type, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_array(r, "/model/position", SF_H5_F64, &r->node_count, 3, &r->position, err));
+    SF_TRY(read_array(r, "/model/volume", SF_H5_F64, &r->node_count, 1, &r->volume, err));
+    SF_TRY(read_array(r, "/model/cell_type", SF_H5_U8, &r->cell_count, 1, &r->cell_type, err));
     pointers = r->cell_count + 1;
     if (read_array(r, "/model/cell_ptr", SF_H5_I64, &pointers, 1, &r->cell_ptr, err) != SF_OK ||
         read_array(r, "/model/cell_node", SF_H5_I32, &r->cell_nnz, 1, &r->cell_node, err) != SF_OK ||
@@ -394,29 +383,30 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         read_array(r, "/model/surface_triangle", SF_H5_I32, &r->surface_triangle_count, 3,
                    &r->surface_triangle, err))
         return err->status;
-    if (read_integer(r, "/model/symmetry_factor", &r->symmetry_factor, err) != SF_OK ||
-        sf_h5_read_scalar(r->file, "/model/thickness", &r->thickness, err) != SF_OK ||
-        sf_h5_read_scalar(r->file, "/model/density", &r->density, err) != SF_OK ||
-        sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err) != SF_OK ||
-        sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err) != SF_OK ||
-        read_vector(r, "/model/missile_direction", r->missile_direction, err) != SF_OK ||
-        read_gravity(r, err) != SF_OK || read_flag(r, "/model/kinematic", &r->kinematic, err) != SF_OK ||
-        read_flag(r, "/model/missile_driven", &r->driven, err) != SF_OK ||
-        read_flag(r, "/model/missile_free", &r->turns, err) != SF_OK ||
-        read_vector(r, "/model/missile_centre", r->missile_centre, err) != SF_OK ||
-        read_mesh_error(r, err) != SF_OK ||
-        read_optional(r, "/model/informed_strain", &r->informed_strain, err) != SF_OK ||
-        read_optional(r, "/model/impact_x", &r->impact_x, err) != SF_OK ||
-        read_optional(r, "/model/impact_y", &r->impact_y, err) != SF_OK ||
-        read_optional(r, "/model/anvil_depth", &r->anvil_depth, err) != SF_OK ||
-        read_optional(r, "/model/air", &r->air, err) != SF_OK ||
-        read_optional(r, "/model/speed_scatter", &r->speed_scatter, err) != SF_OK ||
-        read_optional(r, "/model/thickness_tolerance", &r->thickness_tolerance, err) != SF_OK ||
-        read_optional(r, "/model/slit_fraction", &r->slit_fraction, err) != SF_OK ||
-        read_optional(r, "/model/symmetry_x", &r->symmetry_place[0], err) != SF_OK ||
-        read_optional(r, "/model/symmetry_y", &r->symmetry_place[1], err) != SF_OK ||
-        read_sphere(r, err) != SF_OK || read_layers(r, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_integer(r, "/model/symmetry_factor", &r->symmetry_factor, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/thickness", &r->thickness, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/density", &r->density, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err));
+    SF_TRY(read_vector(r, "/model/missile_direction", r->missile_direction, err));
+    SF_TRY(read_gravity(r, err));
+    SF_TRY(read_flag(r, "/model/kinematic", &r->kinematic, err));
+    SF_TRY(read_flag(r, "/model/missile_driven", &r->driven, err));
+    SF_TRY(read_flag(r, "/model/missile_free", &r->turns, err));
+    SF_TRY(read_vector(r, "/model/missile_centre", r->missile_centre, err));
+    SF_TRY(read_mesh_error(r, err));
+    SF_TRY(read_optional(r, "/model/informed_strain", &r->informed_strain, err));
+    SF_TRY(read_optional(r, "/model/impact_x", &r->impact_x, err));
+    SF_TRY(read_optional(r, "/model/impact_y", &r->impact_y, err));
+    SF_TRY(read_optional(r, "/model/anvil_depth", &r->anvil_depth, err));
+    SF_TRY(read_optional(r, "/model/air", &r->air, err));
+    SF_TRY(read_optional(r, "/model/speed_scatter", &r->speed_scatter, err));
+    SF_TRY(read_optional(r, "/model/thickness_tolerance", &r->thickness_tolerance, err));
+    SF_TRY(read_optional(r, "/model/slit_fraction", &r->slit_fraction, err));
+    SF_TRY(read_optional(r, "/model/symmetry_x", &r->symmetry_place[0], err));
+    SF_TRY(read_optional(r, "/model/symmetry_y", &r->symmetry_place[1], err));
+    SF_TRY(read_sphere(r, err));
+    SF_TRY(read_layers(r, err));
     return check_model(r, err);
 }
 
@@ -425,8 +415,7 @@ static sf_status read_notes(sf_results *r, sf_error *err) {
     char *notes = NULL, *rest = NULL;
     if (!sf_h5_exists(r->file, "/summary/notes"))
         return SF_OK;
-    if (sf_h5_read_text(r->file, "/summary/notes", &notes, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read_text(r->file, "/summary/notes", &notes, err));
     for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
         sf_error_clean(line);
         if (strcmp(line, "the missile never touched the pad") == 0) /* solver/run/run.c */
@@ -448,17 +437,16 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
         return SF_OK;
     }
     char *status = NULL;
-    if (sf_h5_read_text(r->file, "/summary/status", &status, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read_text(r->file, "/summary/status", &status, err));
     snprintf(r->status, sizeof r->status, "%s", status);
     free(status);
-    if (read_integer(r, "/summary/steps", &r->steps, err) != SF_OK ||
-        read_integer(r, "/summary/threads", &r->threads, err) != SF_OK ||
-        read_integer(r, "/summary/interactions", &r->interactions, err) != SF_OK ||
-        sf_h5_read_scalar(r->file, "/summary/wall_time", &r->wall_time, err) != SF_OK ||
-        sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err) != SF_OK ||
-        read_optional(r, "/summary/given_back", &r->given_back, err) != SF_OK || read_notes(r, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_integer(r, "/summary/steps", &r->steps, err));
+    SF_TRY(read_integer(r, "/summary/threads", &r->threads, err));
+    SF_TRY(read_integer(r, "/summary/interactions", &r->interactions, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/summary/wall_time", &r->wall_time, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err));
+    SF_TRY(read_optional(r, "/summary/given_back", &r->given_back, err));
+    SF_TRY(read_notes(r, err));
     if (!sf_results_ended_well(r))
         sf_results_note(r, "the run stopped with: %s", r->status);
     else if (strcmp(r->status, "interrupted") == 0)
@@ -473,8 +461,7 @@ static sf_status read_history(sf_results *r, sf_error *err) {
         char path[64];
         snprintf(path, sizeof path, "/history/%s", sf_history_column_get(c)->name);
         rows[c] = -1;
-        if (read_array(r, path, SF_H5_F64, &rows[c], 1, &r->history.column[c], err) != SF_OK)
-            return err->status;
+        SF_TRY(read_array(r, path, SF_H5_F64, &rows[c], 1, &r->history.column[c], err));
     }
     return check_history(r, rows, err);
 }
@@ -482,17 +469,13 @@ static sf_status read_history(sf_results *r, sf_error *err) {
 static sf_status read_head(const sf_results *r, sf_frame_head *head, sf_error *err) {
     char path[64];
     snprintf(path, sizeof path, "%s/time", head->group);
-    if (sf_h5_read_scalar(r->file, path, &head->time, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read_scalar(r->file, path, &head->time, err));
     snprintf(path, sizeof path, "%s/acceleration", head->group);
-    if (sf_h5_read_scalar(r->file, path, &head->acceleration, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read_scalar(r->file, path, &head->acceleration, err));
     snprintf(path, sizeof path, "%s/missile_displacement", head->group);
-    if (read_vector(r, path, head->missile_displacement, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_vector(r, path, head->missile_displacement, err));
     snprintf(path, sizeof path, "%s/missile_quaternion", head->group);
-    if (read_numbers(r, path, 4, head->missile_quaternion, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_numbers(r, path, 4, head->missile_quaternion, err));
     const double *u = head->missile_displacement, *q = head->missile_quaternion;
     if (!(fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6))
         return SF_FAIL(err, SF_ERR_IO, "%s: its missile_quaternion is not of unit length", head->group);
@@ -522,8 +505,7 @@ static sf_status read_frame_list(sf_results *r, sf_error *err) {
         char name[16];
         sf_error problem = SF_ERROR_INIT;
         sf_frame_head *head = &r->frames[r->frame_count];
-        if (sf_h5_group_member(r->file, "/frames", k, name, sizeof name, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_h5_group_member(r->file, "/frames", k, name, sizeof name, err));
         snprintf(head->group, sizeof head->group, "/frames/%s", name);
         if (read_head(r, head, &problem) == SF_OK && k > 0 && r->frame_count > 0 &&
             !(head->time > head[-1].time))

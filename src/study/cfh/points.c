@@ -83,8 +83,7 @@ static const sf_table_layout layout = {
 sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err) {
     sf_table table;
     *rig = sf_cfh_free_fall();
-    if (sf_table_read(path, &layout, &table, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_table_read(path, &layout, &table, err));
     sf_cfh_rig_fit(path, (int)table.count, table.value[0], table.value[1], rig, err);
     memcpy(rig->interpretation, table.interpretation, sizeof rig->interpretation);
     sf_table_free(&table);
@@ -236,8 +235,7 @@ sf_status sf_cfh_cross(const char *name, int count, const double *height, const 
     *out = (sf_cfh_crossing){.height = NAN, .margin = NAN, .low = NAN, .high = NAN};
     if (count < 1)
         return SF_FAIL(err, SF_ERR_INPUT, "%s has no points", name);
-    if (check_points(name, count, height, value, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_points(name, count, height, value, err));
     bool below = value[0] < limit, reached = false;
     for (int k = 0; k < count; k++)
         reached = reached || value[k] >= limit;

@@ -58,8 +58,7 @@ static sf_status learn_pad(const sf_runner_result *result, sf_cfh_pad *pad, sf_e
     sf_results r;
     if (!pad || pad->columns.count > 0)
         return SF_OK;
-    if (sf_results_open(result->path, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_results_open(result->path, &r, err));
     pad->mesh_error = r.expected_mesh_error;
     sf_columns_build(&r, &pad->columns, err);
     sf_results_close(&r);
@@ -115,8 +114,7 @@ static sf_status take_drop(const sf_cfh_series *s, const sf_runner *runner, cons
 static sf_status run_drops(const sf_cfh_series *s, sf_runner *runner, drops *d, sf_error *err) {
     sf_runner_result result[SF_CFH_MAX_POINTS];
     sf_error failure[SF_CFH_MAX_POINTS];
-    if (sf_runner_run_each(runner, d->count, d->drop, result, failure, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_runner_run_each(runner, d->count, d->drop, result, failure, err));
     for (int k = 0; k < d->count; k++) {
         take_drop(s, runner, d->label[k], &result[k], &failure[k], &d->point[k], err);
         sf_runner_result_free(&result[k]);
@@ -134,8 +132,7 @@ sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_poin
             snprintf(d.label[k], sizeof d.label[k], "h%.4gm", sf_cfh_rig_height(s->rig, round.height[k]));
             add_drop(s, &d, NULL, round.height[k]);
         }
-        if (run_drops(s, runner, &d, err) != SF_OK)
-            return err->status;
+        SF_TRY(run_drops(s, runner, &d, err));
         for (int k = 0; k < d.count; k++)
             sf_cfh_points_add(points, &d.point[k]);
     }

@@ -27,8 +27,7 @@ static sf_status drop_columns(const sf_columns *pad, const sf_material_law *law,
     sf_columns columns = *pad;
     sf_columns_figures figures;
     columns.speed = sf_cfh_speed(height);
-    if (sf_columns_respond(&columns, law, &figures, NULL, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_columns_respond(&columns, law, &figures, NULL, err));
     value[SF_CFH_A_MAX] = log(figures.a_max_g);
     value[SF_CFH_HIC] = log(figures.hic);
     if (!isfinite(value[SF_CFH_A_MAX]) || !isfinite(value[SF_CFH_HIC]))

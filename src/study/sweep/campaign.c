@@ -82,8 +82,7 @@ static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, bo
     uint64_t hash = 0;
     if (access(key.text, F_OK) != 0) /* first of all: without it the table is somebody else's */
         SF_TRY(write_keys(c, 0, err));
-    if (sf_runs_write(runs, table.text, &hash, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_runs_write(runs, table.text, &hash, err));
     if (turned)
         remove_report(c);
     return write_keys(c, hash, err);
@@ -91,8 +90,7 @@ static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, bo
 
 static sf_status check_keys(const sf_sweep_campaign *c, keys *k, bool *known, sf_error *err) {
     *known = false;
-    if (read_keys(c, k, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_keys(c, k, err));
     *known = k->there && k->table == sf_plan_hash(c->plan);
     if (k->there && !*known && !c->force)
         return SF_FAIL(
@@ -139,8 +137,7 @@ static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *cha
     keys k;
     bool known = false;
     path table = file_of(c, "runs.csv");
-    if (check_keys(c, &k, &known, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_keys(c, &k, &known, err));
     *changed = !known || k.inputs != c->inputs || access(table.text, F_OK) != 0;
     if (known && access(table.text, F_OK) == 0 && sf_runs_read(runs, table.text, k.text, err) == SF_OK)
         open_missing(c, runs, err);
@@ -149,8 +146,7 @@ static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *cha
 
 sf_status sf_sweep_campaign_status(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err) {
     bool changed = false;
-    if (read_table(c, runs, &changed, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_table(c, runs, &changed, err));
     *open = sf_runs_count(runs, SF_SWEEP_OPEN) + (c->retry ? sf_runs_count(runs, SF_SWEEP_FAILED) : 0);
     *open = changed ? runs->count : *open;
     return SF_OK;
@@ -190,8 +186,7 @@ static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, bool turned, sf
 }
 
 static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, bool *changed, sf_error *err) {
-    if (read_table(c, runs, changed, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_table(c, runs, changed, err));
     if (*changed) {
         bool there = sf_runs_count(runs, SF_SWEEP_OPEN) < runs->count;
         open_all(runs, SF_SWEEP_DONE);
@@ -412,8 +407,7 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
     int count;
     while (err->status == SF_OK && (count = next_piece(runs, &from, engine->piece, row)) > 0) {
         int fresh = 0;
-        if (engine->run(engine->context, runs, count, row, &fresh, err) != SF_OK)
-            return err->status;
+        SF_TRY(engine->run(engine->context, runs, count, row, &fresh, err));
         done += count;
         double time = now();
         if (time - written < WRITE_INTERVAL || time - written < WRITE_SHARE * duration)

@@ -196,8 +196,7 @@ static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
     sf_build_report report;
     char libraries[SF_LIBRARIES_SIZE];
     sf_error refused = SF_ERROR_INIT;
-    if (sf_sweep_read_case(p, 0, &first, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_sweep_read_case(p, 0, &first, err));
     if (sf_model_make(&first, &model, &report, libraries, NULL, &refused) == SF_OK) {
         c->seconds = SETUP_SECONDS + 2 * sf_report_seconds(&model, &report); /* of two cores */
         c->bytes = RUN_BYTES + NODE_BYTES * (double)model.node_count;
@@ -220,8 +219,7 @@ sf_status sf_sweep_cost_estimate(const sf_runs *r, int64_t open, const char *fol
                                  sf_error *err) {
     int64_t done = 0, kept = sf_runs_count(r, SF_SWEEP_DONE);
     *c = (sf_sweep_cost){.open = open};
-    if (measure(r, &c->seconds, &done, err) != SF_OK)
-        return err->status;
+    SF_TRY(measure(r, &c->seconds, &done, err));
     kept = kept < r->count - open ? kept : r->count - open;
     int64_t more = sf_folder_count(folder, SF_SWEEP_LABEL "-") - kept;
     c->there = more < 0 ? 0 : more < c->open ? more : c->open;

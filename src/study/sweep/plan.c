@@ -30,8 +30,7 @@ static sf_status add_factor(const sf_config *config, const config_setting_t *gro
         return sf_config_refuse(config, group, err, "more than %d factors", SF_SWEEP_FACTORS);
     p->block_of[p->factor_count] = p->block_count;
     sf_factor *f = &p->factor[p->factor_count++];
-    if (sf_factor_read(config, group, sampled, f, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_factor_read(config, group, sampled, f, err));
     if (is_column(f->name))
         return sf_config_refuse(config, group, err,
                                 "\"%s\" is a column of runs.csv already: give the factor another name",
@@ -90,8 +89,7 @@ static sf_status copy_levels(sf_factor *f, sf_error *err) {
 
 static sf_status read_list_block(const sf_config *config, const config_setting_t *group, sf_plan *p,
                                  sf_block *b, sf_error *err) {
-    if (add_factor(config, group, false, p, err) != SF_OK)
-        return err->status;
+    SF_TRY(add_factor(config, group, false, p, err));
     b->rows = p->factor[b->first].count;
     return copy_levels(&p->factor[b->first], err);
 }
@@ -100,10 +98,9 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
                           sf_error *err) {
     const config_setting_t *list = NULL;
     b->kind = SF_BLOCK_ZIP;
-    if (sf_config_names(config, group, "zip", err) != SF_OK ||
-        sf_config_list(config, group, "zip", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
-        add_members(config, list, false, p, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, group, "zip", err));
+    SF_TRY(sf_config_list(config, group, "zip", true, SF_SWEEP_FACTORS, &list, err));
+    SF_TRY(add_members(config, list, false, p, err));
     b->rows = p->factor[b->first].count;
     for (int k = b->first; k < p->factor_count; k++) {
         const sf_factor *f = &p->factor[k];
@@ -118,8 +115,7 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
                 "probability belongs to a choice: give the chosen one uncertain = true, or "
                 "cross them",
                 p->factor[b->first].key, f->key);
-        if (copy_levels(&p->factor[k], err) != SF_OK)
-            return err->status;
+        SF_TRY(copy_levels(&p->factor[k], err));
     }
     return SF_OK;
 }
@@ -156,13 +152,12 @@ static sf_status read_sample(const sf_config *config, const config_setting_t *gr
     int method = 0;
     double count = 0, seed = 1;
     b->kind = SF_BLOCK_SAMPLE;
-    if (sf_config_names(config, group, "sample|count|seed|of", err) != SF_OK ||
-        sf_config_choice(config, group, "sample", SF_SAMPLING_WORDS, &method, err) != SF_OK ||
-        sf_config_whole(config, group, "count", true, 1, MOST_SAMPLES, &count, err) != SF_OK ||
-        sf_config_whole(config, group, "seed", false, 0, 4294967295.0, &seed, err) != SF_OK ||
-        sf_config_list(config, group, "of", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
-        add_members(config, list, true, p, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, group, "sample|count|seed|of", err));
+    SF_TRY(sf_config_choice(config, group, "sample", SF_SAMPLING_WORDS, &method, err));
+    SF_TRY(sf_config_whole(config, group, "count", true, 1, MOST_SAMPLES, &count, err));
+    SF_TRY(sf_config_whole(config, group, "seed", false, 0, 4294967295.0, &seed, err));
+    SF_TRY(sf_config_list(config, group, "of", true, SF_SWEEP_FACTORS, &list, err));
+    SF_TRY(add_members(config, list, true, p, err));
     if ((sf_sampling)method == SF_SAMPLING_SALTELLI && count < SF_INDEX_LEAST)
         return sf_config_refuse(config, config_setting_get_member(group, "count"), err,
                                 "count: Sobol' indices need %d samples, and some hundreds to tell anything",
@@ -220,8 +215,7 @@ static sf_status multiply(const sf_config *config, const config_setting_t *list,
 
 static sf_status read_factors(const sf_config *config, bool huge, sf_plan *p, sf_error *err) {
     const config_setting_t *root = config_root_setting(&config->config), *list = NULL;
-    if (sf_config_list(config, root, "factors", true, SF_SWEEP_FACTORS, &list, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_list(config, root, "factors", true, SF_SWEEP_FACTORS, &list, err));
     for (int k = 0; k < config_setting_length(list) && err->status == SF_OK; k++)
         read_block(config, config_setting_get_elem(list, (unsigned)k), huge, p, err);
     return err->status == SF_OK ? multiply(config, list, huge, p, err) : err->status;
@@ -298,11 +292,11 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
 static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_error *err) {
     const config_setting_t *root = config_root_setting(&config->config);
     const char *title = NULL;
-    if (sf_config_names(config, root, "case|title|set|factors|figures", err) != SF_OK ||
-        sf_config_file(config, root, "case", true, &p->case_path, err) != SF_OK ||
-        sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
-        read_factors(config, huge, p, err) != SF_OK || read_set(config, p, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, root, "case|title|set|factors|figures", err));
+    SF_TRY(sf_config_file(config, root, "case", true, &p->case_path, err));
+    SF_TRY(sf_config_text(config, root, "title", false, &title, err));
+    SF_TRY(read_factors(config, huge, p, err));
+    SF_TRY(read_set(config, p, err));
     p->title = title ? strdup(title) : NULL;
     p->folder = strdup(config->folder);
     if (!p->folder)

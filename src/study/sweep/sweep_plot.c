@@ -63,8 +63,7 @@ static sf_status choose_series(const sf_plan *p, int other, series *s, sf_error 
     for (int f = 0; f < p->factor_count && s->factor < 0; f++) {
         if (f == other || p->factor[f].uncertain || (other >= 0 && p->block_of[f] == p->block_of[other]))
             continue;
-        if (sf_groups_make(p, f, &s->groups, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_groups_make(p, f, &s->groups, err));
         if (s->groups.count > 1 && s->groups.count <= SERIES)
             s->factor = f;
         else
@@ -233,8 +232,7 @@ static sf_status plot_curves(const sf_staging *output, const sf_analysis *a, con
     int64_t at = -1;
     series s;
     bool titled[SERIES] = {false};
-    if (choose_series(a->plan, -1, &s, err) != SF_OK)
-        return err->status;
+    SF_TRY(choose_series(a->plan, -1, &s, err));
     bool *shown = sf_analysis_pick(a->done - a->unusable, CURVES, err);
     sf_chart *chart = sf_chart_new("curves", 1600, 900, err);
     sf_panel *panel = sf_chart_panel(chart);
