@@ -8,7 +8,7 @@
 #include "study/fit/space_mapping.h"
 #include "foam_fixture.h"
 #include "io/folder.h"
-#include "post/figures/injury.h"
+#include "post/figures/signal.h"
 #include "post_check.h"
 #include "program_fixture.h"
 

@@ -2,7 +2,7 @@
 /* Compression tests and cushion curves as data of softfall-fit drop: a synthetic foam, whose test is that of
  * the solver's law and whose cushion curve is that of a block, from each, from both, and with drops;
  * refusals. */
-#include "study/cfh/posterior.h"
+#include "study/cfh/spread.h"
 #include "study/fit/drop/average.h"
 #include "study/fit/drop/fit_input.h"
 #include "material/point.h"

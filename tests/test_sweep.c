@@ -6,7 +6,6 @@
 
 #include "study/sweep/analysis.h"
 #include "study/sweep/campaign.h"
-#include "study/sweep/drops.h"
 #include "study/sweep/sweep_report.h"
 #include <math.h>
 #include <setjmp.h>

@@ -142,7 +142,8 @@ static sf_status take_missile(int64_t nodes, const double *position, int64_t tri
     return SF_OK;
 }
 
-sf_status sf_shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
+/* The faces that belong to one cell only, in the length unit `unit`. Release with sf_shape_free. */
+static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
     const cell_list cells = {m->node_count, m->cell_count, m->position,
                              m->cell_type,  m->cell_ptr,   m->cell_node};
     *s = (sf_shape){.unit = unit};
@@ -184,8 +185,15 @@ static void gather(const sf_shape *s, const sf_frame *fields, sf_shape_frame *ou
     }
 }
 
-sf_status sf_shape_read_frame(const sf_shape *s, const sf_results *r, const sf_frame_head *head,
-                              sf_shape_frame *out, sf_error *err) {
+static void free_shape_frame(sf_shape_frame *f) {
+    free(f->pad);
+    free(f->stress);
+    free(f->missile);
+    *f = (sf_shape_frame){0};
+}
+
+static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const sf_frame_head *head,
+                                  sf_shape_frame *out, sf_error *err) {
     sf_frame fields = {{0}};
     *out = (sf_shape_frame){0};
     SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err));
@@ -203,15 +211,8 @@ sf_status sf_shape_read_frame(const sf_shape *s, const sf_results *r, const sf_f
     }
     sf_frame_free(&fields);
     if (err->status != SF_OK)
-        sf_shape_frame_free(out);
+        free_shape_frame(out);
     return err->status;
-}
-
-void sf_shape_frame_free(sf_shape_frame *f) {
-    free(f->pad);
-    free(f->stress);
-    free(f->missile);
-    *f = (sf_shape_frame){0};
 }
 
 /* ---- figures and checks in the tree ---- */
@@ -295,7 +296,8 @@ static const char *const names[] = {"4Results/1verdict",
 enum { VERDICT, A_MAX, HIC, REBOUND, INDENTATION, STRAIN, ENTRIES };
 enum { FILTER = 1000 }; /* CFC of curve and figures */
 
-void sf_outcome_clear(void) {
+/* Empties the branch. */
+static void clear_outcome(void) {
     for (int k = 0; k < ENTRIES; k++)
         sf_window_remove(names[k]);
 }
@@ -337,7 +339,9 @@ static void show_motion(const sf_figures *f) {
     put(STRAIN, text, NULL);
 }
 
-sf_status sf_outcome_show(const sf_results *r, char *line, size_t size, sf_error *err) {
+/* Puts them into the branch Results, coloured by pass and fail; returns the sentence of the verdict in
+ * `line`. A run that has not ended or never touched has what is known. */
+static sf_status show_outcome(const sf_results *r, char *line, size_t size, sf_error *err) {
     sf_figures f = {0};
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS;
@@ -368,7 +372,9 @@ static void plot(const char *title, int64_t count, const double *time, const dou
     free(x);
 }
 
-void sf_outcome_plot(const sf_results *r) {
+/* The curve of the figures so far, filtered as they are; the raw one, and its title says so, of a run that
+ * has no figures yet. */
+static void plot_outcome(const sf_results *r) {
     const sf_history *h = &r->history;
     sf_figures f = {0};
     sf_error none = SF_ERROR_INIT;
@@ -415,7 +421,8 @@ static void show_missile(sf_pictures *p, const sf_case *c, const sf_pictures_pla
     free(move);
 }
 
-void sf_pictures_forget(sf_pictures *p) {
+/* Removes the results from the window, and releases their shape. */
+static void forget(sf_pictures *p) {
     sf_shape_free(&p->shape);
     p->seen = (sf_watch_stamp){0};
     p->frames = 0;
@@ -424,7 +431,7 @@ void sf_pictures_forget(sf_pictures *p) {
     sf_view_remove(SF_PICTURE_MISSILE);
     sf_view_remove(SF_PICTURE_CURVE);
     sf_window_remove(FRAME);
-    sf_outcome_clear();
+    clear_outcome();
 }
 
 /* Shows the geometries with the parameters of the tree. gmsh shows one model only: the missile is a picture.
@@ -432,7 +439,7 @@ void sf_pictures_forget(sf_pictures *p) {
 sf_status sf_pictures_show_geometry(sf_pictures *p, const sf_case *c, const sf_pictures_place *place,
                                     sf_fields *fields, sf_error *err) {
     sf_triangles missile = {0};
-    sf_pictures_forget(p);
+    forget(p);
     sf_geometry_clear();
     if (c->missile.path && sf_geometry_read_surface(c->missile.path, &missile, err) != SF_OK)
         return err->status;
@@ -471,9 +478,9 @@ void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit
     sf_error err = SF_ERROR_INIT;
     sf_model m = {0};
     double *zero = NULL;
-    sf_pictures_forget(p);
+    forget(p);
     if (sf_model_read(path, &m, NULL, &err) == SF_OK &&
-        sf_shape_of_model(&m, length_unit, &p->shape, &err) == SF_OK && begin_pictures(p, &err) == SF_OK) {
+        shape_of_model(&m, length_unit, &p->shape, &err) == SF_OK && begin_pictures(p, &err) == SF_OK) {
         int64_t most = p->shape.pad.node_count + p->shape.missile.node_count;
         zero = sf_alloc(&err, 3 * (unsigned long)most, sizeof *zero, "a picture");
     }
@@ -499,11 +506,11 @@ static void add_frames(sf_pictures *p, const sf_results *r, sf_error *err) {
     for (; p->frames < r->frame_count && err->status == SF_OK; p->frames++) {
         const sf_frame_head *head = &r->frames[p->frames];
         sf_shape_frame f;
-        if (sf_shape_read_frame(&p->shape, r, head, &f, err) != SF_OK)
+        if (read_shape_frame(&p->shape, r, head, &f, err) != SF_OK)
             return;
         sf_view_add(SF_PICTURE_PAD, p->frames, 1e3 * head->time, &p->shape.pad, f.pad, f.stress);
         sf_view_add(SF_PICTURE_MISSILE, p->frames, 1e3 * head->time, &p->shape.missile, f.missile, NULL);
-        sf_shape_frame_free(&f);
+        free_shape_frame(&f);
     }
 }
 
@@ -527,9 +534,9 @@ void sf_pictures_show_results(sf_pictures *p, const char *path, double length_un
     add_frames(p, &r, &err);
     if (p->frames > 0)
         show_frame(p, whole && err.status == SF_OK ? find_peak(&r) : p->frames - 1);
-    sf_outcome_plot(&r);
+    plot_outcome(&r);
     if (whole && err.status == SF_OK)
-        sf_outcome_show(&r, line, sizeof line, &err);
+        show_outcome(&r, line, sizeof line, &err);
     if (err.status == SF_OK)
         p->seen = now;
     sf_results_close(&r);

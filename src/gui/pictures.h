@@ -19,8 +19,6 @@ typedef struct sf_shape {
     double *missile_position; /* [missile.node_count][3] m, at t = 0; owned */
 } sf_shape;
 
-/* The faces that belong to one cell only, in the length unit `unit`. Release with sf_shape_free. */
-sf_status sf_shape_of_model(const sf_model *model, double unit, sf_shape *shape, sf_error *err);
 sf_status sf_shape_of_results(const sf_results *results, double unit, sf_shape *shape, sf_error *err);
 void sf_shape_free(sf_shape *shape);
 
@@ -29,9 +27,6 @@ void sf_shape_free(sf_shape *shape);
 typedef struct sf_shape_frame {
     double *pad, *stress, *missile;
 } sf_shape_frame;
-sf_status sf_shape_read_frame(const sf_shape *shape, const sf_results *results, const sf_frame_head *head,
-                              sf_shape_frame *frame, sf_error *err);
-void sf_shape_frame_free(sf_shape_frame *frame);
 
 /* Shows the checks of softfall-pre, and the sentences of programs, from their output. */
 
@@ -59,15 +54,6 @@ void sf_checks_sentence(const char *text, char *out, size_t size);
 void sf_checks_progress(const char *text, char *out, size_t size);
 
 /* The figures of a run in the tree, by the functions of softfall-post. */
-
-/* Puts them into the branch Results, coloured by pass and fail; returns the sentence of the verdict in
- * `line`. A run that has not ended or never touched has what is known. */
-sf_status sf_outcome_show(const sf_results *results, char *line, size_t size, sf_error *err);
-/* Empties the branch. */
-void sf_outcome_clear(void);
-/* The curve of the figures so far, filtered as they are; the raw one, and its title says so, of a run that
- * has no figures yet. */
-void sf_outcome_plot(const sf_results *results);
 
 /* The pictures of the window: the geometry of a case, the model that softfall-pre has made, or the frames of
  * a run. Each replaces the one before. */
@@ -98,7 +84,5 @@ void sf_pictures_show_model(sf_pictures *pictures, const char *path, double leng
 void sf_pictures_show_results(sf_pictures *pictures, const char *path, double length_unit, bool whole);
 /* Shows the frame that the user has chosen in the tree. */
 void sf_pictures_take_frame(sf_pictures *pictures);
-/* Removes the results from the window, and releases their shape. */
-void sf_pictures_forget(sf_pictures *pictures);
 
 #endif

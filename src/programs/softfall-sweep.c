@@ -5,7 +5,7 @@
 #include "io/process.h"
 #include "study/batch.h"
 #include "study/setup.h"
-#include "study/sweep/drops.h"
+#include "study/sweep/campaign.h"
 #include "study/sweep/sweep_report.h"
 
 #include <malloc.h>

@@ -262,7 +262,9 @@ void sf_rows_csv(FILE *file, sf_rows rows, sf_records records) {
 
 /* ---- HTML ---- */
 
-void sf_row_html_cell(sf_html_table *table, const sf_row *row, const void *record) {
+/* HTML: a cell; a table of facts "name | value unit"; a table with a column for each declaration that has a
+ * name, and a row for each record. `kind` as for sf_html_table_begin. */
+static void put_html_cell(sf_html_table *table, const sf_row *row, const void *record) {
     char text[512];
     const char *dash = sf_row_value(row, record).kind == SF_VALUE_TEXT ? "" : "–";
     sf_html_cell(table, "%s", sf_row_shown(row, record, dash, text, sizeof text));
@@ -319,7 +321,7 @@ void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records r
         sf_html_row(&table);
         for (size_t c = 0; c < rows.count; c++)
             if (rows.row[c].name)
-                sf_row_html_cell(&table, &rows.row[c], record_at(records, k));
+                put_html_cell(&table, &rows.row[c], record_at(records, k));
     }
     sf_html_table_end(&table);
     free(headings);

@@ -99,9 +99,6 @@ void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records
 /* CSV: the heading and a line for each record, numbers with nine digits. */
 void sf_rows_csv(FILE *file, sf_rows rows, sf_records records);
 
-/* HTML: a cell; a table of facts "name | value unit"; a table with a column for each declaration that has a
- * name, and a row for each record. `kind` as for sf_html_table_begin. */
-void sf_row_html_cell(sf_html_table *table, const sf_row *row, const void *record);
 void sf_rows_html_facts(sf_html_table *table, sf_rows rows, const void *record);
 void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records);
 

@@ -221,14 +221,6 @@ char *sf_campaign_geometry_list(const char *path, const char *text) {
     return files;
 }
 
-bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
-                                  bool unlisted) {
-    char *files = sf_campaign_geometry_list(path, text);
-    bool same = files ? sf_geometry_files_are_same(folder, files) : unlisted;
-    free(files);
-    return same;
-}
-
 enum { MAX_ARGUMENTS = 64 };
 
 /* The folder of a file; "" of none. */
@@ -266,9 +258,14 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
     return err->status;
 }
 
+/* True if every file that the geometries read, by the list at `text` of the HDF5 file `path`
+ * (docs/formats.md, geometry_files), has the content that it had; `unlisted` if there is no such list. */
 static bool is_geometry_same(const sf_run_folder *at, const char *path, const char *text, bool unlisted) {
     const char *const folder[2] = {at->pad_folder, at->missile_folder};
-    return sf_campaign_geometry_is_same(folder, path, text, unlisted);
+    char *files = sf_campaign_geometry_list(path, text);
+    bool same = files ? sf_geometry_files_are_same(folder, files) : unlisted;
+    free(files);
+    return same;
 }
 
 /* By the record of its figures: only of a drop that ran to its end. */

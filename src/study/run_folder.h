@@ -36,7 +36,7 @@ void sf_run_record_write(const char *path, const char *results, const sf_results
 
 /* A hash of the values of every key of the case, the points of its curves and motion, its geometry files and
  * the programs that simulate it; the names of files do not count. What a geometry includes or merges is known
- * only after it was read: sf_campaign_geometry_is_same. */
+ * only after it was read: sf_run_folder_is_finished. */
 sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 
 /* Why two geometry files of one text in two folders are refused. */
@@ -47,13 +47,8 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 /* The part of it that is of the case alone, without geometry files and programs. */
 uint64_t sf_campaign_case_hash(const sf_case *c);
 
-/* True if every file that the geometries read, by the list at `text` of the HDF5 file `path`
- * (docs/formats.md, geometry_files), has the content that it had. `folder`: that of the pad's and the
- * missile's geometry, where paths in the list begin; "" without a geometry of the missile. `unlisted`: the
- * answer if there is no such file or list. */
-bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
-                                  bool unlisted);
-/* Returns that list, from malloc; NULL if there is none. */
+/* Returns the list of the files that the geometries read, at `text` of the HDF5 file `path` (docs/formats.md,
+ * geometry_files), from malloc; NULL if there is none. */
 char *sf_campaign_geometry_list(const char *path, const char *text);
 
 /* The folder of one drop: it holds the log, the model and the checkpoint while the drop is not finished, and

@@ -97,8 +97,8 @@ static void write_record(const sf_run_folder *at, const sf_results *r, const sf_
     free(geometry);
 }
 
-/* `keep`: writes the record of the figures, too. */
-static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_result *out, sf_error *err) {
+/* Writes the record of the figures, too. */
+static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
     const char *path = at->results;
     sf_results r;
     sf_figures f = {0};
@@ -119,8 +119,7 @@ static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_resul
                                   .steps = r.steps,
                                   .curve = f.filtered};
         judge(&r, &f, out);
-        if (keep)
-            write_record(at, &r, &f, out);
+        write_record(at, &r, &f, out);
         f.filtered = (sf_series){0};
         if (take_layers(&r, &f, out, err) == SF_OK && take_figures(&r, &f, out, err) == SF_OK)
             result_path(path, out, err);
@@ -201,13 +200,6 @@ sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uin
     return err->status;
 }
 
-sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
-                         sf_error *err) {
-    located l;
-    memset(result, 0, sizeof *result);
-    return locate(runner, drop, &l, err) == SF_OK ? read_result(&l.at, false, result, err) : err->status;
-}
-
 /* ---- batches ---- */
 
 /* The request of a drop of a batch; small, as there may be very many. */
@@ -269,7 +261,7 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
 static void record(const sf_run_folder *at) {
     sf_error none = SF_ERROR_INIT;
     sf_runner_result result;
-    if (read_result(at, true, &result, &none) == SF_OK)
+    if (read_result(at, &result, &none) == SF_OK)
         sf_runner_result_free(&result);
 }
 
@@ -524,7 +516,7 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
     sf_run_folder at;
     sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
     if (!(runner->figures_only && read_recorded(&at, result, err)))
-        read_result(&at, true, result, err);
+        read_result(&at, result, err);
     if (err->status != SF_OK)
         return err->status;
     result->reused = r->reused;

@@ -73,12 +73,9 @@ sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop 
 void sf_runner_result_free(sf_runner_result *result);
 
 /* The same as sf_runner_run_each, but no results are read: for many drops. Counts neither simulated nor
- * reused. sf_runner_read then reads those of one drop. */
+ * reused. */
 sf_status sf_runner_simulate_each(sf_runner *runner, int count, const sf_runner_drop *drop, sf_error *failure,
                                   sf_error *err);
-/* The results of a finished drop; SF_ERR_IO if there are none. */
-sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
-                         sf_error *err);
 
 /* The key of the drop's inputs: its folder is runner->folder/label-<key, 16 hexadecimal digits>. */
 sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uint64_t *key, sf_error *err);

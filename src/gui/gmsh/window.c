@@ -105,7 +105,8 @@ void sf_geometry_clear(void) {
 
 #define ACTION "ONELAB/Action"
 
-void sf_window_option(const char *name, double value) {
+/* An option of gmsh. */
+static void set_gmsh_option(const char *name, double value) {
     int ierr = 0;
     gmshOptionSetNumber(name, value, &ierr);
 }
@@ -134,18 +135,18 @@ static void write_nothing(void) {
                                       "General.ExpertMode",
                                       "Mesh.SaveAll"};
     for (size_t k = 0; k < sizeof off / sizeof off[0]; k++)
-        sf_window_option(off[k], 0);
-    sf_window_option("Solver.AutoCheck", 1);
+        set_gmsh_option(off[k], 0);
+    set_gmsh_option("Solver.AutoCheck", 1);
 }
 
 /* The side view, z upwards: a quarter turn about x. */
 static void look_from_the_side(void) {
-    sf_window_option("General.Trackball", 1);
-    sf_window_option("General.TrackballQuaternion0", 0.70710678);
-    sf_window_option("General.TrackballQuaternion1", 0);
-    sf_window_option("General.TrackballQuaternion2", 0);
-    sf_window_option("General.TrackballQuaternion3", 0.70710678);
-    sf_window_option("General.Orthographic", 1);
+    set_gmsh_option("General.Trackball", 1);
+    set_gmsh_option("General.TrackballQuaternion0", 0.70710678);
+    set_gmsh_option("General.TrackballQuaternion1", 0);
+    set_gmsh_option("General.TrackballQuaternion2", 0);
+    set_gmsh_option("General.TrackballQuaternion3", 0.70710678);
+    set_gmsh_option("General.Orthographic", 1);
 }
 
 sf_status sf_window_start(sf_error *err) {
@@ -153,11 +154,11 @@ sf_status sf_window_start(sf_error *err) {
         return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot be started");
     write_nothing();
     look_from_the_side();
-    sf_window_option("General.Terminal", 0);
-    sf_window_option("General.MenuWidth", 420);
-    sf_window_option("General.GraphicsWidth", 1240);
-    sf_window_option("General.GraphicsHeight", 900);
-    sf_window_option("Geometry.PointSize", 0);
+    set_gmsh_option("General.Terminal", 0);
+    set_gmsh_option("General.MenuWidth", 420);
+    set_gmsh_option("General.GraphicsWidth", 1240);
+    set_gmsh_option("General.GraphicsHeight", 900);
+    set_gmsh_option("Geometry.PointSize", 0);
     return SF_OK;
 }
 
@@ -203,14 +204,6 @@ void sf_window_refresh(void) {
     gmshGraphicsDraw(&ierr);
 }
 
-void sf_window_branch(const char *name, bool open) {
-    int ierr = 0;
-    if (open)
-        gmshFltkOpenTreeItem(name, &ierr);
-    else
-        gmshFltkCloseTreeItem(name, &ierr);
-}
-
 /* ---- entries ---- */
 
 bool sf_window_text(const char *name, char *text, size_t size) {
@@ -236,7 +229,7 @@ bool sf_window_number(const char *name, double *number) {
     return ierr == 0 && count > 0;
 }
 
-void sf_window_set_text(const char *name, const char *text) {
+static void set_entry(const char *name, const char *text) {
     char *copy = strdup(text);
     void *const list = &copy; /* char ** in gmsh 4.8, const char *const * in 4.13 */
     int ierr = 0;
@@ -254,7 +247,7 @@ bool sf_window_take_action(char *action, size_t size) {
     sf_window_text(ACTION, action, size);
     if (!*action)
         return false;
-    sf_window_set_text(ACTION, "");
+    set_entry(ACTION, "");
     return true;
 }
 
@@ -389,9 +382,9 @@ void sf_window_fit(const double low[3], const double high[3], double left, doubl
            whole = fmax(right - left, top - low[2]), scale = own / whole;
     const char *const scales[] = {"General.ScaleX", "General.ScaleY", "General.ScaleZ"};
     for (int k = 0; k < 3 && scale > 0; k++)
-        sf_window_option(scales[k], fmin(scale, 1));
-    sf_window_option("General.TranslationX", 0.5 * (low[0] + high[0] - left - right));
-    sf_window_option("General.TranslationY", 0.5 * (high[2] - top));
+        set_gmsh_option(scales[k], fmin(scale, 1));
+    set_gmsh_option("General.TranslationX", 0.5 * (low[0] + high[0] - left - right));
+    set_gmsh_option("General.TranslationY", 0.5 * (high[2] - top));
 }
 
 sf_status sf_window_write_picture(const char *path, sf_error *err) {
@@ -434,7 +427,7 @@ static void set_option(int tag, const char *option, double value) {
     if (ierr != 0 || index < 0)
         return;
     snprintf(name, sizeof name, "View[%d].%s", index, option);
-    sf_window_option(name, value);
+    set_gmsh_option(name, value);
 }
 
 static void set_text(int tag, const char *option, const char *value) {

@@ -69,8 +69,6 @@ bool sf_window_take_action(char *action, size_t size);
 void sf_window_say(const char *text);
 /* Shows the entries and the picture as they now are. */
 void sf_window_refresh(void);
-/* Opens or closes a branch. */
-void sf_window_branch(const char *name, bool open);
 
 /* Makes the entry, or replaces it with its value. */
 void sf_window_put(const sf_entry *entry);
@@ -78,7 +76,6 @@ void sf_window_remove(const char *name);
 /* Values as they stand in the tree; false: there is no such entry. */
 bool sf_window_text(const char *name, char *text, size_t size);
 bool sf_window_number(const char *name, double *number);
-void sf_window_set_text(const char *name, const char *text);
 void sf_window_set_number(const char *name, double number);
 /* Colours an entry that a geometry has made; NULL: no colour. */
 void sf_window_colour_number(const char *name, const char *colour);
@@ -87,8 +84,6 @@ void sf_window_lock_number(const char *name);
 /* Calls `visit` with the name of each number of the tree. */
 void sf_window_visit_numbers(void (*visit)(void *user, const char *name), void *user);
 
-/* An option of gmsh. */
-void sf_window_option(const char *name, double value);
 /* Moves and scales the picture from the model's box (side view, x and z) so that a larger box of height and
  * width fits. */
 void sf_window_fit(const double low[3], const double high[3], double left, double right, double top);

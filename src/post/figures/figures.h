@@ -7,7 +7,7 @@
 #ifndef SF_POST_FIGURES_H
 #define SF_POST_FIGURES_H
 
-#include "post/figures/injury.h"
+#include "post/figures/signal.h"
 #include "post/figures/strain_field.h"
 #include "post/results/results.h"
 #include "report/row.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/figures/injury.h"
+#include "post/figures/signal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -32,14 +32,16 @@ void sf_results_note(sf_results *r, const char *format, ...) {
     va_end(args);
 }
 
-void sf_results_note_ending(sf_results *r, const char *sentence) {
+/* The same of a sentence that only says how the run ended. */
+static void note_ending(sf_results *r, const char *sentence) {
     int k = r->note_count;
     sf_results_note(r, "%s", sentence);
     if (r->note_count > k)
         r->note_of_ending[k] = true;
 }
 
-sf_status sf_results_check_finite(const double *values, int64_t count, const char *path, sf_error *err) {
+/* Refuses with SF_ERR_IO and a sentence naming the dataset, the value and the bound. */
+static sf_status check_finite(const double *values, int64_t count, const char *path, sf_error *err) {
     for (int64_t i = 0; i < count; i++)
         if (!isfinite(values[i]))
             return SF_FAIL(err, SF_ERR_IO, "%s: value %lld is not finite", path, (long long)i);
@@ -99,9 +101,8 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
     if (r->node_count < 1 || r->node_count > INT32_MAX || r->cell_nnz > INT32_MAX - r->cell_count)
         return SF_FAIL(err, SF_ERR_IO, "/model has %lld nodes and %lld cell vertices: 1 to 2^31 are possible",
                        (long long)r->node_count, (long long)r->cell_nnz);
-    if (sf_results_check_finite(r->position, 3 * r->node_count, "/model/position", err) != SF_OK ||
-        sf_results_check_finite(r->surface_position, 3 * r->surface_node_count, "/model/surface_position",
-                                err) ||
+    if (check_finite(r->position, 3 * r->node_count, "/model/position", err) != SF_OK ||
+        check_finite(r->surface_position, 3 * r->surface_node_count, "/model/surface_position", err) ||
         check_cells(r, err) != SF_OK ||
         check_indices(r->surface_triangle, 3 * r->surface_triangle_count, r->surface_node_count,
                       "/model/surface_triangle", err) != SF_OK)
@@ -124,7 +125,7 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
     if (!(fabs(sf_results_along(r, d) - 1) < 1e-6))
         return SF_FAIL(err, SF_ERR_IO, "/model/missile_direction (%g, %g, %g) is not a unit vector", d[0],
                        d[1], d[2]);
-    SF_TRY(sf_results_check_finite(r->missile_centre, 3, "/model/missile_centre", err));
+    SF_TRY(check_finite(r->missile_centre, 3, "/model/missile_centre", err));
     if (r->turns && (r->driven || r->symmetry_factor != 1))
         return SF_FAIL(err, SF_ERR_IO, "/model/missile_free is 1 of a driven missile or of a part of one");
     SF_TRY(check_positive(r->thickness, "/model/thickness", err));
@@ -303,7 +304,7 @@ static sf_status read_sphere(sf_results *r, sf_error *err) {
     if (!(r->sphere_radius > 0))
         r->sphere_radius = NAN;
     else if (read_vector(r, "/model/sphere_centre", r->sphere_centre, err) == SF_OK)
-        sf_results_check_finite(r->sphere_centre, 3, "/model/sphere_centre", err);
+        check_finite(r->sphere_centre, 3, "/model/sphere_centre", err);
     return err->status;
 }
 
@@ -362,7 +363,7 @@ static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_er
         snprintf(path, sizeof path, "%s/%s", head->group, names[k]);
         if (read_array(r, path, SF_H5_F64, &count, 1, &value, err) != SF_OK)
             break;
-        for (int64_t i = 0; i < count && sf_results_check_finite(value, count, path, err) == SF_OK; i++)
+        for (int64_t i = 0; i < count && check_finite(value, count, path, err) == SF_OK; i++)
             *(double *)((char *)&r->layer_sums[i] + offsets[k]) = value[i];
         free(value);
     }
@@ -419,7 +420,7 @@ static sf_status read_notes(sf_results *r, sf_error *err) {
     for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
         sf_error_clean(line);
         if (strcmp(line, "the missile never touched the pad") == 0) /* solver/run/run.c */
-            sf_results_note_ending(r, line);
+            note_ending(r, line);
         else
             sf_results_note(r, "%s", line);
     }
@@ -432,7 +433,7 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
     r->contact_time = r->wall_time = r->given_back = NAN;
     r->has_summary = sf_h5_exists(r->file, "/summary/status");
     if (!r->has_summary) {
-        sf_results_note_ending(
+        note_ending(
             r, "there is no /summary: the run still runs or was killed; the data written so far are used");
         return SF_OK;
     }
@@ -450,8 +451,7 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
     if (!sf_results_ended_well(r))
         sf_results_note(r, "the run stopped with: %s", r->status);
     else if (strcmp(r->status, "interrupted") == 0)
-        sf_results_note_ending(
-            r, "the run was interrupted: the figures are those of the part that was computed");
+        note_ending(r, "the run was interrupted: the figures are those of the part that was computed");
     return SF_OK;
 }
 
@@ -594,7 +594,7 @@ sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *h
         }
         int64_t rows = results->node_count;
         if (read_array(results, path, SF_H5_F64, &rows, info->components, &frame->field[f], err) != SF_OK ||
-            sf_results_check_finite(frame->field[f], rows * info->components, path, err) != SF_OK) {
+            check_finite(frame->field[f], rows * info->components, path, err) != SF_OK) {
             sf_frame_free(frame);
             return err->status;
         }

@@ -141,10 +141,5 @@ bool sf_results_ended_well(const sf_results *results);
 
 /* Adds a sentence to the notes; further ones are dropped when they are full. */
 void sf_results_note(sf_results *results, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* The same of a sentence that only says how the run ended. */
-void sf_results_note_ending(sf_results *results, const char *sentence);
-
-/* Refuses with SF_ERR_IO and a sentence naming the dataset, the value and the bound. */
-sf_status sf_results_check_finite(const double *values, int64_t count, const char *path, sf_error *err);
 
 #endif

@@ -30,7 +30,10 @@ sf_cfh_rig sf_cfh_free_fall(void) {
     return (sf_cfh_rig){.gravity = SF_STANDARD_GRAVITY};
 }
 
-sf_status sf_cfh_rig_fit(const char *name, int pairs, const double *height, const double *speed,
+/* Least squares of speed^2 over 2 height through the origin. heights m, speeds m s-1. SF_ERR_INPUT: fewer
+ * than two pairs, a number that is not positive, a speed above that of free fall (by more than 3 %). `name`
+ * is where they come from, for the sentence. */
+static sf_status fit_rig(const char *name, int pairs, const double *height, const double *speed,
                          sf_cfh_rig *rig, sf_error *err) {
     double x[SF_CFH_MAX_PAIRS], y[SF_CFH_MAX_PAIRS], variance = 0, residual = 0;
     *rig = sf_cfh_free_fall();
@@ -84,7 +87,7 @@ sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err) {
     sf_table table;
     *rig = sf_cfh_free_fall();
     SF_TRY(sf_table_read(path, &layout, &table, err));
-    sf_cfh_rig_fit(path, (int)table.count, table.value[0], table.value[1], rig, err);
+    fit_rig(path, (int)table.count, table.value[0], table.value[1], rig, err);
     memcpy(rig->interpretation, table.interpretation, sizeof rig->interpretation);
     sf_table_free(&table);
     return err->status;

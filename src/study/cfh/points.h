@@ -23,12 +23,6 @@ typedef struct sf_cfh_rig {
 /* Free fall. */
 sf_cfh_rig sf_cfh_free_fall(void);
 
-/* Least squares of speed^2 over 2 height through the origin. heights m, speeds m s-1. SF_ERR_INPUT: fewer
- * than two pairs, a number that is not positive, a speed above that of free fall (by more than 3 %). `name`
- * is where they come from, for the sentence. */
-sf_status sf_cfh_rig_fit(const char *name, int pairs, const double *height, const double *speed,
-                         sf_cfh_rig *rig, sf_error *err);
-
 /* The same from a CSV file (io/table_csv.h) with a column height_m, h_m or h_m_m ("h_m" in m) and a column
  * speed_m_s or v_test_m_s, or a height and a speed with units. */
 sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/cfh/posterior.h"
+#include "study/cfh/spread.h"
 
 #include "study/runner.h"
 #include "case/case.h"

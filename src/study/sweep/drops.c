@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/drops.h"
+#include "study/sweep/campaign.h"
 
 #include "io/folder.h"
 #include "io/plain_file.h"

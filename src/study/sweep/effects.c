@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/effects.h"
+#include "study/sweep/analysis.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_cdf.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/factor.h"
+#include "study/sweep/plan.h"
 
 #include "case/parts.h"
 #include "case/values.h"

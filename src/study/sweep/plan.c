@@ -5,7 +5,6 @@
 #include "post/figures/figures.h"
 #include "pre/mesh/geo_parameters.h"
 #include "study/run_folder.h"
-#include "study/sweep/sample.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -331,12 +330,13 @@ double sf_plan_value(const sf_plan *p, int factor, int64_t row) {
     return p->factor[factor].value[row / b->stride % b->rows];
 }
 
-bool sf_factor_is_group(const sf_factor *f) {
+/* True if the overrides of this factor replace a whole group; they come first. */
+static bool is_group(const sf_factor *f) {
     return f->words && f->text[0][0] == '@';
 }
 
 /* A file in place of a group is relative to the plan. */
-void sf_plan_set(const sf_plan *p, int k, char *text) {
+static void set_override(const sf_plan *p, int k, char *text) {
     const char *set = p->set[k];
     const char *file = sf_case_override_file(set);
     if (file && *file != '/')
@@ -349,11 +349,11 @@ int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERR
     int count = 0;
     for (int groups = 1; groups >= 0; groups--) {
         for (int f = 0; f < p->factor_count; f++)
-            if (sf_factor_is_group(&p->factor[f]) == groups)
+            if (is_group(&p->factor[f]) == groups)
                 sf_factor_override(&p->factor[f], sf_plan_value(p, f, row), text[count++],
                                    SF_SWEEP_OVERRIDE_SIZE);
         for (int k = 0; groups && k < p->set_count; k++)
-            sf_plan_set(p, k, text[count++]);
+            set_override(p, k, text[count++]);
     }
     return count;
 }
@@ -402,7 +402,7 @@ static bool is_of_set(const sf_plan *p, const char *sentence) {
         const char *const list[] = {text};
         sf_case c;
         sf_error err = SF_ERROR_INIT;
-        sf_plan_set(p, k, text);
+        set_override(p, k, text);
         if (sf_case_read(p->case_path, 1, list, NULL, &c, &err) == SF_OK)
             sf_case_free(&c);
         found = strcmp(err.text, sentence) == 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/sample.h"
+#include "study/sweep/plan.h"
 
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_randist.h>

@@ -32,7 +32,8 @@ static void list_text(const sf_factor *f, char *text, size_t size) {
     snprintf(text, size, "%lld values, %.6g to %.6g %s", (long long)f->count, low, high, f->unit);
 }
 
-void sf_sweep_factor_text(const sf_plan *p, int factor, char *text, size_t size) {
+/* Writes the values of a factor in a few words: "5 values, 4 to 6 m/s". */
+static void factor_text(const sf_plan *p, int factor, char *text, size_t size) {
     const sf_factor *f = &p->factor[factor];
     const sf_block *b = &p->block[p->block_of[factor]];
     if (f->distribution)
@@ -51,7 +52,7 @@ void sf_sweep_factor_text(const sf_plan *p, int factor, char *text, size_t size)
 void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
     char text[SF_SWEEP_OVERRIDE_SIZE];
     for (int f = 0; f < p->factor_count; f++) {
-        sf_sweep_factor_text(p, f, text, sizeof text);
+        factor_text(p, f, text, sizeof text);
         fprintf(out, "  %-36s %s\n", p->factor[f].name, text);
     }
     fprintf(out, "%lld runs\n  id", (long long)p->rows);
@@ -75,7 +76,7 @@ static void json_factors(sf_json *j, const sf_plan *p) {
     char text[512];
     sf_json_open(j, "factors", '[');
     for (int f = 0; f < p->factor_count; f++) {
-        sf_sweep_factor_text(p, f, text, sizeof text);
+        factor_text(p, f, text, sizeof text);
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "key", p->factor[f].key);
         sf_json_text(j, "name", p->factor[f].name);
@@ -250,7 +251,7 @@ static void put_factors(FILE *page, const sf_plan *p) {
     sf_html_table t = sf_html_table_begin(page, "dense", "factor|key of the case|values|role");
     for (int f = 0; f < p->factor_count; f++) {
         sf_html_row(&t);
-        sf_sweep_factor_text(p, f, text, sizeof text);
+        factor_text(p, f, text, sizeof text);
         sf_html_cell(&t, "%s", p->factor[f].name);
         sf_html_cell(&t, "%s", p->factor[f].key);
         sf_html_cell(&t, "%s", text);

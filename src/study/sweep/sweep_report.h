@@ -22,9 +22,6 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *report);
 /* The factors, their number of values and the number of runs, and the first `rows` of them. */
 void sf_sweep_print_table(FILE *out, const sf_plan *plan, int rows);
 
-/* Writes the values of a factor in a few words: "5 values, 4 to 6 m/s". */
-void sf_sweep_factor_text(const sf_plan *plan, int factor, char *text, size_t size);
-
 /* The pictures of a sweep, each a gnuplot script that holds its data. */
 
 /* The pictures there may be, NULL at the end, and what each shows. */
