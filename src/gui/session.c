@@ -4,10 +4,10 @@
 #include "gui/activity.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
+#include "io/process.h"
 #include "io/replace.h"
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder",
@@ -436,18 +436,12 @@ static void tell_progress(sf_session *s) {
     free(log);
 }
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 void sf_session_refresh(sf_session *s) {
     static const double INTERVAL = 0.25; /* s */
     int code;
-    if (now() < s->next_look)
+    if (sf_process_now() < s->next_look)
         return;
-    s->next_look = now() + INTERVAL;
+    s->next_look = sf_process_now() + INTERVAL;
     if (s->activity == SF_RUNNING) {
         tell_progress(s);
         show_results(s, false);

@@ -354,3 +354,9 @@ void sf_child_end(sf_child *child, double patience) {
     waitpid(child->process, NULL, 0);
     child->process = 0;
 }
+
+double sf_process_now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}

@@ -91,4 +91,8 @@ bool sf_child_poll(sf_child *child, int *exit_code);
 void sf_child_ask_to_end(const sf_child *child);
 /* Ends them: asks, and after `patience` seconds ends them by force. Returns when they are gone. */
 void sf_child_end(sf_child *child, double patience);
+
+/* Seconds on a clock that only goes forward. */
+double sf_process_now(void);
+
 #endif

@@ -3,13 +3,13 @@
 #include "base/program.h"
 #include "gui/session.h"
 #include "io/plain_file.h"
+#include "io/process.h"
 
 #include <signal.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* ---- scripts ---- */
 
@@ -24,12 +24,6 @@ typedef struct script_state {
     int frames; /* awaited too */
     bool ended; /* by `quit`, or by an error */
 } script_state;
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* SF_ERR_INPUT: the file cannot be read. Release with close_script. */
 static sf_status open_script(const char *path, script_state *s, sf_error *err) {
@@ -56,7 +50,7 @@ static sf_status begin_wait(script_state *s, char *rest, sf_error *err) {
     for (int k = 0; k < SF_ACTIVITY_COUNT; k++)
         if (strcmp(rest, sf_activity_name((sf_activity)k)) == 0) {
             s->awaited = (sf_activity)k;
-            s->deadline = now() + (patience > 0 ? patience : 60);
+            s->deadline = sf_process_now() + (patience > 0 ? patience : 60);
             return SF_OK;
         }
     return SF_FAIL(err, SF_ERR_INPUT, "line %d: \"%s\" is no activity", s->line, rest);
@@ -65,7 +59,7 @@ static sf_status begin_wait(script_state *s, char *rest, sf_error *err) {
 static sf_status look_wait(script_state *s, const sf_session *session, sf_error *err) {
     if (session->activity == s->awaited && session->pictures.frames >= s->frames)
         s->deadline = 0;
-    else if (now() > s->deadline)
+    else if (sf_process_now() > s->deadline)
         return SF_FAIL(err, SF_ERR_INPUT, "line %d: it is \"%s\" with %d frames, not \"%s\": %s", s->line,
                        sf_activity_name(session->activity), session->pictures.frames,
                        sf_activity_name(s->awaited), session->sentence);

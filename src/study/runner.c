@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 enum { MATERIAL_SIZE = PATH_MAX + 64 };
 
@@ -220,12 +219,6 @@ typedef struct batch {
     double start, told; /* s */
 } batch;
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Damaged results of unchanged size and time have a record all the same: it goes, and the drop is simulated
  * again. */
 static bool is_readable(const sf_run_folder *at) {
@@ -360,7 +353,7 @@ static int count_abreast(const sf_runner *runner, int pending) {
 
 /* The time that is left at the pace so far. */
 static void tell_pace(const batch *b, int ended) {
-    double spent = now() - b->start, left = spent / ended * (b->pending_count - ended);
+    double spent = sf_process_now() - b->start, left = spent / ended * (b->pending_count - ended);
     fprintf(b->runner->log, "  %d of %d drops, %d failed, %.3g drops per hour, %d h %02d min to go\n", ended,
             b->pending_count, b->failed, 3600 * ended / spent, (int)(left / 3600), (int)fmod(left / 60, 60));
     fflush(b->runner->log);
@@ -370,7 +363,7 @@ static void tell_pace(const batch *b, int ended) {
 static void tell_progress(void *context, int index, int ended, const sf_error *result) {
     enum { EVERY = 10 };
     batch *b = context;
-    double time = now();
+    double time = sf_process_now();
     (void)index;
     b->failed += result->status != SF_OK;
     if (!b->runner->log || time < b->told + EVERY || ended == b->pending_count)
@@ -383,7 +376,7 @@ static void tell_progress(void *context, int index, int ended, const sf_error *r
 static sf_status simulate_here(batch *b, sf_error *failure, sf_error *err) {
     int threads = b->runner->threads, abreast = count_abreast(b->runner, b->pending_count);
     b->threads = threads > abreast ? threads / abreast : 1;
-    b->start = b->told = now();
+    b->start = b->told = sf_process_now();
     if (b->pending_count == 1)
         simulate(b, 0, failure);
     else if (sf_process_pool_watched(b->pending_count, abreast, simulate, tell_progress, b, failure, err) ==
@@ -481,7 +474,7 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
             fflush(runner->log);
         }
         elsewhere watched = {b, &m, path};
-        b->start = now();
+        b->start = sf_process_now();
         stat(log, &before);
         if (sf_engine_run(&runner->engine, runner->threads, path, runner->log ? tell_groups : NULL, &watched,
                           &code, err) == SF_OK) {

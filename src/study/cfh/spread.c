@@ -7,6 +7,7 @@
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -185,11 +186,6 @@ static void find_crossings(sf_cfh_spread *s) {
 
 /* ---- quantiles ---- */
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Returns a quantile of sorted values, of which the first may be 0 and the last infinite: between those
  * and a value nothing is interpolated. */
 static double quantile(const double *sorted, int count, double share) {
@@ -201,7 +197,7 @@ static double quantile(const double *sorted, int count, double share) {
 }
 
 static sf_cfh_interval interval_of(double *values, int count) {
-    qsort(values, (size_t)count, sizeof *values, compare);
+    gsl_sort(values, 1, (size_t)count);
     return (sf_cfh_interval){.low = quantile(values, count, TAIL),
                              .median = quantile(values, count, 0.5),
                              .high = quantile(values, count, 1 - TAIL)};
@@ -278,7 +274,7 @@ typedef struct place {
 
 static int compare_places(const void *a, const void *b) {
     const place *x = a, *y = b;
-    return x->height != y->height ? compare(&x->height, &y->height)
+    return x->height != y->height ? (x->height > y->height) - (x->height < y->height)
                                   : (x->draw > y->draw) - (x->draw < y->draw);
 }
 
@@ -483,10 +479,8 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
     } else if (values) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
     }
-    if (random)
-        gsl_rng_free(random);
-    if (of_draw)
-        gsl_rng_free(of_draw);
+    gsl_rng_free(random);
+    gsl_rng_free(of_draw);
     free(values);
     return err->status;
 }

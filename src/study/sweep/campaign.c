@@ -4,12 +4,12 @@
 #include "base/hash.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
+#include "io/process.h"
 #include "io/replace.h"
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double WRITE_INTERVAL = 20; /* s between two tables, or this many times what one takes */
@@ -24,12 +24,6 @@ static path file_of(const sf_sweep_campaign *c, const char *name) {
     path p;
     snprintf(p.text, sizeof p.text, "%s/%s", c->folder, name);
     return p;
-}
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* ---- whose folder it is: the file sweep.key ---- */
@@ -392,7 +386,7 @@ static int next_piece(const sf_runs *runs, int64_t *from, int most, int64_t *row
 
 static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t done, int64_t open,
                           double start) {
-    double spent = now() - start, left = spent / (double)done * (double)(open - done);
+    double spent = sf_process_now() - start, left = spent / (double)done * (double)(open - done);
     if (c->log) {
         fprintf(c->log, "%lld of %lld runs; %.0f s so far, about %.0f s to go\n", (long long)(begun + done),
                 (long long)(begun + open), spent, left);
@@ -403,17 +397,17 @@ static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t don
 static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs, int64_t *row,
                       sf_error *err) {
     int64_t from = 0, done = 0, open = sf_runs_count(runs, SF_SWEEP_OPEN);
-    double start = now(), written = start, duration = 0;
+    double start = sf_process_now(), written = start, duration = 0;
     int count;
     while (err->status == SF_OK && (count = next_piece(runs, &from, engine->piece, row)) > 0) {
         int fresh = 0;
         SF_TRY(engine->run(engine->context, runs, count, row, &fresh, err));
         done += count;
-        double time = now();
+        double time = sf_process_now();
         if (time - written < WRITE_INTERVAL || time - written < WRITE_SHARE * duration)
             continue;
         save(c, runs, false, err);
-        written = now();
+        written = sf_process_now();
         duration = written - time;
         tell_progress(c, runs->count - open, done, open, start);
     }

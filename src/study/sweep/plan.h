@@ -9,6 +9,7 @@
 #include "case/case.h"
 #include "study/config.h"
 #include "study/runner.h"
+#include <gsl/gsl_rng.h>
 #include <stdint.h>
 
 /* A factor of a sweep: a key of the case and the values that it takes. A factor of numbers has one unit, that
@@ -67,6 +68,9 @@ typedef enum sf_sampling {
 
 #define SF_SAMPLING_WORDS "random|latin_hypercube|sobol|saltelli"
 
+/* Returns a generator with this seed, for gsl_rng_free; NULL on failure. */
+gsl_rng *sf_sample_random(uint64_t seed, sf_error *err);
+
 /* Coordinates that the Sobol' sequence of GSL has. */
 enum { SF_SOBOL_DIMENSIONS = 40 };
 
@@ -89,7 +93,7 @@ typedef struct sf_index {
     double total, total_low, total_high;
 } sf_index;
 
-/* y [d + 2][n]: the blocks A, B, and A with each coordinate from B (study/sweep/sample.h). A sample of which
+/* y [d + 2][n]: the blocks A, B, and A with each coordinate from B. A sample of which
  * one value is NaN is left out in all blocks; `*used` receives the number of the others. index [d]: NaN where
  * fewer than SF_INDEX_LEAST or than SF_INDEX_SHARE are left (values that are missing for what they would be
  * leave no random part) or y does not vary. Saltelli's estimator of 2010 and Jansen's; percentiles of
