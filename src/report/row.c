@@ -211,75 +211,12 @@ void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records
     sf_json_close(json, ']');
 }
 
-/* ---- CSV ---- */
-
-/* A text in quotes where it holds a character of the format. */
-static void put_csv_text(FILE *file, const char *text) {
-    if (!strpbrk(text, ",\"\n\r")) {
-        fputs(text, file);
-        return;
-    }
-    fputc('"', file);
-    for (; *text; text++) {
-        if (*text == '"')
-            fputc('"', file);
-        fputc(*text, file);
-    }
-    fputc('"', file);
-}
-
-static void put_csv_cell(FILE *file, const sf_row *row, const void *record) {
-    sf_value value = sf_row_value(row, record);
-    if (!is_defined(value))
-        return;
-    if (value.kind == SF_VALUE_REAL)
-        fprintf(file, "%.9g", value.real * factor_of(row));
-    else if (value.kind == SF_VALUE_INTEGER)
-        fprintf(file, "%lld", (long long)value.integer);
-    else if (value.kind == SF_VALUE_FLAG)
-        fputc(value.flag ? '1' : '0', file);
-    else
-        put_csv_text(file, value.text);
-}
-
-void sf_rows_csv(FILE *file, sf_rows rows, sf_records records) {
-    for (int64_t k = -1; k < records.count; k++) {
-        bool first = true;
-        for (size_t c = 0; c < rows.count; c++) {
-            if (!rows.row[c].key)
-                continue;
-            if (!first)
-                fputc(',', file);
-            first = false;
-            if (k < 0)
-                fputs(rows.row[c].key, file);
-            else
-                put_csv_cell(file, &rows.row[c], record_at(records, k));
-        }
-        fputc('\n', file);
-    }
-}
-
 /* ---- HTML ---- */
 
-/* HTML: a cell; a table of facts "name | value unit"; a table with a column for each declaration that has a
- * name, and a row for each record. `kind` as for sf_html_table_begin. */
 static void put_html_cell(sf_html_table *table, const sf_row *row, const void *record) {
     char text[512];
     const char *dash = sf_row_value(row, record).kind == SF_VALUE_TEXT ? "" : "–";
     sf_html_cell(table, "%s", sf_row_shown(row, record, dash, text, sizeof text));
-}
-
-void sf_rows_html_facts(sf_html_table *table, sf_rows rows, const void *record) {
-    for (size_t k = 0; k < rows.count; k++) {
-        const sf_row *row = &rows.row[k];
-        char text[512];
-        if (!row->name || !sf_row_is_defined(row, record))
-            continue;
-        sf_row_shown(row, record, "–", text, sizeof text);
-        sf_html_hint(table, row->meaning);
-        sf_html_fact(table, row->name, "%s%s%s", text, row->unit ? " " : "", row->unit ? row->unit : "");
-    }
 }
 
 /* "name (unit)", as tables head a column. */
@@ -336,11 +273,6 @@ void sf_row_text(FILE *out, const sf_row *row, const void *record) {
     sf_row_shown(row, record, "-", text, sizeof text);
     bool unit = row->unit && sf_row_is_defined(row, record);
     fprintf(out, "  %-24s %12s%s%s\n", row->name, text, unit ? " " : "", unit ? row->unit : "");
-}
-
-void sf_rows_text(FILE *out, sf_rows rows, const void *record) {
-    for (size_t k = 0; k < rows.count; k++)
-        sf_row_text(out, &rows.row[k], record);
 }
 
 /* Returns the value of a text table, or with `record` NULL the heading. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a report. A declaration states once how a value is called, its unit, its format and its meaning;
- * one writer each makes JSON, CSV, HTML and text of it. A record is any struct of the program; a declaration
+ * one writer each makes JSON, HTML and text of it. A record is any struct of the program; a declaration
  * points to a member of it, or has a function that computes the value. A value that a run does not define (a
- * number that is not finite, a negative count, an empty text) becomes null in JSON, an empty cell in CSV and
- * a dash for readers. */
+ * number that is not finite, a negative count, an empty text) becomes null in JSON and a dash for
+ * readers. */
 #ifndef SF_REPORT_ROW_H
 #define SF_REPORT_ROW_H
 
@@ -49,7 +49,7 @@ typedef struct sf_value {
 
 /* A declaration; static storage. */
 typedef struct sf_row {
-    const char *key;     /* in JSON and CSV, with the unit as its ending; NULL: not written there */
+    const char *key;     /* in JSON, with the unit as its ending; NULL: not written there */
     const char *name;    /* for readers; NULL: not shown to them */
     const char *unit;    /* behind the shown value; NULL: none */
     const char *format;  /* of a shown number, with one conversion of a double; NULL: "%.4g" */
@@ -96,15 +96,12 @@ void sf_row_json(sf_json *json, const sf_row *row, const void *record);
 void sf_rows_json(sf_json *json, sf_rows rows, const void *record);
 void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records records);
 
-/* CSV: the heading and a line for each record, numbers with nine digits. */
-void sf_rows_csv(FILE *file, sf_rows rows, sf_records records);
-
-void sf_rows_html_facts(sf_html_table *table, sf_rows rows, const void *record);
+/* HTML: a table with a column for each declaration that has a name, and a row for each record. `kind` as for
+ * sf_html_table_begin. */
 void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records);
 
-/* Text: a line "  name   value unit" for each declaration that has a name. */
+/* Text: a line "  name   value unit"; none without a name. */
 void sf_row_text(FILE *out, const sf_row *row, const void *record);
-void sf_rows_text(FILE *out, sf_rows rows, const void *record);
 /* Text: a heading and a line for each record, columns as wide as their widest cell. */
 void sf_rows_text_table(FILE *out, sf_rows rows, sf_records records);
 

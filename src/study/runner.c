@@ -379,8 +379,7 @@ static sf_status simulate_here(batch *b, sf_error *failure, sf_error *err) {
     b->start = b->told = sf_process_now();
     if (b->pending_count == 1)
         simulate(b, 0, failure);
-    else if (sf_process_pool_watched(b->pending_count, abreast, simulate, tell_progress, b, failure, err) ==
-             SF_OK)
+    else if (sf_process_pool(b->pending_count, abreast, simulate, tell_progress, b, failure, err) == SF_OK)
         name_killed(b, failure);
     return err->status;
 }
