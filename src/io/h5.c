@@ -23,17 +23,10 @@ struct sf_h5 {
 };
 
 static hid_t native_type(sf_h5_type type) {
-    switch (type) {
-    case SF_H5_F64:
-        return H5T_NATIVE_DOUBLE;
-    case SF_H5_I32:
-        return H5T_NATIVE_INT32;
-    case SF_H5_I64:
-        return H5T_NATIVE_INT64;
-    case SF_H5_U8:
-        return H5T_NATIVE_UINT8;
-    }
-    return H5T_NATIVE_DOUBLE;
+    return type == SF_H5_I32   ? H5T_NATIVE_INT32
+           : type == SF_H5_I64 ? H5T_NATIVE_INT64
+           : type == SF_H5_U8  ? H5T_NATIVE_UINT8
+                               : H5T_NATIVE_DOUBLE;
 }
 
 static size_t type_size(sf_h5_type type) {
@@ -50,10 +43,7 @@ static sf_status wrap(hid_t id, const char *path, bool alone, sf_h5 **file, sf_e
         H5Fclose(id);
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory opening %s", path);
     }
-    made->id = id;
-    made->path = copy;
-    made->alone = alone;
-    made->checked = checked;
+    *made = (sf_h5){id, copy, alone, checked};
     *file = made;
     return SF_OK;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/compare.h"
 
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,14 +19,9 @@ typedef struct record {
     bool begins, ends;  /* the record holds both feet of the pulse */
 } record;
 
-static int by_value(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median_of(const double *value, int64_t count, double *work) {
     memcpy(work, value, (size_t)count * sizeof *work);
-    qsort(work, (size_t)count, sizeof *work, by_value);
+    gsl_sort(work, 1, (size_t)count);
     return 0.5 * (work[(count - 1) / 2] + work[count / 2]);
 }
 

@@ -3,6 +3,7 @@
 
 #include "post/results/results.h"
 
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -97,14 +98,9 @@ static bool is_together(const sf_results *r, const double *displacement, int64_t
 
 /* ---- collapse ---- */
 
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Returns the upper median: at least half of the values are less than or equal to it. */
 static double median(double *value, int64_t count) {
-    qsort(value, (size_t)count, sizeof *value, ascending);
+    gsl_sort(value, 1, (size_t)count);
     return value[count / 2];
 }
 
