@@ -257,9 +257,7 @@ static sf_status filter(const sf_series *curve, sf_series *filtered, sf_error *e
 
 /* Top of the parabola through the largest sample and its neighbours. */
 static double peak_of(const sf_series *c) {
-    int64_t k = 0;
-    for (int64_t i = 1; i < c->count; i++)
-        k = c->value[i] > c->value[k] ? i : k;
+    int64_t k = sf_series_peak(c);
     if (k == 0 || k == c->count - 1)
         return c->value[k];
     double bend = c->value[k - 1] - 2 * c->value[k] + c->value[k + 1],
@@ -306,9 +304,7 @@ typedef struct pulse {
 static bool is_single(pulse *p) {
     const double *a = p->a->value;
     int64_t n = p->a->count;
-    p->peak = 0;
-    for (int64_t k = 1; k < n; k++)
-        p->peak = a[k] > a[p->peak] ? k : p->peak;
+    p->peak = sf_series_peak(p->a);
     for (p->first = p->peak;
          p->first > 0 && a[p->first - 1] <= a[p->first] && a[p->first] > FOOT * a[p->peak];)
         p->first--;

@@ -78,10 +78,7 @@ static double last_rise(const sf_series *curve, int64_t peak, double level, doub
 
 sf_status sf_contact_instant(const sf_series *curve, const char *name, double zero, double *instant,
                              sf_error *err) {
-    int64_t peak = 0;
-    for (int64_t i = 1; i < curve->count; i++)
-        if (curve->value[i] > curve->value[peak])
-            peak = i;
+    int64_t peak = sf_series_peak(curve);
     double a_max = curve->value[peak] - zero, low = 0, high = 0;
     if (!(a_max > 0))
         return SF_FAIL(err, SF_ERR_INPUT,
@@ -97,13 +94,6 @@ sf_status sf_contact_instant(const sf_series *curve, const char *name, double ze
             name, curve->value[0], a_max);
     *instant = t_low - (low - zero) * (t_high - t_low) / (high - low);
     return SF_OK;
-}
-
-static double peak_of(const sf_series *curve) {
-    double peak = curve->value[0];
-    for (int64_t i = 1; i < curve->count; i++)
-        peak = fmax(peak, curve->value[i]);
-    return peak;
 }
 
 static const double SLACK = 1e-5; /* s, of ends: one sample of a filtered curve */
@@ -260,7 +250,7 @@ sf_status sf_compare_run(const sf_compare_options *options, const sf_series *mod
             goto done;
         c->shift = model_contact - measured_contact;
     }
-    c->peak_error = peak_of(model) / c->injury.a_max_g - 1;
+    c->peak_error = model->value[sf_series_peak(model)] / c->injury.a_max_g - 1;
     fit_all(options, model, c, err);
 done:
     if (err->status != SF_OK)

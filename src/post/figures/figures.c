@@ -149,9 +149,7 @@ static sf_status find_peak(const sf_results *r, const double *const channel[3], 
     const double first[3] = {channel[0][0], channel[1][0], channel[2][0]};
     sf_series curve = {0};
     if (filter_resultant(r, channel, known ? first : none, none, 1, f, &curve, err) == SF_OK) {
-        int64_t row = 0;
-        for (int64_t i = 1; i < curve.count; i++)
-            row = curve.value[i] > curve.value[row] ? i : row;
+        int64_t row = sf_series_peak(&curve);
         *peak = curve.value[row];
         *time = curve.time[row];
     }
@@ -174,11 +172,7 @@ static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *
 
 /* Rows around the raw peak, without a gap, above half of it. */
 static int64_t count_peak_rows(const sf_series *raw) {
-    int64_t peak = 0;
-    for (int64_t i = 1; i < raw->count; i++)
-        if (raw->value[i] > raw->value[peak])
-            peak = i;
-    int64_t first = peak, last = peak;
+    int64_t peak = sf_series_peak(raw), first = peak, last = peak;
     while (first > 0 && raw->value[first - 1] > 0.5 * raw->value[peak])
         first--;
     while (last < raw->count - 1 && raw->value[last + 1] > 0.5 * raw->value[peak])

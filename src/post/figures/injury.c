@@ -325,13 +325,8 @@ double sf_injury_clip(const sf_series *curve, double duration, int contiguous) {
 }
 
 sf_status sf_injury_evaluate_peak(const sf_series *curve, sf_injury *injury, sf_error *err) {
-    *injury = (sf_injury){.a_max_g = curve->value[0], .a_max_time = curve->time[0]};
-    for (int64_t i = 1; i < curve->count; i++) {
-        if (curve->value[i] > injury->a_max_g) {
-            injury->a_max_g = curve->value[i];
-            injury->a_max_time = curve->time[i];
-        }
-    }
+    int64_t peak = sf_series_peak(curve);
+    *injury = (sf_injury){.a_max_g = curve->value[peak], .a_max_time = curve->time[peak]};
     return sf_hic_evaluate(curve, INFINITY, &injury->hic, err);
 }
 

@@ -166,10 +166,7 @@ static double noise_value(const record *r) {
 }
 
 static double highest(const sf_series *s) {
-    double most = s->value[0];
-    for (int64_t i = 1; i < s->count; i++)
-        most = fmax(most, s->value[i]);
-    return most;
+    return s->value[sf_series_peak(s)];
 }
 
 static double ringing_value(const record *r) {

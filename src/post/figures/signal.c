@@ -41,6 +41,14 @@ sf_status sf_series_check(const sf_series *series, const char *name, sf_error *e
     return SF_OK;
 }
 
+int64_t sf_series_peak(const sf_series *series) {
+    int64_t peak = 0;
+    for (int64_t i = 1; i < series->count; i++)
+        if (series->value[i] > series->value[peak])
+            peak = i;
+    return peak;
+}
+
 double sf_series_at(const sf_series *series, double time) {
     int64_t low = 0, high = series->count - 1;
     if (time <= series->time[0])

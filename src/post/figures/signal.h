@@ -26,6 +26,9 @@ void sf_series_free(sf_series *series);
 sf_status sf_series_check(const sf_series *series, const char *name, sf_error *err);
 
 /* Linear interpolation at `time` (s); the end values outside the curve. */
+/* Returns the index of the largest value, the first of equal ones. */
+int64_t sf_series_peak(const sf_series *series);
+
 double sf_series_at(const sf_series *series, double time);
 
 /* The curve with `lead` (s) of the value `level` before its first point, where it jumps. */
