@@ -26,11 +26,11 @@ typedef struct sf_study {
 
 /* A program of studies; static storage. */
 typedef struct sf_study_program {
-    const char *name;     /* "softfall-fit", in messages */
-    const char *word;     /* its word of the command line, "drop"; NULL: it has none */
-    const char *argument; /* of the command line, "FIT.cfg" */
-    const char *doc;      /* of --help, as in struct argp */
-    bool drops;           /* it runs drops: --threads, --jobs, --engine and what belongs to them */
+    const char *name;         /* "softfall-fit", in messages */
+    const char *word;         /* its word of the command line, "drop"; NULL: it has none */
+    const char *argument;     /* of the command line, "FIT.cfg" */
+    const char *doc;          /* of --help, as in struct argp */
+    bool drops;               /* it runs drops: --threads, --jobs, --engine and what belongs to them */
     const sf_option *options; /* further ones, of the values `own` of sf_study_main; NULL: none */
     sf_status (*run)(sf_study *study, void *own, sf_error *err);
 } sf_study_program;
