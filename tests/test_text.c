@@ -43,6 +43,24 @@ static void numbers_are_taken_whole_or_not_at_all(void **state) {
     }
 }
 
+static void words_and_lines_are_taken_whole(void **state) {
+    (void)state;
+    static const char *const words[] = {"low", "lower", "high", "hig", "", "low|lower"};
+    static const int places[] = {0, 1, 2, -1, -1, -1};
+    char text[] = "name one\nnames two\nname three", *rest = text;
+    int length = 0;
+    for (size_t k = 0; k < sizeof words / sizeof words[0]; k++)
+        assert_int_equal(sf_word_find("low|lower|high", words[k]), places[k]);
+    for (int k = 0; k < 5; k++) {
+        const char *word = sf_word_at("low|lower|high", k, &length), *expected = words[k < 2 ? k : 2];
+        assert_true((size_t)length == strlen(expected) && strncmp(word, expected, strlen(expected)) == 0);
+    }
+    assert_string_equal(sf_line_take(&rest, "name", ' '), "one");
+    assert_null(sf_line_take(&rest, "name", ' '));
+    assert_string_equal(sf_line_take(&rest, "name", ' '), "three");
+    assert_null(sf_line_take(&rest, "name", ' '));
+}
+
 /* Python reads back each character, and for a byte that is no UTF-8 the mark of one. */
 static void json_keeps_every_character(void **state) {
     const program_place *p = *state;
@@ -70,6 +88,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cut_text_is_as_long_as_it_may_be_and_whole),
         cmocka_unit_test(numbers_are_taken_whole_or_not_at_all),
+        cmocka_unit_test(words_and_lines_are_taken_whole),
         cmocka_unit_test(json_keeps_every_character),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

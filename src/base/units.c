@@ -113,21 +113,11 @@ static bool starts(const char *text, const char *with) {
     return strncmp(text, with, strlen(with)) == 0;
 }
 
-/* True if the list "a|b" has the name. */
-static bool is_listed(const char *name, const char *list) {
-    size_t length = strlen(name);
-    for (const char *at = list; at; at = strchr(at, '|')) {
-        at += *at == '|';
-        if (length > 0 && strncmp(at, name, length) == 0 && (at[length] == '|' || at[length] == '\0'))
-            return true;
-    }
-    return false;
-}
-
 static bool is_name(const char *name) {
     for (int k = 0; k < UNITS; k++)
-        if (is_listed(name, unit_names[k].names) ||
-            (*name && strchr(unit_names[k].prefixes, *name) && is_listed(name + 1, unit_names[k].names)))
+        if (sf_word_find(unit_names[k].names, name) >= 0 ||
+            (*name && strchr(unit_names[k].prefixes, *name) &&
+             sf_word_find(unit_names[k].names, name + 1) >= 0))
             return true;
     return false;
 }

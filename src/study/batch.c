@@ -2,6 +2,7 @@
 #include "study/batch.h"
 
 #include "base/hash.h"
+#include "base/text.h"
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "io/replace.h"
@@ -116,10 +117,10 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
         make_absolute(found, program, err) != SF_OK || make_absolute(manifest, file, err) != SF_OK ||
         (engine->profile && find_profile(engine->profile, profile, err) != SF_OK))
         return err->status;
-    snprintf(folder, sizeof folder, "%.*s", (int)(strrchr(file, '/') - file), file);
+    snprintf(folder, sizeof folder, "%.*s", (int)sf_path_folder_length(file), file);
     snprintf(log, sizeof log, "%s/log.txt", folder);
     /* Relative to --directory: Snakemake would read braces and ": " of a folder's name as its own syntax. */
-    snprintf(manifest_word, sizeof manifest_word, "manifest=%s", strrchr(file, '/') + 1);
+    snprintf(manifest_word, sizeof manifest_word, "manifest=%s", sf_path_name(file));
     snprintf(program_word, sizeof program_word, "program=%s", program);
     snprintf(cores, sizeof cores, "%d", processors > 0 ? processors : 1);
     snprintf(threads, sizeof threads, "threads=%d", engine->job_threads > 0 ? engine->job_threads : 1);
@@ -235,13 +236,6 @@ sf_status sf_manifest_write(const char *path, const char *runs, int count, const
 
 /* ---- reading ---- */
 
-/* The value of a line "name\tvalue"; NULL if it is another one. */
-static char *take_value(char **rest, const char *name) {
-    char *line = *rest ? strsep(rest, "\n") : NULL;
-    size_t length = strlen(name);
-    return line && strncmp(line, name, length) == 0 && line[length] == '\t' ? line + length + 1 : NULL;
-}
-
 static bool take_run(char *line, sf_manifest_run *run) {
     char *field[MOST_FIELDS], *end = NULL;
     int n = 0;
@@ -264,9 +258,9 @@ sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
     *m = (sf_manifest){0};
     SF_TRY(sf_plain_read(path, "manifest", LARGEST, &m->text, NULL, err));
     char *rest = m->text, *head = strsep(&rest, "\n");
-    m->folder = take_value(&rest, "folder");
-    m->runs = take_value(&rest, "runs");
-    const char *count = take_value(&rest, "count");
+    m->folder = sf_line_take(&rest, "folder", '\t');
+    m->runs = sf_line_take(&rest, "runs", '\t');
+    const char *count = sf_line_take(&rest, "count", '\t');
     long wanted = count ? strtol(count, NULL, 10) : -1;
     if (strcmp(head, HEAD) != 0 || !m->folder || !m->runs || wanted < 0 || !rest ||
         (size_t)wanted > strlen(rest))
@@ -295,8 +289,7 @@ int sf_manifest_group_end(const sf_manifest *m, int k) {
 /* ---- outcomes ---- */
 
 void sf_manifest_outcome_path(const char *manifest, const char *group, char *path, size_t size) {
-    const char *slash = strrchr(manifest, '/');
-    snprintf(path, size, "%.*s%s.done", slash ? (int)(slash - manifest + 1) : 0, manifest, group);
+    snprintf(path, size, "%.*s%s.done", (int)(sf_path_name(manifest) - manifest), manifest, group);
 }
 
 sf_status sf_manifest_write_outcome(const char *path, int count, const sf_manifest_run *run,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/material_file.h"
 
+#include "base/text.h"
 #include "case/case.h"
 #include "io/replace.h"
 #include <limits.h>
@@ -68,10 +69,9 @@ static void put_curves(FILE *file, const char *name, const sf_law_curves *curves
 }
 
 static void put_choice(FILE *file, const sf_parameter *p, int64_t index) {
-    const char *word = p->words;
-    while (index-- > 0 && strchr(word, '|'))
-        word = strchr(word, '|') + 1;
-    fprintf(file, "%s = \"%.*s\";", p->key, (int)strcspn(word, "|"), word);
+    int length;
+    const char *word = sf_word_at(p->words, (int)index, &length);
+    fprintf(file, "%s = \"%.*s\";", p->key, length, word);
 }
 
 static void put_value(FILE *file, const sf_parameter *p, double value) {

@@ -2,6 +2,7 @@
 #include "study/run_folder.h"
 
 #include "base/hash.h"
+#include "base/text.h"
 #include "build_info.h"
 #include "case/case.h"
 #include "io/folder.h"
@@ -83,13 +84,6 @@ void sf_run_record_write(const char *path, const char *results, const sf_results
 
 /* ---- reading ---- */
 
-/* The rest of the next line if it begins with `name` and a blank; NULL if not. */
-static char *take_line(char **rest, const char *name) {
-    char *line = *rest ? strsep(rest, "\n") : NULL;
-    size_t length = strlen(name);
-    return line && strncmp(line, name, length) == 0 && line[length] == ' ' ? line + length + 1 : NULL;
-}
-
 /* Takes the last line away. */
 static bool is_whole(char *text, size_t length) {
     uint64_t hash = 0;
@@ -116,7 +110,7 @@ static bool take_figures(char **rest, sf_run_record *out) {
     out->figure = sf_alloc(&none, count, sizeof *out->figure, "figures");
     for (size_t k = 0; out->figure && k < count; k++) {
         char *end = NULL;
-        const char *value = list[k].row.type == SF_ROW_TEXT ? NULL : take_line(rest, list[k].row.key);
+        const char *value = list[k].row.type == SF_ROW_TEXT ? NULL : sf_line_take(rest, list[k].row.key, ' ');
         if (list[k].row.type != SF_ROW_TEXT && !value)
             return false;
         out->figure[k] = value ? strtod(value, &end) : NAN;
@@ -127,10 +121,10 @@ static bool take_figures(char **rest, sf_run_record *out) {
 }
 
 static bool take(char *rest, const char *results, sf_run_record *out) {
-    const char *head = strsep(&rest, "\n"), *of = take_line(&rest, "results"),
-               *grade = take_line(&rest, "grade");
-    out->verdict = take_line(&rest, "verdict");
-    out->status = take_line(&rest, "status");
+    const char *head = strsep(&rest, "\n"), *of = sf_line_take(&rest, "results", ' '),
+               *grade = sf_line_take(&rest, "grade", ' ');
+    out->verdict = sf_line_take(&rest, "verdict", ' ');
+    out->status = sf_line_take(&rest, "status", ' ');
     if (strcmp(head, HEAD) != 0 || !is_of(of, results) || !grade || !out->verdict || !out->status ||
         !take_figures(&rest, out))
         return false;
@@ -225,10 +219,9 @@ enum { MAX_ARGUMENTS = 64 };
 
 /* The folder of a file; "" of none. */
 static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err) {
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    const char *folder = !path ? "" : !slash ? "." : path;
-    int length = slash ? (int)(slash - path) + (slash == path) : (int)strlen(folder);
-    if (snprintf(out, PATH_MAX, "%.*s", length, folder) >= PATH_MAX)
+    size_t length = path ? sf_path_folder_length(path) : 0;
+    const char *folder = length > 0 ? path : path ? "." : "";
+    if (snprintf(out, PATH_MAX, "%.*s", length > 0 ? (int)length : 1, folder) >= PATH_MAX)
         return SF_FAIL(err, SF_ERR_INPUT, "the name of the geometry is too long: %.100s...", path);
     return SF_OK;
 }

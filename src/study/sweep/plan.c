@@ -2,6 +2,7 @@
 #include "study/sweep/plan.h"
 
 #include "base/hash.h"
+#include "io/plain_file.h"
 #include "post/figures/figures.h"
 #include "pre/mesh/geo_parameters.h"
 #include "study/run_folder.h"
@@ -445,13 +446,9 @@ static sf_status check_extremes(const sf_plan *p, int factor, uint64_t *hash, sf
     return check(p, greatest * b->stride, f, hash, &key, err);
 }
 
-static size_t folder_length(const char *path) {
-    const char *last = strrchr(path, '/');
-    return last ? (size_t)(last - path) : 0;
-}
-
 static bool is_same_folder(const char *a, const char *b) {
-    return folder_length(a) == folder_length(b) && strncmp(a, b, folder_length(a)) == 0;
+    size_t length = sf_path_folder_length(a);
+    return length == sf_path_folder_length(b) && strncmp(a, b, length) == 0;
 }
 
 /* The key of a run knows a geometry by its own text; what that merges lies beside it. */

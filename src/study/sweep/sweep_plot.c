@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/sweep_report.h"
 
+#include "io/plain_file.h"
 #include "report/chart.h"
 #include <limits.h>
 #include <math.h>
@@ -35,16 +36,10 @@ static void label_factor(sf_axis *axis, const sf_factor *f) {
     sf_axis_label(axis, "%s", text);
 }
 
-/* The last part of a level's name: a file without its folders. */
-static const char *short_label(const char *label) {
-    const char *slash = strrchr(label, '/');
-    return slash ? slash + 1 : label;
-}
-
 static void level_text(const sf_factor *f, double value, char *text, size_t size) {
     char whole[SF_SWEEP_OVERRIDE_SIZE];
     if (f->words)
-        snprintf(text, size, "%s", short_label(f->label[(int64_t)value]));
+        snprintf(text, size, "%s", sf_path_name(f->label[(int64_t)value])); /* a file without its folders */
     else if (sf_factor_text(f, value, whole, sizeof whole), *f->unit)
         snprintf(text, size, "%.32s %s", whole, f->unit);
     else
@@ -414,7 +409,7 @@ static void put_level_axis(sf_chart *chart, sf_axis *axis, const sf_plan *p, int
     char text[512];
     for (int64_t k = 0; k < b->rows; k++) {
         if (f->words)
-            snprintf(text, sizeof text, "%s", short_label(f->label[(int64_t)f->value[k]]));
+            snprintf(text, sizeof text, "%s", sf_path_name(f->label[(int64_t)f->value[k]]));
         else
             snprintf(text, sizeof text, "%.6g", f->value[k]);
         sf_axis_word(chart, axis, text);
