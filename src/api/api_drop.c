@@ -69,7 +69,7 @@ static void step(softfall_drop *d) {
         sf_recorder_add(&d->recorder, &d->model, &d->state, &d->failure) != SF_OK)
         return;
     if (sf_ending_on_anvil(&d->model, &d->state))
-        sf_ending_fail_on_anvil(&d->state, &d->failure);
+        sf_ending_fail_on_anvil(&d->model, &d->state, &d->failure);
     else
         d->ending = sf_ending_rebounded(&d->model, &d->state)  ? SOFTFALL_REBOUND
                     : sf_ending_finished(&d->model, &d->state) ? SOFTFALL_FINISHED

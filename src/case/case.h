@@ -15,7 +15,8 @@ enum {
     SF_CASE_MAX_GROUPS = 16,
     SF_CASE_MAX_PARAMETERS = 64,
     SF_CASE_MAX_TIMES = 256,
-    SF_CASE_MAX_LAYERS = 32
+    SF_CASE_MAX_LAYERS = 32,
+    SF_GEOMETRIES = 3 /* of pad, missile and support */
 };
 
 /* A variable of a .geo file set by the case; plain numbers, in the geometry's own length unit. */
@@ -43,6 +44,7 @@ typedef struct sf_case {
     uint64_t values;  /* hash of the values of all keys that can change a drop, but those that name files */
     sf_geo_source pad;
     sf_geo_source missile;
+    sf_geo_source support; /* path NULL: there is none */
     double length_unit; /* m per unit of the geometry */
     double up[3];       /* -, unit vector out of the pad's face, in the geometry; the model has it along z */
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */
@@ -63,6 +65,8 @@ typedef struct sf_case {
     bool symmetry_given;
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
+    char support_group[SF_CASE_NAME_SIZE]; /* physical surface group of the rigid supports */
+    double support_friction;               /* -, Coulomb coefficient of the pad against them */
     int self_contact;                      /* SF_SELF_CONTACT_* */
     bool stabilised;                       /* kernel.stabilisation is given */
     double self_friction;                  /* -, Coulomb coefficient of the pad against itself */

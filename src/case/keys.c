@@ -28,6 +28,10 @@ static const sf_key keys[] = {
      "values for the DefineConstant parameters of `file`, in its own units"},
     {"geometry", "missile_parameters", SF_KEY_PARAMETERS, "", AT(missile),
      "the same for `missile_file`"},
+    {"geometry", "support_file", SF_KEY_PATH, "", AT(support.path),
+     "geometry of rigid fixed bodies of any shape that the pad may touch, in the coordinates of `file`; absent: there are none"},
+    {"geometry", "support_parameters", SF_KEY_PARAMETERS, "", AT(support),
+     "the same for `support_file`"},
     {"geometry", "time_limit", SF_KEY_QUANTITY, "\"600 s\"", AT(mesh_time_limit),
      "processor time that gmsh may take for each geometry", .quantity = SF_TIME, .low = 1.0, .high = 1e7, .idle = true},
     /* pad */
@@ -108,6 +112,11 @@ static const sf_key keys[] = {
     {"missile", "angular_velocity", SF_KEY_QUANTITIES, "", AT(angular_velocity),
      "of a free missile when it first touches the pad, in the pose of its geometry, about x, y and z; absent: none",
      .quantity = SF_ANGULAR_VELOCITY, .low = -1e3, .high = 1e3, .count_offset = offsetof(sf_case, angular_velocity_count), .lengths = {3}},
+    /* support */
+    {"support", "group", SF_KEY_NAME, "\"support\"", AT(support_group),
+     "physical surface of the rigid bodies of `geometry.support_file` that the pad touches; it may have several parts"},
+    {"support", "friction", SF_KEY_NUMBER, "0.5", AT(support_friction),
+     "Coulomb coefficient of the pad against them; the default is an assumption, as that of `pad.friction`", .high = 10.0},
     /* kernel */
     {"kernel", "support_ratio", SF_KEY_NUMBER, "1.4", AT(support_ratio),
      "kernel radius over spacing, R/h; 2 or more makes the constraint matrix nearly singular",

@@ -69,6 +69,9 @@ typedef struct sf_anvil_card {
     double friction; /* -, Coulomb coefficient against a resting pad */
 } sf_anvil_card;
 
+/* Deepest place, of the spacing, from which a node begins to touch a face from outside. */
+#define SF_CONTACT_ENTRY 0.01
+
 /* Least stabilisation of foam that folds: with less it does so from node to node. */
 #define SF_FOLD_STABILISATION 0.3
 
@@ -148,6 +151,16 @@ typedef struct sf_model {
     int64_t skin_count;
     int32_t *skin_triangle; /* [skin_count][3] nodes */
     double skin_friction;   /* -, Coulomb coefficient between them */
+    int64_t skin_alone;     /* 1: they touch the support only */
+
+    /* Rigid fixed bodies that the skin may touch; triangles turned outwards. Nodes at sharp edges are there
+     * once for each side. */
+    int64_t support_node_count;
+    int64_t support_triangle_count; /* 0: there are none */
+    double *support_position;       /* [support_node_count][3] m */
+    int32_t *support_triangle;      /* [support_triangle_count][3] */
+    double support_friction;        /* -, Coulomb coefficient of the pad against them */
+    double support_travel; /* m, of the missile along its direction until it touches them; 0: it never does */
 
     /* The missile's surface in the pose of first contact, `gap` away along its direction; triangles turned
      * outwards. */

@@ -142,6 +142,9 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"missile sphere cap cosine", m->missile.sphere_cap_cosine, -1 - 1e-9, 1 + 1e-9},
         {"anvil depth (m)", m->anvil.depth, 0, 1e3},
         {"skin friction", m->skin_friction, 0, 10},
+        {"skin alone", (double)m->skin_alone, 0, 1},
+        {"support friction", m->support_friction, 0, 10},
+        {"missile's way to the support (m)", m->support_travel, 0, 1e6},
         {"anvil friction", m->anvil.friction, 0, 10},
         {"symmetry factor", (double)m->symmetry_factor, 1, 4},
         {"pad thickness (m)", m->thickness, 1e-6, 1e3},
@@ -208,6 +211,14 @@ static sf_status check_skin(const sf_model *m, sf_error *err) {
                 "triangle %lld of the pad's skin has the nodes %d, %d, %d: three of 0 to %lld are needed",
                 (long long)k / 3, node[0], node[1], node[2], (long long)m->node_count - 1);
     }
+    return SF_OK;
+}
+
+static sf_status check_support(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < 3 * m->support_triangle_count; k++)
+        if (m->support_triangle[k] < 0 || m->support_triangle[k] >= m->support_node_count)
+            return SF_FAIL(err, SF_ERR_MODEL, "support triangle %lld refers to node %d, of 0 to %lld",
+                           (long long)k / 3, m->support_triangle[k], (long long)m->support_node_count - 1);
     return SF_OK;
 }
 
@@ -312,7 +323,8 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld nodes", (long long)m->node_count);
     if (m->contact_count < 1 || m->surface_triangle_count < 1)
         return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
-    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK || check_skin(m, err) != SF_OK)
+    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK || check_skin(m, err) != SF_OK ||
+        check_support(m, err) != SF_OK)
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
         return err->status;

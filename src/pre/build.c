@@ -14,6 +14,7 @@
 #include "pre/drop_check.h"
 #include "pre/foam_path.h"
 #include "pre/missile_body.h"
+#include "pre/rigid_support.h"
 #include "pre/cloud/dual.h"
 #include "pre/cloud/layers.h"
 #include "pre/impact.h"
@@ -485,6 +486,7 @@ static sf_status place(const sf_case *c, sf_build_report *report, sf_surface *su
                        sf_error *err) {
     sf_base_place_anvil(c, &report->hold, m);
     SF_TRY(build_missile(c, surface, m, err));
+    SF_TRY(sf_support_find_travel(m, err));
     return sf_foam_path_measure(m, &report->between, err);
 }
 
@@ -525,7 +527,7 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     c->motion_count = 0;
     m->run = c->run;
     m->run.kinematic = c->kinematic;
-    if (m->skin_count > 0 && !c->stabilised)
+    if (m->skin_count > 0 && !m->skin_alone && !c->stabilised)
         m->run.stabilisation = SF_FOLD_STABILISATION;
     return check_depth(m, err);
 }
@@ -625,16 +627,16 @@ static sf_status check_first_step(const sf_model *m, double first, int64_t criti
 /* Faces of a slit that touch each other do not pass through each other. */
 static sf_status find_skin(const sf_case *c, sf_model *m, sf_build_report *report, sf_error *err) {
     SF_TRY(sf_skin_find(c, m, report->unheld, err));
-    if (m->skin_count > 0)
+    if (m->skin_count > 0 && !m->skin_alone)
         m->slit_fraction = 0;
-    else
+    else if (m->support_triangle_count == 0)
         m->air = 0; /* nothing closes */
     return SF_OK;
 }
 
 /* Faces of a pad without contact with itself pass through each other. */
 static void tell_slits(const sf_model *m, const sf_build_report *r, const sf_sink *sink) {
-    if (r->hidden_count > 0 && m->skin_count == 0)
+    if (r->hidden_count > 0 && (m->skin_count == 0 || m->skin_alone))
         sf_sink_tell(
             sink, SF_WARNING,
             "the pad has a slit, hole or gap narrower than the supports: nodes %.3g mm apart at (%.4g, %.4g, "
@@ -665,6 +667,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && (sf_layers_loosen(c, m), true) &&
+        sf_support_take(c, mesh->support, m, err) == SF_OK &&
         place(c, report, surface, m, err) == SF_OK && find_skin(c, m, report, err) == SF_OK &&
         take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);

@@ -212,7 +212,22 @@ static bool meets_face(const sf_model *m, const faces *f, int64_t i, double leng
     return false;
 }
 
-/* *first: a face that can touch another one, or the anvil; -1: none can. */
+/* True if the ray from face i, of this length (m) in the pad's box, ends at a symmetry plane within half the
+ * thickness: beyond it the face's mirror image comes as far. */
+static bool meets_image(const sf_model *m, const shape *s, double length) {
+    double place;
+    for (int axis = 0; axis < 2; axis++) {
+        double n = s->normal[axis];
+        if (!sf_symmetry_plane(m, axis, &place) || fabs(n) < 1e-9)
+            continue;
+        double at = (place - s->centroid[axis]) / n;
+        if (at > 0 && at <= length * (1 + 1e-9) && 2 * at < m->thickness)
+            return true;
+    }
+    return false;
+}
+
+/* *first: a face that can touch another one, its image, or the anvil; -1: none can. */
 static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first, sf_error *err) {
     static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
     int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
@@ -223,7 +238,8 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
         double length = length_in_box(f, i, m->thickness), height = s->centroid[2] - anvil;
         bool over = m->anvil.depth > 0 && s->normal[2] < DOWN && height > LEAST * m->thickness;
         if ((over && -height / s->normal[2] < m->thickness) ||
-            (length > LEAST * m->thickness && meets_face(m, f, i, length, near)))
+            (length > LEAST * m->thickness &&
+             (meets_image(m, s, length) || meets_face(m, f, i, length, near))))
             *first = i;
     }
     free(near);
@@ -240,12 +256,15 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
         first = 0;
     else if (f.count > 0)
         find_touching(m, &f, &first, err);
-    if (first >= 0 && c->self_contact == SF_SELF_CONTACT_OFF)
+    bool off = c->self_contact == SF_SELF_CONTACT_OFF,
+         itself = !off && (first >= 0 || c->self_contact == SF_SELF_CONTACT_ON);
+    if (first >= 0 && off)
         memcpy(unheld, f.shape[first].centroid, sizeof f.shape[first].centroid);
-    else if (err->status == SF_OK && f.count > 0 && (first >= 0 || c->self_contact == SF_SELF_CONTACT_ON)) {
+    if (err->status == SF_OK && f.count > 0 && (itself || m->support_triangle_count > 0)) {
         m->skin_count = f.count;
         m->skin_triangle = f.node;
         m->skin_friction = c->self_friction;
+        m->skin_alone = !itself;
         f.node = NULL;
     }
     faces_free(&f);

@@ -81,7 +81,7 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
     case 'l':
         return model->material_count > 1 ? model->node_count : 0;
     case 's': /* at most all of them */
-        return model->skin_count > 0 ? model->node_count : 0;
+        return model->skin_count > 0 ? model->node_count + model->support_node_count : 0;
     case 'h':
         return blocks * history_rows(model);
     case 'c':

@@ -237,7 +237,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
     sf_constraint_project(&op->constraint, &held);
     sf_wrench below = {{0}, {0}};
-    sf_self_contact_outside(&op->skin, s, &below);
+    sf_self_contact_outside(&op->skin, s, false, &below);
     s->penetration = fmax(s->penetration, s->self_penetration);
     for (int r = 0; r < 3; r++)
         s->base_reaction[r] = held.base[r] + s->anvil_force[r] + below.force[r];
@@ -250,7 +250,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     s->ledger.weight = sf_anvil_work(&op->anvil, s->d);
     sf_wrench outside = wrench_of_constraints(s, &held);
     add_anvil(m, op, s, &outside);
-    sf_self_contact_outside(&op->skin, s, &outside);
+    sf_self_contact_outside(&op->skin, s, true, &outside);
     sf_ledger_close(m, s, &outside, dt_v);
     sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)

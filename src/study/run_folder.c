@@ -75,7 +75,8 @@ uint64_t sf_campaign_case_hash(const sf_case *c) {
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
     *hash = sf_campaign_case_hash(c);
     if (hash_file(hash, c->pad.path, err) != SF_OK ||
-        (c->missile.path && hash_file(hash, c->missile.path, err) != SF_OK))
+        (c->missile.path && hash_file(hash, c->missile.path, err) != SF_OK) ||
+        (c->support.path && hash_file(hash, c->support.path, err) != SF_OK))
         return err->status;
     return hash_programs(hash, err);
 }
@@ -90,7 +91,7 @@ char *sf_campaign_geometry_list(const char *path, const char *text) {
     return files;
 }
 
-bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
+bool sf_campaign_geometry_is_same(const char *const folder[SF_GEOMETRIES], const char *path, const char *text,
                                   bool unlisted) {
     char *files = sf_campaign_geometry_list(path, text);
     bool same = files ? sf_geometry_files_are_same(folder, files) : unlisted;
@@ -112,7 +113,7 @@ static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err
 
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *at) {
     at->key = key;
-    at->pad_folder[0] = at->missile_folder[0] = '\0';
+    at->pad_folder[0] = at->missile_folder[0] = at->support_folder[0] = '\0';
     snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
     snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
     snprintf(at->results, sizeof at->results, "%s/results.h5", at->path);
@@ -130,20 +131,21 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
         return err->status;
     sf_campaign_key(&c, &key, err);
     sf_run_folder_name_key(parent, label, key, at);
-    if (err->status == SF_OK && name_folder(c.pad.path, at->pad_folder, err) == SF_OK)
-        name_folder(c.missile.path, at->missile_folder, err);
+    if (err->status == SF_OK && name_folder(c.pad.path, at->pad_folder, err) == SF_OK &&
+        name_folder(c.missile.path, at->missile_folder, err) == SF_OK)
+        name_folder(c.support.path, at->support_folder, err);
     sf_case_free(&c);
     return err->status;
 }
 
 static bool is_geometry_same(const sf_run_folder *at, const char *path, const char *text, bool unlisted) {
-    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
     return sf_campaign_geometry_is_same(folder, path, text, unlisted);
 }
 
 /* By the record of its figures: only of a drop that ran to its end. */
 static bool is_recorded(const sf_run_folder *at) {
-    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
     sf_run_record record;
     bool recorded = sf_run_record_read(at->figures, at->results, &record) &&
                     sf_geometry_files_are_same(folder, record.geometry);
@@ -176,7 +178,7 @@ static void keep_failure(const sf_run_folder *at, const char *files, const sf_er
 }
 
 bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
-    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
     sf_error none = SF_ERROR_INIT;
     char *text = NULL;
     if (access(at->failed, R_OK) != 0 ||

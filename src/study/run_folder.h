@@ -24,10 +24,10 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 uint64_t sf_campaign_case_hash(const sf_case *c);
 
 /* True if every file that the geometries read, by the list at `text` of the HDF5 file `path`
- * (docs/formats.md, geometry_files), has the content that it had. `folder`: that of the pad's and the
- * missile's geometry, where paths in the list begin; "" without a geometry of the missile. `unlisted`: the
- * answer if there is no such file or list. */
-bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
+ * (docs/formats.md, geometry_files), has the content that it had. `folder`: those of the geometries of
+ * pad, missile and support, where paths in the list begin; "" without one. `unlisted`: the answer if there is
+ * no such file or list. */
+bool sf_campaign_geometry_is_same(const char *const folder[SF_GEOMETRIES], const char *path, const char *text,
                                   bool unlisted);
 /* Returns that list, from malloc; NULL if there is none. */
 char *sf_campaign_geometry_list(const char *path, const char *text);
@@ -45,7 +45,8 @@ typedef struct sf_run_folder {
     char path[PATH_MAX];
     char model[SF_RUN_PATH_SIZE], results[SF_RUN_PATH_SIZE], checkpoint[SF_RUN_PATH_SIZE],
         log[SF_RUN_PATH_SIZE], failed[SF_RUN_PATH_SIZE], figures[SF_RUN_PATH_SIZE];
-    char pad_folder[PATH_MAX], missile_folder[PATH_MAX]; /* of the geometries; "": no geometry of a missile */
+    /* Folders of the geometries; "": there is none. */
+    char pad_folder[PATH_MAX], missile_folder[PATH_MAX], support_folder[PATH_MAX];
 } sf_run_folder;
 
 /* The names, "parent/label-<key of the case with its overrides>" and the names of its files; nothing is
@@ -53,7 +54,7 @@ typedef struct sf_run_folder {
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *folder, sf_error *err);
 
-/* Only the names, of a key that is known: pad_folder and missile_folder are left "". */
+/* Only the names, of a key that is known: the folders of the geometries are left "". */
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *folder);
 
 /* True if the folder holds a drop that ran to its end, and every file that its geometry read is as it was

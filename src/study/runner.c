@@ -260,6 +260,8 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
     r->key = l.at.key;
     r->geometry = sf_hash_bytes(SF_HASH_START, l.at.pad_folder, strlen(l.at.pad_folder) + 1);
     r->geometry = sf_hash_bytes(r->geometry, l.at.missile_folder, strlen(l.at.missile_folder) + 1);
+    if (*l.at.support_folder)
+        r->geometry = sf_hash_bytes(r->geometry, l.at.support_folder, strlen(l.at.support_folder) + 1);
     r->reused = sf_run_folder_is_finished(&l.at) && (runner->figures_only || is_readable(&l.at));
     if (r->reused)
         sf_run_folder_clean(&l.at);

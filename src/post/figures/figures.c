@@ -400,6 +400,7 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
     f->momentum_error_space = sf_history_largest(h, h->momentum_error_space);
     f->angular_momentum_error = sf_history_largest(h, h->angular_momentum_error);
     f->constraint_residual = sf_history_largest(h, h->constraint_residual);
+    f->base_force = sf_history_largest(h, h->base_reaction);
     if (!f->touched)
         goto done;
     compute_energies(results, f);

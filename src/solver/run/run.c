@@ -20,15 +20,16 @@ bool sf_ending_rebounded(const sf_model *m, const sf_state *s) {
 }
 
 bool sf_ending_on_anvil(const sf_model *m, const sf_state *s) {
-    return m->anvil.depth > 0 && sf_missile_depth(m, &s->missile) >= m->anvil.depth;
+    return (m->anvil.depth > 0 && sf_missile_depth(m, &s->missile) >= m->anvil.depth) ||
+           (m->support_travel > 0 && s->missile.displacement >= m->support_travel);
 }
 
-sf_status sf_ending_fail_on_anvil(const sf_state *s, sf_error *err) {
+sf_status sf_ending_fail_on_anvil(const sf_model *m, const sf_state *s, sf_error *err) {
     return SF_FAIL(
         err, SF_ERR_NUMERIC,
-        "the missile reached the anvil at t = %.6g ms with %.4g m/s: an impact of rigid bodies has no "
+        "the missile reached the anvil%s at t = %.6g ms with %.4g m/s: an impact of rigid bodies has no "
         "acceleration that could be told, and the run ends there",
-        1e3 * s->time, s->missile.velocity_now);
+        m->support_travel > 0 ? " or the support" : "", 1e3 * s->time, s->missile.velocity_now);
 }
 
 bool sf_ending_finished(const sf_model *m, const sf_state *s) {
@@ -420,7 +421,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     }
     run->wall_time = d.r.wall_time + sf_clock() - d.start;
     if (err->status == SF_OK && strcmp(run->ending, "anvil") == 0)
-        sf_ending_fail_on_anvil(s, &end);
+        sf_ending_fail_on_anvil(m, s, &end);
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC)
         end_run(&d, err, &end, &late);
     if (late.status != SF_OK)
