@@ -181,8 +181,8 @@ static void wrong_supports_are_refused(void **state) {
     program_write_text(p, "geo/empty.geo", "Point(1) = {0,0,0};\n");
     program_write_text(
         p, "geo/shift.geo",
-        "SetFactory(\"OpenCASCADE\");\nDefineConstant[ z = -5, w = 600, x = 0 ];\n"
-        "Box(1) = {x-w/2,-w/2,z,w,w,5}; Delete{ Volume{:}; } Physical Surface(\"support\") = Surface{:};\n"
+        "SetFactory(\"OpenCASCADE\");\nDefineConstant[ z = -5, w = 600, x = 0, y = 0 ];\n"
+        "Box(1) = {x-w/2,y-w/2,z,w,w,5}; Delete{ Volume{:}; } Physical Surface(\"support\") = Surface{:};\n"
         "Mesh.MeshSizeMin = Max(w/10, 3); Mesh.MeshSizeMax = Max(w/10, 3);\n");
     static const struct {
         const char *words, *sentence;
@@ -194,7 +194,8 @@ static void wrong_supports_are_refused(void **state) {
         {"--set support.friction=0.1", "no meaning without geometry.support_file"},
         {"--set geometry.support_parameters='{ side = 100.0; }'", "no meaning without geometry.support_file"},
         {SUPPORT("shift") "--set geometry.support_parameters='{ z = -3.0; }'", "2 mm inside the support"},
-        {SUPPORT("shift") "--set geometry.support_parameters='{ z = 20.0; w = 6.0; }'", "inside the pad"},
+        {SUPPORT("shift") "--set geometry.support_parameters='{ z = 1.0; w = 6.0; x = 15.0; y = 15.0; }'",
+         "inside the pad"},
         {SUPPORT("shift") "--set geometry.support_parameters='{ z = -80.0; }'",
          "before it within the pad's thickness"},
         {SUPPORT("shift") "--set geometry.support_parameters='{ z = 60.0; }'",

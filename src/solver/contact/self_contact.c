@@ -330,14 +330,15 @@ static void drop_traces(double weight[3]) {
 
 /* The pair of node and facet, if the node lies before or behind the facet and its own surface looks against
  * it. The normal is the mean of both surfaces: smooth over the facets, and the same seen from either side,
- * where facets that are tilted against each other would interlock. The gap is along it, so that the forces on
- * node and facet lie on one line. */
+ * where facets that are tilted against each other would interlock; of a rigid facet it is that of the support.
+ * The gap is along it, so that the forces on node and facet lie on one line. */
 static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, touch *out) {
     const int32_t *n = &skin->facet[3 * f];
     const double *x = &s->self_position[3 * p], *a = &s->self_position[3 * (int64_t)n[0]];
     double own[3], arm[3], point[3];
     facet_normal(skin, s, f, own);
     double area = sqrt(sf_dot3(own, own));
+    bool rigid = sf_skin_is_rigid(skin, n[0]);
     *out = (touch){.node = p, .facet = f};
     if (!(area > 0) || sf_dot3(&s->self_normal[3 * p], own) >= OPPOSED * area)
         return false;
@@ -347,7 +348,7 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
             return false;
     for (int r = 0; r < 3; r++) {
         arm[r] = x[r] - a[r];
-        out->normal[r] = -s->self_normal[3 * p + r];
+        out->normal[r] = rigid ? 0 : -s->self_normal[3 * p + r];
         for (int k = 0; k < 3; k++)
             out->normal[r] += out->weight[k] * s->self_normal[3 * (int64_t)n[k] + r];
     }
