@@ -274,7 +274,7 @@ sf_status sf_support_take(const sf_case *c, sf_surface *surface, sf_model *m, sf
     return err->status;
 }
 
-/* Of vertices against triangles, both ways; the missile does not turn. */
+/* Compares vertices with triangles, both ways; the missile does not turn. */
 sf_status sf_support_find_travel(sf_model *m, sf_error *err) {
     const sf_surface missile = {.node_count = m->surface_node_count,
                                 .position = m->surface_position,
