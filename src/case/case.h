@@ -67,6 +67,9 @@ typedef struct sf_case {
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
     char support_group[SF_CASE_NAME_SIZE]; /* physical surface group of the rigid supports */
     double support_friction;               /* -, Coulomb coefficient of the pad against them */
+    int membrane_count;                    /* surface groups with a cover without cells */
+    char membrane_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    sf_membrane_card membrane_card;
     int self_contact;                      /* SF_SELF_CONTACT_* */
     bool stabilised;                       /* kernel.stabilisation is given */
     double self_friction;                  /* -, Coulomb coefficient of the pad against itself */

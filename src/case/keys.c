@@ -117,6 +117,18 @@ static const sf_key keys[] = {
      "physical surface of the rigid bodies of `geometry.support_file` that the pad touches; it may have several parts"},
     {"support", "friction", SF_KEY_NUMBER, "0.5", AT(support_friction),
      "Coulomb coefficient of the pad against them; the default is an assumption, as that of `pad.friction`", .high = 10.0},
+    /* membrane */
+    {"membrane", "faces", SF_KEY_NAMES, "[]", AT(membrane_group),
+     "physical surfaces of the pad that a thin elastic cover without cells lies on, glued to them; `E`, `thickness` and `density` go with it",
+     .count_offset = offsetof(sf_case, membrane_count)},
+    {"membrane", "E", SF_KEY_QUANTITY, "", AT(membrane_card.modulus),
+     "Young's modulus of the cover", .quantity = SF_PRESSURE, POSITIVE, .high = 1e12},
+    {"membrane", "nu", SF_KEY_NUMBER, "0.4", AT(membrane_card.poisson), "Poisson's ratio of it", .high = 0.5},
+    {"membrane", "thickness", SF_KEY_QUANTITY, "", AT(membrane_card.thickness),
+     "of it: it resists tension and shear, not bending", .quantity = SF_LENGTH, POSITIVE, .high = 1.0},
+    {"membrane", "density", SF_KEY_QUANTITY, "", AT(membrane_card.density), "of it", .quantity = SF_DENSITY, .high = 1e5},
+    {"membrane", "fabric", SF_KEY_BOOL, "false", AT(membrane_card.fabric),
+     "the cover folds: it carries no compression"},
     /* kernel */
     {"kernel", "support_ratio", SF_KEY_NUMBER, "1.4", AT(support_ratio),
      "kernel radius over spacing, R/h; 2 or more makes the constraint matrix nearly singular",

@@ -123,6 +123,24 @@ sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err) {
     return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), text);
 }
 
+/* All of a membrane's keys, or none. */
+static sf_status check_membrane(const sf_case_reader *reader, sf_error *err) {
+    static const char *const keys[] = {"E", "thickness", "density", "nu", "fabric"};
+    enum { NEEDED = 3, KEYS = 5 };
+    char where[SF_CASE_WHERE_SIZE], path[64];
+    bool there = reader->out->membrane_count > 0;
+    for (int k = 0; k < KEYS; k++) {
+        bool given = sf_case_is_given(reader, "membrane", keys[k]);
+        snprintf(path, sizeof path, "membrane.%s", keys[k]);
+        if (there && !given && k < NEEDED)
+            return sf_case_missing_key(reader, sf_case_find_key(&reader->keys, "membrane", keys[k]), err);
+        if (!there && given)
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has no meaning without membrane.faces",
+                           sf_case_where_is(reader, path, where), path);
+    }
+    return SF_OK;
+}
+
 static const double FLATTEST = 0.0871557; /* cosine of 85 degrees */
 
 static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
@@ -379,7 +397,7 @@ sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
         if (config_lookup(&reader->config, of_support[k]))
             return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has no meaning without geometry.support_file",
                            sf_case_where_is(reader, of_support[k], where), of_support[k]);
-    if (check_base(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
+    if (check_membrane(reader, err) != SF_OK || check_base(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
         check_freedom(reader, err) != SF_OK)
         return err->status;
     return check_motion(reader, err);

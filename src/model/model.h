@@ -75,6 +75,15 @@ typedef struct sf_anvil_card {
 /* Least stabilisation of foam that folds: with less it does so from node to node. */
 #define SF_FOLD_STABILISATION 0.3
 
+/* A thin elastic cover without cells. */
+typedef struct sf_membrane_card {
+    double modulus;   /* Pa, Young's */
+    double poisson;   /* - */
+    double thickness; /* m */
+    double density;   /* kg m-3 */
+    int64_t fabric;   /* 1: it carries no compression */
+} sf_membrane_card;
+
 typedef struct sf_run_options {
     double end_time;            /* s */
     double step_safety;         /* -, fraction of the stability limit */
@@ -161,6 +170,13 @@ typedef struct sf_model {
     int32_t *support_triangle;      /* [support_triangle_count][3] */
     double support_friction;        /* -, Coulomb coefficient of the pad against them */
     double support_travel; /* m, of the missile along its direction until it touches them; 0: it never does */
+
+    /* The membrane on faces of the pad; its mass is among those of the nodes. A quadrangle is there by both of
+     * its diagonals. */
+    int64_t membrane_count;
+    int32_t *membrane_triangle; /* [membrane_count][3] nodes */
+    double *membrane_share;     /* [membrane_count] -, of the thickness: 1, or 0.5 where two triangles overlap */
+    sf_membrane_card membrane;
 
     /* The missile's surface in the pose of first contact, `gap` away along its direction; triangles turned
      * outwards. */

@@ -143,6 +143,11 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"anvil depth (m)", m->anvil.depth, 0, 1e3},
         {"skin friction", m->skin_friction, 0, 10},
         {"skin alone", (double)m->skin_alone, 0, 1},
+        {"membrane modulus (Pa)", m->membrane.modulus, m->membrane_count > 0 ? 1e-9 : 0, 1e12},
+        {"membrane Poisson's ratio", m->membrane.poisson, 0, 0.5},
+        {"membrane thickness (m)", m->membrane.thickness, m->membrane_count > 0 ? 1e-12 : 0, 1},
+        {"membrane density (kg/m3)", m->membrane.density, 0, 1e5},
+        {"fabric membrane", (double)m->membrane.fabric, 0, 1},
         {"support friction", m->support_friction, 0, 10},
         {"missile's way to the support (m)", m->support_travel, 0, 1e6},
         {"anvil friction", m->anvil.friction, 0, 10},
@@ -201,15 +206,16 @@ static sf_status check_mesh(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status check_skin(const sf_model *m, sf_error *err) {
-    for (int64_t k = 0; k < 3 * m->skin_count; k++) {
-        const int32_t *node = &m->skin_triangle[k - k % 3];
-        if (m->skin_triangle[k] < 0 || m->skin_triangle[k] >= m->node_count || node[0] == node[1] ||
-            node[1] == node[2] || node[2] == node[0])
-            return SF_FAIL(
-                err, SF_ERR_MODEL,
-                "triangle %lld of the pad's skin has the nodes %d, %d, %d: three of 0 to %lld are needed",
-                (long long)k / 3, node[0], node[1], node[2], (long long)m->node_count - 1);
+/* Triangles of three different nodes of the cloud. */
+static sf_status check_triangles(const char *name, const sf_model *m, int64_t count, const int32_t *triangle,
+                                 sf_error *err) {
+    for (int64_t k = 0; k < 3 * count; k++) {
+        const int32_t *node = &triangle[k - k % 3];
+        if (triangle[k] < 0 || triangle[k] >= m->node_count || node[0] == node[1] || node[1] == node[2] ||
+            node[2] == node[0])
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "triangle %lld of the %s has the nodes %d, %d, %d: three of 0 to %lld are needed",
+                           (long long)k / 3, name, node[0], node[1], node[2], (long long)m->node_count - 1);
     }
     return SF_OK;
 }
@@ -323,7 +329,9 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld nodes", (long long)m->node_count);
     if (m->contact_count < 1 || m->surface_triangle_count < 1)
         return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
-    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK || check_skin(m, err) != SF_OK ||
+    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
+        check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
+        check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
         check_support(m, err) != SF_OK)
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)

@@ -13,6 +13,7 @@
 #include "pre/cloud/domains.h"
 #include "pre/drop_check.h"
 #include "pre/foam_path.h"
+#include "pre/membrane.h"
 #include "pre/missile_body.h"
 #include "pre/rigid_support.h"
 #include "pre/cloud/dual.h"
@@ -231,7 +232,8 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
         goto done;
     sf_cloud_hash(mesh, report->mesh_hash);
     if (alloc_cloud(m, layers->first[layers->count], contact_area, err) != SF_OK ||
-        build_contact(c, mesh, &dual, layers, *contact_area, err) != SF_OK)
+        build_contact(c, mesh, &dual, layers, *contact_area, err) != SF_OK ||
+        sf_membrane_take(c, mesh, &dual, layers, m, err) != SF_OK)
         goto done;
     if (layers->count > 1) {
         if (build_layers(c, mesh, layers, m, report, err) != SF_OK ||
@@ -245,6 +247,7 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
         m->slit_fraction = (double)report->hidden_count / (double)mesh->node_count;
     }
     take_mesh(mesh, m, report);
+    sf_membrane_weigh(m);
 done:
     sf_dual_free(&dual);
     return err->status;
@@ -599,9 +602,14 @@ static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double c
 static sf_status measure_step(const sf_model *m, int64_t *critical, sf_build_report *report, sf_error *err) {
     double constant = 0;
     report->slowdown = 1;
-    if (first_step(m, &report->first_step, critical, &constant, err) != SF_OK || sf_missile_is_driven(m))
+    double load;
+    if (first_step(m, &report->first_step, critical, &constant, err) != SF_OK ||
+        sf_stability_membrane(m, &load, err) != SF_OK)
         return err->status;
-    return estimate_slowdown(m, *critical, constant, report->first_step, &report->slowdown, err);
+    if (!sf_missile_is_driven(m))
+        estimate_slowdown(m, *critical, constant, report->first_step, &report->slowdown, err);
+    report->first_step = sf_stability_with_membrane(load, report->first_step);
+    return err->status;
 }
 
 static void estimate_mesh_error(sf_model *m, sf_build_report *report) {

@@ -51,6 +51,9 @@ static const sf_state_array arrays[] = {
     SCRATCH(self_normal, 's', 3 * sizeof(double)),
     SCRATCH(self_close, 's', sizeof(int32_t)),
     SCRATCH(self_near, 's', sizeof(int32_t)),
+    SCRATCH(membrane.position, 'm', 3 * sizeof(double)),
+    SCRATCH(membrane.force, 'm', 3 * sizeof(double)),
+    SCRATCH(membrane.row, 't', SF_MEMBRANE_ROW * sizeof(double)),
     SCRATCH(contact_active, 'c', sizeof(int32_t)),
     SCRATCH(contact_near, 'c', sizeof(int32_t)),
     SCRATCH(partial, 'k', sizeof(sf_partial)),
@@ -82,6 +85,10 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
         return model->material_count > 1 ? model->node_count : 0;
     case 's': /* at most all of them */
         return model->skin_count > 0 ? model->node_count + model->support_node_count : 0;
+    case 'm': /* at most all of them */
+        return model->membrane_count > 0 ? model->node_count : 0;
+    case 't':
+        return model->membrane_count;
     case 'h':
         return blocks * history_rows(model);
     case 'c':

@@ -8,6 +8,7 @@
 #include "io/h5_members.h"
 #include "material/laws.h"
 #include "model/model.h"
+#include "solver/field/membrane.h"
 #include "solver/missile.h"
 
 /* Wall time of the phases of a step, for the benchmark. */
@@ -193,6 +194,8 @@ typedef struct sf_state {
     double self_room;        /* m, until the lists are made anew */
     double self_penetration; /* m, deepest now */
 
+    sf_membrane_state membrane;
+
     double contact_room; /* m, rest of the skin: approach of points and missile until the list is made anew */
     double fastest;      /* m s-1, of the coefficients at the half step */
 
@@ -207,7 +210,7 @@ typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
     char rows; /* n nodes, l nodes of a pad of layers, h rows of history of all blocks of lanes, c contact
-                  points, k chunks */
+                  points, s nodes of the skin, m and t nodes and triangles of the membrane, k chunks */
     int bytes; /* of a row; doubles if it has a name */
 } sf_state_array;
 
