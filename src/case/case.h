@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The case file: libconfig syntax, every dimensional value a string with its unit ("4.6 kg"), read with
- * base/units.h. Groups geometry, pad, material, missile, kernel, solver, output; docs/case.md lists the keys.
+ * base/units.h. docs/case.md lists groups and keys.
  */
 #ifndef SF_CASE_CASE_H
 #define SF_CASE_CASE_H
