@@ -101,6 +101,23 @@ static void the_bits_are_the_same(void **state) {
     assert_int_equal(program_shell(p, "cmp one/history.csv three/history.csv").code, 0);
 }
 
+/* A case with a support goes to a folder of its own, whose bits are the same. */
+static void a_support_moves_with_its_case(void **state) {
+    const program_place *p = *state;
+    use_example(p, "post");
+    program_shell(p,
+                  "sed -i 's#missile_file = #support_file = \"geo/round_post.geo\"; support_parameters = { "
+                  "element_size = 13.0; };\\n    missile_file = #; s#^material:#pad: { fixed = []; "
+                  "mesh_error_limit = 10.0; };\\nmaterial:#; s#spacing = 5.0#spacing = 13.0#' case.cfg");
+    program_succeed(p, "new", "own --from case.cfg");
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force --set solver.end_time='2 ms'");
+    program_succeed(p, "pre", "own/case.cfg -o own.h5 --force --set solver.end_time='2 ms'");
+    program_shell(p, "for n in m own; do \"$SF_BIN_DIR/softfall-solve\" $n.h5 -o r$n.h5 --force -t 1; "
+                     "\"$SF_BIN_DIR/softfall-post\" r$n.h5 -o $n --force; done");
+    assert_int_equal(
+        program_shell(p, "cmp m/history.csv own/history.csv && test -f own/geo/round_post.geo").code, 0);
+}
+
 /* The foam under the missile is the near wall of the tube, with and without glue. */
 static void a_post_in_a_tube_acts_as_glue_does(void **state) {
     const program_place *p = *state;
@@ -234,6 +251,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flat_slab_acts_as_the_anvil),
         cmocka_unit_test(the_bits_are_the_same),
+        cmocka_unit_test(a_support_moves_with_its_case),
         cmocka_unit_test(a_post_in_a_tube_acts_as_glue_does),
         cmocka_unit_test(a_slot_closes_onto_its_mirror_image),
         cmocka_unit_test(wrong_supports_are_refused),

@@ -44,7 +44,6 @@ typedef struct sf_case {
     uint64_t values;  /* hash of the values of all keys that can change a drop, but those that name files */
     sf_geo_source pad;
     sf_geo_source missile;
-    sf_geo_source support; /* path NULL: there is none */
     double length_unit; /* m per unit of the geometry */
     double up[3];       /* -, unit vector out of the pad's face, in the geometry; the model has it along z */
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */
@@ -65,11 +64,6 @@ typedef struct sf_case {
     bool symmetry_given;
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
-    char support_group[SF_CASE_NAME_SIZE]; /* physical surface group of the rigid supports */
-    double support_friction;               /* -, Coulomb coefficient of the pad against them */
-    int membrane_count;                    /* surface groups with a cover without cells */
-    char membrane_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
-    sf_membrane_card membrane_card;
     int self_contact;                      /* SF_SELF_CONTACT_* */
     bool stabilised;                       /* kernel.stabilisation is given */
     double self_friction;                  /* -, Coulomb coefficient of the pad against itself */
@@ -104,6 +98,13 @@ typedef struct sf_case {
     sf_run_options run;
     int frame_time_count;                 /* further frames, beside run.frame_interval */
     double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */
+
+    sf_geo_source support;                 /* path NULL: there is none */
+    char support_group[SF_CASE_NAME_SIZE]; /* physical surface group of the rigid supports */
+    double support_friction;               /* -, Coulomb coefficient of the pad against them */
+    int membrane_count;                    /* surface groups with a cover without cells */
+    char membrane_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    sf_membrane_card membrane_card;
 } sf_case;
 
 /* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in

@@ -357,9 +357,10 @@ static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     if (c->fixed_count + c->sliding_count == 0 && !c->support.path)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding, or a support (geometry.support_file)",
-                       sf_case_where_is(reader, "pad.fixed", where));
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding, or a support (geometry.support_file)",
+            sf_case_where_is(reader, "pad.fixed", where));
     if (sf_case_is_given(reader, "pad", "base") && c->fixed_count == 0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.base: pad.fixed names no surface that it could apply to",
                        sf_case_where_is(reader, "pad.base", where));
@@ -397,8 +398,8 @@ sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
         if (config_lookup(&reader->config, of_support[k]))
             return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has no meaning without geometry.support_file",
                            sf_case_where_is(reader, of_support[k], where), of_support[k]);
-    if (check_membrane(reader, err) != SF_OK || check_base(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
-        check_freedom(reader, err) != SF_OK)
+    if (check_membrane(reader, err) != SF_OK || check_base(reader, err) != SF_OK ||
+        check_direction(reader, err) != SF_OK || check_freedom(reader, err) != SF_OK)
         return err->status;
     return check_motion(reader, err);
 }

@@ -106,9 +106,8 @@ static sf_status read_case(sf_session *s, sf_error *err) {
         s->case_file = fresh;
         if (add_geometry(fresh.pad.path, "geometry.parameters", &fresh.pad, before, &s->fields, err) ==
                 SF_OK &&
-            (!fresh.missile.path ||
-             add_geometry(fresh.missile.path, "geometry.missile_parameters", &fresh.missile, before,
-                          &s->fields, err) == SF_OK) &&
+            (!fresh.missile.path || add_geometry(fresh.missile.path, "geometry.missile_parameters",
+                                                 &fresh.missile, before, &s->fields, err) == SF_OK) &&
             fresh.support.path)
             add_geometry(fresh.support.path, "geometry.support_parameters", &fresh.support, before,
                          &s->fields, err);

@@ -171,11 +171,11 @@ typedef struct sf_model {
     double support_friction;        /* -, Coulomb coefficient of the pad against them */
     double support_travel; /* m, of the missile along its direction until it touches them; 0: it never does */
 
-    /* The membrane on faces of the pad; its mass is among those of the nodes. A quadrangle is there by both of
-     * its diagonals. */
+    /* The membrane on faces of the pad; its mass is among those of the nodes. A quadrangle is there by both
+     * of its diagonals. */
     int64_t membrane_count;
     int32_t *membrane_triangle; /* [membrane_count][3] nodes */
-    double *membrane_share;     /* [membrane_count] -, of the thickness: 1, or 0.5 where two triangles overlap */
+    double *membrane_share; /* [membrane_count] -, of the thickness: 1, or 0.5 where two triangles overlap */
     sf_membrane_card membrane;
 
     /* The missile's surface in the pose of first contact, `gap` away along its direction; triangles turned

@@ -675,9 +675,8 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && (sf_layers_loosen(c, m), true) &&
-        sf_support_take(c, mesh->support, m, err) == SF_OK &&
-        place(c, report, surface, m, err) == SF_OK && find_skin(c, m, report, err) == SF_OK &&
-        take_cards(c, m, err) == SF_OK) {
+        sf_support_take(c, mesh->support, m, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
+        find_skin(c, m, report, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
             sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&

@@ -12,8 +12,9 @@
 enum { MOST_RAYS = 200, MOST_HITS = 256 };
 static const double FACING = 0.1; /* least cosine between the missile's direction and a face it touches */
 static const double ZONE = 0.5;   /* of the length under the first touch */
-static const double FACETS = 0.02; /* of the thickness: those of pad and support on a curved face overlap by less */
-static const double SAME = 1e-6;  /* of the extent: one place; the same thickness */
+static const double FACETS =
+    0.02; /* of the thickness: those of pad and support on a curved face overlap by less */
+static const double SAME = 1e-6; /* of the extent: one place; the same thickness */
 
 typedef enum node_mark { MARK_TOUCHED = 1, MARK_HELD = 2 } node_mark;
 

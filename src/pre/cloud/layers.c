@@ -134,8 +134,8 @@ static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_
     }
     pairs->touch[a][b] = pairs->touch[b][a] = 1;
     for (int k = face->node[0] < 0; k < 4; k++)
-        l->tie[l->tie_count++] =
-            (sf_layer_tie){sf_layers_copy(l, face->node[k], low), sf_layers_copy(l, face->node[k], high), mask};
+        l->tie[l->tie_count++] = (sf_layer_tie){sf_layers_copy(l, face->node[k], low),
+                                                sf_layers_copy(l, face->node[k], high), mask};
     return SF_OK;
 }
 
@@ -240,7 +240,8 @@ sf_status sf_layers_part(const sf_mesh *mesh, const sf_layers *l, int layer, sf_
             continue;
         part->cell_type[cell] = mesh->cell_type[k];
         for (int64_t v = mesh->cell_ptr[k]; v < mesh->cell_ptr[k + 1]; v++)
-            part->cell_node[used++] = (int32_t)(sf_layers_copy(l, mesh->cell_node[v], layer) - l->first[layer]);
+            part->cell_node[used++] =
+                (int32_t)(sf_layers_copy(l, mesh->cell_node[v], layer) - l->first[layer]);
         part->cell_ptr[++cell] = used;
     }
     if (err->status != SF_OK)

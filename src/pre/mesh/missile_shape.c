@@ -94,10 +94,11 @@ static sf_status walk(orienter *o, int64_t seed, int64_t *count, sf_error *err) 
                 continue;
             if (o->part[next]) {
                 const double *x = vertex(o->surface, t, e);
-                return SF_FAIL(err, SF_ERR_INPUT,
-                               "the surface of the missile or support is one-sided, like a Moebius strip, near (%.4g, %.4g, "
-                               "%.4g) m of its geometry: it has no outside for the pad to touch",
-                               x[0], x[1], x[2]);
+                return SF_FAIL(
+                    err, SF_ERR_INPUT,
+                    "the surface of the missile or support is one-sided, like a Moebius strip, near (%.4g, %.4g, "
+                    "%.4g) m of its geometry: it has no outside for the pad to touch",
+                    x[0], x[1], x[2]);
             }
             o->part[next] = 1;
             o->flip[next] = flip;

@@ -330,8 +330,8 @@ static void drop_traces(double weight[3]) {
 
 /* The pair of node and facet, if the node lies before or behind the facet and its own surface looks against
  * it. The normal is the mean of both surfaces: smooth over the facets, and the same seen from either side,
- * where facets that are tilted against each other would interlock; of a rigid facet it is that of the support.
- * The gap is along it, so that the forces on node and facet lie on one line. */
+ * where facets that are tilted against each other would interlock; of a rigid facet it is that of the
+ * support. The gap is along it, so that the forces on node and facet lie on one line. */
 static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, touch *out) {
     const int32_t *n = &skin->facet[3 * f];
     const double *x = &s->self_position[3 * p], *a = &s->self_position[3 * (int64_t)n[0]];

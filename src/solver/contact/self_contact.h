@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact of the pad's skin with itself, its mirror image, the plane of the anvil and the rigid support: every
- * node of the skin against the faces of the skin before it, by multipliers as the missile's contact has them (contact.h; theory, section
- * "Contact of the pad with itself"). Without these forces the gap of node and face at the next time would be
- * g; the forces q on the node, and -q shared among the face's nodes, are those for which no gap is negative,
- * none pulls, and Coulomb's law holds. They act at one place in one direction, so that momentum and angular
- * momentum hold. A node touches a face only if it comes from outside: one that lies deeper behind a face than
- * it may, as behind the other side of a thin wall, does not see it. */
+/* Contact of the pad's skin with itself, its mirror image, the plane of the anvil and the rigid support:
+ * every node of the skin against the faces of the skin before it, by multipliers as the missile's contact has
+ * them (contact.h; theory, section "Contact of the pad with itself"). Without these forces the gap of node
+ * and face at the next time would be g; the forces q on the node, and -q shared among the face's nodes, are
+ * those for which no gap is negative, none pulls, and Coulomb's law holds. They act at one place in one
+ * direction, so that momentum and angular momentum hold. A node touches a face only if it comes from outside:
+ * one that lies deeper behind a face than it may, as behind the other side of a thin wall, does not see it.
+ */
 #ifndef SF_SOLVER_CONTACT_SELF_CONTACT_H
 #define SF_SOLVER_CONTACT_SELF_CONTACT_H
 

@@ -425,7 +425,8 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     *own = 0;
     if (sf_sweep_read_case(p, row, &c, &inner) == SF_OK) {
         if (sf_geo_parameters_check_alone(&c.pad, &inner) == SF_OK &&
-            sf_geo_parameters_check_alone(&c.missile, &inner) == SF_OK)
+            sf_geo_parameters_check_alone(&c.missile, &inner) == SF_OK &&
+            sf_geo_parameters_check_alone(&c.support, &inner) == SF_OK)
             sf_campaign_key(&c, own, &inner);
         sf_case_free(&c);
     }
