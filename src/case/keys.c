@@ -127,6 +127,12 @@ static const sf_key keys[] = {
      "the run stops at this relative energy error, or when contact or stabilisation has given the pad this part of the impact energy", .low = 1e-9, .high = 1.0},
     {"solver", "stop_after_rebound", SF_KEY_BOOL, "true", AT(run.stop_after_rebound),
      "end when the missile has left the pad upwards"},
+    /* series */
+    {"series", "drops", SF_KEY_NUMBER, "1.0", AT(run.drops),
+     "number of drops on the same pad, one after the other; each has a results file of its own", .low = 1.0, .high = 20.0},
+    {"series", "interval", SF_KEY_QUANTITY, "", AT(run.interval),
+     "from one drop to the next, in which the pad recovers (`material.memory`); required with `drops` above 1",
+     .quantity = SF_TIME, .low = 0.1, .high = 1e7},
     /* output */
     {"output", "acceleration", SF_KEY_CHOICE, "\"accelerometer\"", AT(kinematic),
      "acceleration of the curves, of a_max and HIC: the specific force that an accelerometer in the missile reads (0 in free fall), or the kinematic one (-1 g in free fall)",

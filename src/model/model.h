@@ -84,6 +84,8 @@ typedef struct sf_run_options {
     int64_t kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
     double speed_scatter;       /* -, standard deviation of the missile's speed over it, for figures only */
     double thickness_tolerance; /* m, standard deviation of the pad's thickness, for figures only */
+    double drops;               /* -, of a series on one pad, a whole number; 0: a single drop */
+    double interval;            /* s, from one drop of a series to the next */
 } sf_run_options;
 
 typedef struct sf_model {
@@ -177,6 +179,10 @@ typedef struct sf_model {
     sf_anvil_card anvil;
     sf_run_options run;
 } sf_model;
+
+/* The results file of a drop of a series, from 1: that of the first is `results`, the second of "a.h5" is
+ * "a-2.h5". */
+void sf_model_series_file(const char *results, int64_t drop, char *path, size_t size);
 
 /* Modelled parts that make the whole pad and missile: what a force, an energy, a mass or an area of the
  * modelled part is multiplied by for that of the whole, and divided by for the way back. A power of two:

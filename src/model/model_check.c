@@ -153,6 +153,8 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"step limit (s)", m->run.step_limit, 1e-12, 1e3},
         {"stabilisation coefficient", m->run.stabilisation, 0, 10},
         {"energy limit", m->run.energy_limit, 1e-9, 1e9},
+        {"drops of a series", m->run.drops, 0, 20},
+        {"interval of a series (s)", m->run.interval, 0, 1e7},
         {"frame interval (s)", m->run.frame_interval, 1e-9, 1e3},
         {"number of frames", m->run.end_time / m->run.frame_interval, 0, SF_MOST_FRAMES},
     };

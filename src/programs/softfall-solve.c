@@ -21,6 +21,7 @@
 #include "model/good_run.h"
 #include "model/model_io.h"
 #include "solver/run/run.h"
+#include "solver/run/series.h"
 
 /* The command line of softfall-solve. */
 
@@ -30,6 +31,7 @@ typedef struct sf_solve_options {
     const char *restart;
     double end_time;                         /* s, 0: as the model says, or the run so far */
     double checkpoint_wall, checkpoint_time; /* s */
+    sf_earlier earlier;                      /* the pad from which the run begins */
     bool no_checkpoint;
     bool remove_failed;
     int threads;
@@ -50,12 +52,12 @@ void sf_solve_print_ledger(const sf_model *model, const sf_state *state, const s
 
 /* softfall-solve's run, from the model's file to the results. */
 
-/* Solves the model of the options, or resumes a run; `command` is for the provenance. Non-zero `*stop`
+/* Solves the model of the options, all drops of its series, or resumes them; `command` is for the provenance. Non-zero `*stop`
  * ends the run after the present step. Progress and report go to stdout. */
 sf_status sf_solve(const sf_solve_options *options, const char *command, const volatile sig_atomic_t *stop,
                    sf_error *err);
 
-enum { END_TIME = 256, RESTART, CHECKPOINT_EVERY, CHECKPOINT_TIME, NO_CHECKPOINT, ON_FAILURE };
+enum { END_TIME = 256, RESTART, START_FROM, PAUSE, CHECKPOINT_EVERY, CHECKPOINT_TIME, NO_CHECKPOINT, ON_FAILURE };
 
 /* A positive time with its unit. */
 static double parse_time(const char *option, const char *text, struct argp_state *state) {
@@ -84,6 +86,9 @@ static void check_options(sf_solve_options *o, struct argp_state *state) {
         argp_error(state, "--restart RESULTS writes to RESULTS: -o is not allowed with it");
     if (!o->restart && (!o->model || !o->output))
         argp_error(state, "usage: softfall-solve model.h5 -o results.h5");
+    if (!o->earlier.results != !(o->earlier.pause > 0) || (o->restart && o->earlier.results))
+        argp_error(state, "a run on the pad of an earlier one needs --start-from RESULTS and --pause TIME, and no "
+                          "--restart: what is resumed knows its pad");
     if (o->restart)
         o->output = o->restart;
 }
@@ -102,6 +107,12 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
         return 0;
     case RESTART:
         o->restart = arg;
+        return 0;
+    case START_FROM:
+        o->earlier.results = arg;
+        return 0;
+    case PAUSE:
+        o->earlier.pause = parse_time("--pause", arg, state);
         return 0;
     case END_TIME:
         o->end_time = parse_time("--end-time", arg, state);
@@ -141,6 +152,9 @@ void sf_solve_options_parse(int argc, char **argv, sf_solve_options *o) {
         {"restart", RESTART, "RESULTS", 0,
          "resume RESULTS from RESULTS.restart, bit for bit as if uninterrupted; MODEL only if it has been moved",
          0},
+        {"start-from", START_FROM, "RESULTS", 0,
+         "begin with the pad as this earlier run left it, from RESULTS.restart: its foam remembers the drop", 0},
+        {"pause", PAUSE, "TIME", 0, "rest of the pad between that run and this one, such as \"90 s\"", 0},
         {"end-time", END_TIME, "TIME", 0, "another end of the simulated time, such as \"40 ms\"", 0},
         {"checkpoint-every", CHECKPOINT_EVERY, "TIME", 0, "wall time between checkpoints (default: 60 s)", 0},
         {"checkpoint-time", CHECKPOINT_TIME, "TIME", 0, "simulated time between checkpoints (default: none)",
@@ -157,7 +171,8 @@ void sf_solve_options_parse(int argc, char **argv, sf_solve_options *o) {
         .options = list,
         .parser = parse,
         .args_doc = "MODEL",
-        .doc = "Solves the drop in MODEL (from softfall-pre). Ctrl-C (SIGINT, SIGTERM) ends the run after "
+        .doc = "Solves the drop in MODEL (from softfall-pre), or the drops of its series, one after the other: the results "
+               "of the second are RESULTS-2.h5. Ctrl-C (SIGINT, SIGTERM) ends the run after "
                "the present step with readable results and a checkpoint, from which --restart resumes.\vExit "
                "code: 0 done, 2 wrong input, 3 a file failed, 4 wrong model, 5 numerical failure, 6 out of "
                "memory, 7 a library failed, 130 interrupted (SIGINT, SIGTERM)."};
@@ -298,10 +313,44 @@ static void handle_failure(const sf_solve_options *o, const sf_output *output, c
     fputc('\n', stderr);
 }
 
+/* True if a run to the results file of drop `k` has begun and can be resumed. */
+static bool has_begun(const char *results, int64_t k) {
+    char path[SF_PATH_SIZE - 16], checkpoint[SF_PATH_SIZE];
+    sf_model_series_file(results, k, path, sizeof path);
+    snprintf(checkpoint, sizeof checkpoint, "%s.restart", path);
+    return access(checkpoint, F_OK) == 0;
+}
+
+/* A series of drops on one pad. */
+typedef struct series {
+    int64_t drops;        /* 1: a single drop */
+    double interval;      /* s */
+    char model[PATH_MAX]; /* path */
+} series;
+
+/* What a series needs beside the model of its first drop. */
+static sf_status check_series(const sf_solve_options *o, const series *all, sf_error *err) {
+    if (all->drops == 1)
+        return SF_OK;
+    if (o->no_checkpoint || (o->restart && o->end_time > 0))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "a series of drops is solved without %s: each drop begins with the pad at the end of the one before",
+                       o->no_checkpoint ? "--no-checkpoint" : "--restart and --end-time");
+    for (int64_t k = 2; k <= all->drops && !o->restart; k++) {
+        char path[SF_PATH_SIZE];
+        sf_output output;
+        sf_model_series_file(o->output, k, path, sizeof path);
+        if (sf_output_name(&output, path, err) != SF_OK || check_output(o, &output, err) != SF_OK)
+            return err->status;
+    }
+    return SF_OK;
+}
+
 /* Builds operators and state, and writes the base of the results first: so the mesh is released before the
  * operators are built, and the model's file is closed. */
 static sf_status build(sf_model *model, sf_h5 **model_file, const sf_provenance *provenance,
-                       const sf_output *output, sf_operators *operators, sf_state *state, sf_error *err) {
+                       const sf_output *output, const sf_earlier *earlier, sf_operators *operators,
+                       sf_state *state, sf_error *err) {
     if (sf_output_base(output, model, *model_file, provenance, err) != SF_OK ||
         sf_h5_close(model_file, err) != SF_OK)
         return err->status;
@@ -309,11 +358,12 @@ static sf_status build(sf_model *model, sf_h5 **model_file, const sf_provenance 
     if (sf_operators_take(model, operators, err) != SF_OK)
         return err->status;
     malloc_trim(0); /* return the freed work memory of the build */
-    return sf_state_create(model, state, err);
+    return sf_series_begin(earlier, model, operators, state, err);
 }
 
-sf_status sf_solve(const sf_solve_options *o, const char *command, const volatile sig_atomic_t *stop,
-                   sf_error *err) {
+/* One drop; of the first, `all` receives what the model says of a series. */
+static sf_status solve_drop(const sf_solve_options *o, series *all, const char *command,
+                            const volatile sig_atomic_t *stop, sf_error *err) {
     sf_model model = {0};
     sf_operators operators = {0};
     sf_state state = {0};
@@ -338,12 +388,19 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
     const char *named = o->model ? o->model : from.model_path;
     if (!realpath(named, path))
         snprintf(path, sizeof path, "%s", named);
+    if (all->drops == 0) {
+        all->drops = model.run.drops > 1 ? (int64_t)model.run.drops : 1;
+        all->interval = model.run.interval;
+        snprintf(all->model, sizeof all->model, "%s", path);
+        if (check_series(o, all, err) != SF_OK || (o->restart && all->drops > 1 && has_begun(o->output, 2)))
+            goto done;
+    }
     sf_solve_print_model(&model, o->threads);
     char note[1024] = "";
     if (o->restart)
         compare_builds(&from, note);
     if (sf_output_open(&output, err) != SF_OK ||
-        build(&model, &model_file, &provenance, &output, &operators, &state, err) != SF_OK ||
+        build(&model, &model_file, &provenance, &output, &o->earlier, &operators, &state, err) != SF_OK ||
         sf_output_start(&output, o->restart != NULL, err) != SF_OK) {
         sf_output_abandon(&output);
         goto done;
@@ -358,6 +415,7 @@ sf_status sf_solve(const sf_solve_options *o, const char *command, const volatil
                   .sink = &sink,
                   .terminal = isatty(STDOUT_FILENO),
                   .threads = o->threads,
+                  .earlier = o->earlier,
                   .to_end_time = o->end_time > 0,
                   .checkpoints = !o->no_checkpoint,
                   .checkpoint_wall = o->checkpoint_wall,
@@ -377,6 +435,28 @@ done:
     sf_operators_free(&operators);
     sf_model_free(&model);
     return err->status;
+}
+
+sf_status sf_solve(const sf_solve_options *o, const char *command, const volatile sig_atomic_t *stop,
+                   sf_error *err) {
+    series all = {0};
+    char before[SF_PATH_SIZE], now[SF_PATH_SIZE];
+    SF_TRY(solve_drop(o, &all, command, stop, err));
+    for (int64_t k = 2; k <= all.drops; k++) {
+        sf_solve_options drop = *o;
+        sf_model_series_file(o->output, k - 1, before, sizeof before);
+        sf_model_series_file(o->output, k, now, sizeof now);
+        if (o->restart && k < all.drops && has_begun(o->output, k + 1))
+            continue;
+        drop.output = now;
+        drop.model = all.model;
+        drop.restart = o->restart && has_begun(o->output, k) ? now : NULL;
+        drop.force = o->force || o->restart;
+        drop.earlier = drop.restart ? (sf_earlier){0} : (sf_earlier){before, all.interval};
+        printf("drop %lld of %lld, after %g s\n", (long long)k, (long long)all.drops, all.interval);
+        SF_TRY(solve_drop(&drop, &all, command, stop, err));
+    }
+    return SF_OK;
 }
 
 /* softfall-solve: model.h5 -> results.h5. */

@@ -146,6 +146,7 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
     for (int64_t k = 0; k < model->rest_count; k++) /* settled */
         s->contact_force[3 * (model->contact_count + k) + 2] = model->rest_load[k];
     s->tightness = 1;
+    s->drop = 1;
     sf_missile_begin(model, &s->missile);
     if (!sf_missile_is_driven(model))
         start_free(model, s);

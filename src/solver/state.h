@@ -77,6 +77,7 @@ typedef struct sf_partial {
     X(double, kinetic_pad, , "J", "kinetic energy of the pad")                                                         \
     X(double, stored, , "J", "recoverable energy of the foam")                                                         \
     X(double, hysteresis, , "J", "lost by the unloading rule")                                                         \
+    X(double, before, , "J", "lost by the unloading rule in earlier drops on this pad: not in `hysteresis`")           \
     X(double, viscous, , "J", "viscous work")                                                                          \
     X(double, stabilisation, , "J", "work of the stabilisation")                                                       \
     X(double, contact, , "J", "lost in normal contact")                                                                \
@@ -97,6 +98,8 @@ typedef struct sf_partial {
 
 /* All others. */
 #define SF_STATE_NUMBERS(X)                                                                                            \
+    X(int64_t, drop, , "1", "number of the drop on this pad, from 1")                                                  \
+    X(double, pause, , "s", "rest of the pad before it; 0: it is new")                                                 \
     X(int64_t, step, , "1", "number of the step")                                                                      \
     X(double, time, , "s", "now")                                                                                      \
     X(double, dt, , "s", "from time to the next")                                                                      \

@@ -10,6 +10,7 @@
 #include "solver/run/checkpoint.h"
 #include "solver/run/output.h"
 #include "solver/run/recorder.h"
+#include "solver/run/series.h"
 #include "solver/state.h"
 
 /* When a run is over. */
@@ -54,6 +55,7 @@ typedef struct sf_run {
     double checkpoint_wall;          /* s of wall time between two, at most */
     double checkpoint_time;          /* s of simulated time between two */
     const sf_provenance *provenance; /* of the checkpoints; borrowed */
+    sf_earlier earlier;              /* the pad from which it begins */
     bool to_end_time;                /* resumed after its rebound, a run goes on to the end time */
     char note[1024];                 /* a sentence of the program for /summary/notes, or "" */
     /* out */
