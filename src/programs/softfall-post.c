@@ -275,7 +275,7 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     const struct argp parser = {
         .options = known,
         .parser = parse_option,
-        .args_doc = "RESULTS.h5 -o DIR\ncompare RESULTS RESULTS ... -o DIR",
+        .args_doc = "RESULTS.h5 -o DIR\ncompare RESULTS RESULTS ... -o DIR\nseries RESULTS -o DIR",
         .doc =
             "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, summary.json, "
             "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
@@ -443,7 +443,7 @@ static sf_status run(const options *o, job *j, sf_error *err) {
 static const int strict_codes[] = {[SF_GRADE_VALID] = 0, [SF_GRADE_REMARKS] = 8, [SF_GRADE_DO_NOT_USE] = 9};
 
 int main(int argc, char **argv) {
-    if (argc > 1 && strcmp(argv[1], "compare") == 0)
+    if (argc > 1 && (strcmp(argv[1], "compare") == 0 || strcmp(argv[1], "series") == 0))
         return sf_overlay_main(argc, argv);
     options o;
     job j = {0};

@@ -30,6 +30,7 @@ static const sf_state_array arrays[] = {
     KEPT(pair_work, 'n', 1),
     KEPT(viscous_work, 'n', 1),
     KEPT(compressed, 'l', 1),
+    KEPT(lost_before, 'l', 1),
     KEPT(mode, 'n', 1),
     SCRATCH(directional, 'n', 6 * sizeof(float)),
     KEPT(contact_position, 'c', 3),

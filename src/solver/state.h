@@ -161,6 +161,8 @@ typedef struct sf_state {
 
     double *compressed; /* [n] -, largest compression to date; only a pad of layers has it */
 
+    double *lost_before; /* [n] J m-3, by the unloading rule in earlier drops; likewise */
+
     /* Power iteration (time_step.h). */
     double *mode;       /* [n] its vector */
     float *directional; /* [n][6] Pa, tangent by direction (law.h), when sf_time_step_due */

@@ -265,8 +265,11 @@ double sf_domain_rest(const sf_model *m, const sf_operators *op, sf_state *s, do
             b.length[l] = 1;
         }
         update_laws(m, op, 0, block, left < SF_LANES ? (int)left : SF_LANES, history, history, pause, &b);
-        for (int l = 0; l < SF_LANES && l < left; l++)
+        for (int l = 0; l < SF_LANES && l < left; l++) {
             lost += m->volume[block * SF_LANES + l] * b.lost[l];
+            if (m->material_count > 1)
+                s->lost_before[block * SF_LANES + l] = b.lost[l];
+        }
     }
     return lost;
 }
