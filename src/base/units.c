@@ -32,6 +32,7 @@ static const quantity_info quantities[SF_QUANTITY_COUNT] = {
     [SF_ANGULAR_VELOCITY] = {"an angular velocity", "rad s-1", "20 rad/s"},
     [SF_VOLTAGE] = {"a voltage", "V", "10 mV"},
     [SF_SENSITIVITY] = {"a sensitivity of an accelerometer", "V s2 m-1", "0.102 mV/(m/s2)"},
+    [SF_TEMPERATURE] = {"a temperature", "K", "23 degC"},
     [SF_FORCE] = {"a force", "N", "2.5 kN"},
 };
 
@@ -209,6 +210,10 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     if (name[0] == '\0')
         return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" has no unit; expected %s, for example \"%s\"", text,
                        want->phrase, want->example);
+    if (kind == SF_TEMPERATURE && strcmp(name, "degC") == 0) { /* the only scale that does not begin at zero */
+        *si = number + 273.15;
+        return SF_OK;
+    }
     const sf_unit_text factors = sf_unit_text_read(name);
     ut_unit *unit = fits && !factors.reason[0] ? make_unit(units, &factors) : NULL;
     if (!unit)
@@ -233,6 +238,7 @@ static const struct {
     {"mass", "gram|grams|milligram|milligrams|kilogram|kilograms|t|tonne|tonnes|lb|pound|pounds", ""},
     {"time", "s", "num"},
     {"time", "sec|second|seconds|msec|millisecond|milliseconds|usec|microsecond|microseconds", ""},
+    {"temperature", "K", ""},
     {"time", "min|minute|minutes|h|hour|hours", ""},
     {"force", "N", "mkM"},
     {"force", "daN|newton|newtons|kilonewton|kilonewtons|kgf|lbf", ""},

@@ -417,12 +417,25 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
+/* A temperature that changes nothing would look as if it did. */
+static sf_status check_temperature(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    if (c->temperature == 0 || c->temperature_acts)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: pad.temperature is given, but the material has no curves at several temperatures: "
+                   "material.curves = ( { temperature = \"5 degC\"; file = \"cold.csv\"; }, ... )",
+                   sf_case_where_is(reader, "pad.temperature", where));
+}
+
 /* Rules on the complete case. */
 sf_status sf_case_check_complete(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     if (check_times(reader, err) != SF_OK || check_reach(reader, err) != SF_OK ||
-        check_speed(reader, err) != SF_OK || check_series(reader, err) != SF_OK)
+        check_speed(reader, err) != SF_OK || check_series(reader, err) != SF_OK ||
+        check_temperature(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
         sf_sink_tell(reader->sink, SF_WARNING,

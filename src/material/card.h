@@ -126,7 +126,7 @@ typedef struct sf_law {
     /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. Stress, energies, and
      * the stiffness bounds for the time step. */
     void (*update)(const void *numbers, double dt, struct sf_law_batch *batch);
-    /* What the history [SF_LAW_HISTORY] of points is after a pause (s) at rest. */
+    /* Advances the history [SF_LAW_HISTORY] of points over a pause (s) at rest. */
     void (*rest)(const void *numbers, double pause, double (*history)[SF_LANES]);
     /* J m-3, energy of loading in uniaxial compression to `strain`; beyond the data that at their end. */
     double (*energy)(const void *numbers, double strain);

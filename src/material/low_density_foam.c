@@ -256,7 +256,8 @@ static const sf_parameter parameters[] = {
     {"material", "curve", SF_PARAMETER_CURVE, "", AT(curves),
      "compression curve, a CSV file (see below); relative to the file that names it"},
     {"material", "curves", SF_PARAMETER_CURVES, "", AT(curves),
-     "instead of `curve`: curves at several strain rates, ascending: ( { rate = \"0.0017 1/s\"; file = \"slow.csv\"; }, ... )"},
+     "instead of `curve`: curves at several strain rates, ascending: ( { rate = \"0.0017 1/s\"; file = \"slow.csv\"; }, ... ), or at several " \
+     "temperatures, with `temperature` in place of `rate`, between which `pad.temperature` lies"},
     SF_FOAM_PARAMETERS,
     SF_FOAM_MEMORIES,
     {"material", "tension_cutoff", SF_PARAMETER_QUANTITY, "\"none\"", AT(tension_cutoff),

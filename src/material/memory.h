@@ -28,7 +28,7 @@ static inline bool sf_memory_acts(const sf_memory *m) {
     return m->reload > 0 || m->recovery > 0;
 }
 
-/* What a point remembers beside its largest W. */
+/* The history of a point beside its largest W. */
 typedef struct sf_memory_point {
     double back;      /* J m-3, Z - L p */
     double loops;     /* J m-3, lost in loading below the largest W */
@@ -43,7 +43,7 @@ double sf_memory_factor(const sf_memory *memory, const sf_memory_point *point);
 /* A rest of `pause` (s) without load, in closed form: two rests give the same as one of their sum. */
 void sf_memory_rest(const sf_memory *memory, double pause, sf_memory_point *point);
 
-/* As sf_unloading_lanes, with memory; rows of `point` are its members. `softening` bounds the derivative of
+/* Does the same as sf_unloading_lanes, with memory; rows of `point` are its members. `softening` bounds the derivative of
  * the factor on both sides of a reversal. */
 void sf_memory_lanes(const sf_memory *memory, const sf_unloading *unloading, const double energy[SF_LANES],
                      double peak[SF_LANES], double (*point)[SF_LANES], double factor[SF_LANES],

@@ -328,7 +328,7 @@ typedef struct series {
     char model[PATH_MAX]; /* path */
 } series;
 
-/* What a series needs beside the model of its first drop. */
+/* Checks a series beyond the model of its first drop. */
 static sf_status check_series(const sf_solve_options *o, const series *all, sf_error *err) {
     if (all->drops == 1)
         return SF_OK;
