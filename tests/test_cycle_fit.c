@@ -61,11 +61,12 @@ static void write_record(const program_place *p, const char *name, int cycles, b
 
 static program_result fit(const program_place *p, const char *name, const char *file, const char *cycles) {
     char text[4096], config[64];
-    snprintf(text, sizeof text,
-             "density = \"100 kg/m3\"; curve_form = \"gas_solid\"; unknown = ( \"E\", \"s0\", \"solid_fraction\" );\n"
-             "start = { B = \"1 Pa\"; };\ntests = ( { file = \"%s\"; rate = \"0.25 1/s\"; } );\n"
-             "cycles = { file = \"%s\"; %s };\n",
-             file, file, cycles);
+    snprintf(
+        text, sizeof text,
+        "density = \"100 kg/m3\"; curve_form = \"gas_solid\"; unknown = ( \"E\", \"s0\", \"solid_fraction\" );\n"
+        "start = { B = \"1 Pa\"; };\ntests = ( { file = \"%s\"; rate = \"0.25 1/s\"; } );\n"
+        "cycles = { file = \"%s\"; %s };\n",
+        file, file, cycles);
     snprintf(config, sizeof config, "%s.cfg", name);
     program_write_text(p, config, text);
     return program_run(p, "fit", "compression %s -o %s --force", config, name);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Memory of the foam laws: closed forms of cycles with rests, and, on random paths of both laws, dissipation, energy,
- * continuity and the bounds of the time step. */
+/* Memory of the foam laws: closed forms of cycles with rests, and, on random paths of both laws, dissipation,
+ * energy, continuity and the bounds of the time step. */
 #include "foam_fixture.h"
 
 #include "material/hyperfoam.h"
@@ -15,7 +15,8 @@
 static const sf_memory REMEMBERS = {
     .reload = 0.4, .drift = 0.15, .recovery = 0.1, .start = 1, .permanent = 0.3};
 
-/* A foam law with memory: 0, 1 the low-density foam with ALPHA 1 and 0.4, 2, 3 the hyperfoam, which couples. */
+/* A foam law with memory: 0, 1 the low-density foam with ALPHA 1 and 0.4, 2, 3 the hyperfoam, which couples.
+ */
 typedef struct foam_variant {
     point_card eva;
     sf_hyperfoam_card terms;
@@ -40,8 +41,7 @@ static void make(foam_variant *v, int number, const sf_memory *memory) {
         card->maxwell_rate = 5000;
     if (card->rate_filter_time == 0)
         card->rate_filter_time = 1e-4;
-    v->material = (sf_material){.law = number < 2 ? &sf_low_density_foam : &sf_hyperfoam_law,
-                                .card = card};
+    v->material = (sf_material){.law = number < 2 ? &sf_low_density_foam : &sf_hyperfoam_law, .card = card};
     if (sf_material_law_build(&v->material, &v->law, &err) != SF_OK)
         fail_msg("%s", err.text);
 }
@@ -75,8 +75,8 @@ static double unloading(foam_variant *plain, double largest, double strain, doub
     return go(plain, strain, &down) / *first;
 }
 
-/* Six loadings with a rest before the fourth, beyond the elastic range: [f + q (1 - f)] sigma, and sigma beyond the
- * largest strain. */
+/* Six loadings with a rest before the fourth, beyond the elastic range: [f + q (1 - f)] sigma, and sigma
+ * beyond the largest strain. */
 static void cycles_follow_the_closed_form(void **state) {
     (void)state;
     static const sf_memory none = {.start = 1};
@@ -179,8 +179,8 @@ static void advance(const sf_material_law *law, const double from[SF_LANES][9], 
     law->law->update(law->numbers, 0, b);
 }
 
-static void segment(const sf_material_law *law, uint64_t *seed, double largest[SF_LANES],
-                    sf_law_batch *b, path_errors *worst) {
+static void segment(const sf_material_law *law, uint64_t *seed, double largest[SF_LANES], sf_law_batch *b,
+                    path_errors *worst) {
     double from[SF_LANES][9], to[SF_LANES][9], work[SF_LANES] = {0};
     const sf_law_batch start = *b;
     for (int l = 0; l < SF_LANES; l++) {
@@ -207,9 +207,9 @@ static void segment(const sf_material_law *law, uint64_t *seed, double largest[S
         }
     }
     for (int l = 0; l < SF_LANES; l++)
-        worst->error = fmax(worst->error, fabs(b->stored[l] + b->lost[l] - start.stored[l] - start.lost[l] -
-                                               work[l]) /
-                                              fmax(largest[l], 1e3));
+        worst->error =
+            fmax(worst->error, fabs(b->stored[l] + b->lost[l] - start.stored[l] - start.lost[l] - work[l]) /
+                                   fmax(largest[l], 1e3));
 }
 
 /* No step of any path takes energy from what was lost. */
@@ -234,13 +234,14 @@ static void random_paths_dissipate(void **state) {
         }
         print_message("law %d: gain %.2g, jump %.2g, error %.2g\n", n, worst.gain, worst.jump, worst.error);
         assert_true(worst.gain < 1e-13);
-        assert_true(worst.jump < 1e-3); /* ALPHA 0.4: (1e-9)^0.4 */
+        assert_true(worst.jump < 1e-3);  /* ALPHA 0.4: (1e-9)^0.4 */
         assert_true(worst.error < 0.05); /* of 40 steps of a segment; a fine path is below */
         sf_material_law_free(&v.law);
     }
 }
 
-/* Stored and lost energy are the work of the stresses, through reversals, rests and growths of the largest W. */
+/* Stored and lost energy are the work of the stresses, through reversals, rests and growths of the largest W.
+ */
 static void energies_are_the_work(void **state) {
     (void)state;
     static const double turn[] = {0.6, 0.2, 0.35, 0.1, 0.65, 0, 0.5, 0.3, 0.7, 0.01, 0.695, 0.3};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drops one after the other on the same pad: a series, the same drops run one by one, resumed, with other threads, and
- * what is refused. */
+/* Drops one after the other on the same pad: a series, the same drops run one by one, resumed, with other
+ * threads, and what is refused. */
 #include "model_fixture.h"
 #include "program_fixture.h"
 #include "run_fixture.h"
@@ -20,17 +20,18 @@ static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
 static program_result make_model(const program_place *p, const char *name, const char *more) {
     char coarse[512];
     snprintf(coarse, sizeof coarse, "%s", program_coarse(20));
-    return program_run(p, "pre",
-                       "'%s' -o %s --force %s --set material=@'%s' --set material.HU=0.05 --set material.ALPHA=0.5 "
-                       "--set material.memory.reload=0.4 --set material.memory.drift=0.2 "
-                       "--set material.memory.recovery=0.1 --set material.memory.permanent=0.2 %s",
-                       fixture_source(EXAMPLE), name, coarse, fixture_source("tests/materials/eva35_first.cfg"),
-                       more);
+    return program_run(
+        p, "pre",
+        "'%s' -o %s --force %s --set material=@'%s' --set material.HU=0.05 --set material.ALPHA=0.5 "
+        "--set material.memory.reload=0.4 --set material.memory.drift=0.2 "
+        "--set material.memory.recovery=0.1 --set material.memory.permanent=0.2 %s",
+        fixture_source(EXAMPLE), name, coarse, fixture_source("tests/materials/eva35_first.cfg"), more);
 }
 
 static int set_up(void **state) {
     const program_place *p = program_group_set_up(state);
-    assert_int_equal(make_model(p, "series.h5", "--set series.drops=3 --set series.interval='\"90 s\"'").code, 0);
+    assert_int_equal(make_model(p, "series.h5", "--set series.drops=3 --set series.interval='\"90 s\"'").code,
+                     0);
     assert_int_equal(make_model(p, "single.h5", "").code, 0);
     program_succeed(p, "solve", "series.h5 -o s.h5 --threads 1");
     return 0;
@@ -74,7 +75,8 @@ static void assert_same_drop(const program_place *p, const char *first, const ch
 static void bits_are_those_of_single_runs(void **state) {
     const program_place *p = *state;
     program_succeed(p, "solve", "single.h5 -o one.h5 --threads 2");
-    program_succeed(p, "solve", "single.h5 -o two.h5 --start-from one.h5 --pause '90 s' --threads 2 --end-time '4 ms'");
+    program_succeed(p, "solve",
+                    "single.h5 -o two.h5 --start-from one.h5 --pause '90 s' --threads 2 --end-time '4 ms'");
     program_succeed(p, "solve", "--restart two.h5 --end-time '40 ms' --threads 1");
     program_succeed(p, "solve", "single.h5 -o three.h5 --start-from two.h5 --pause '90 s' --threads 2");
     assert_same_drop(p, "s.h5", "one.h5");
@@ -106,26 +108,31 @@ static void wrong_series_are_refused(void **state) {
     expect(make_model(p, "x.h5", "--set series.drops=2"), "needs series.interval");
     expect(make_model(p, "x.h5", "--set series.interval='\"90 s\"'"), "belongs to a series");
     expect(make_model(p, "x.h5", "--set series.drops=2 --set series.interval='\"0 s\"'"), "series.interval");
-    expect(make_model(p, "x.h5",
-                      "--set series.drops=2 --set series.interval='\"9 s\"' --set solver.stop_after_rebound=false"),
+    expect(make_model(
+               p, "x.h5",
+               "--set series.drops=2 --set series.interval='\"9 s\"' --set solver.stop_after_rebound=false"),
            "stop_after_rebound");
     expect(make_model(p, "x.h5", "--set material.HU=1"), "memory.reload");
     expect(make_model(p, "x.h5", "--set material.memory.reload=1.5"), "memory.reload");
     expect(program_run(p, "solve", "series.h5 -o x.h5 --no-checkpoint"), "--no-checkpoint");
     expect(program_run(p, "solve", "series.h5 -o s.h5"), "exists");
     expect(program_run(p, "solve", "single.h5 -o x.h5 --start-from s.h5"), "--pause");
-    expect(program_run(p, "solve", "single.h5 -o x.h5 --start-from nowhere.h5 --pause '9 s'"), "is not there");
+    expect(program_run(p, "solve", "single.h5 -o x.h5 --start-from nowhere.h5 --pause '9 s'"),
+           "is not there");
 }
 
 static void another_pad_is_refused(void **state) {
     const program_place *p = *state;
     assert_int_equal(make_model(p, "other.h5", "--set geometry.parameters.thickness=60.0").code, 0);
     expect(program_run(p, "solve", "other.h5 -o x.h5 --start-from s.h5 --pause '9 s'"), "is another one");
-    assert_int_equal(make_model(p, "other.h5", "--set material.memory.reload=0.0 --set material.memory.recovery=0.0").code,
-                     0);
-    expect(program_run(p, "solve", "other.h5 -o x.h5 --start-from s.h5 --pause '9 s'"), "remembers other things");
+    assert_int_equal(
+        make_model(p, "other.h5", "--set material.memory.reload=0.0 --set material.memory.recovery=0.0").code,
+        0);
+    expect(program_run(p, "solve", "other.h5 -o x.h5 --start-from s.h5 --pause '9 s'"),
+           "remembers other things");
     program_succeed(p, "solve", "single.h5 -o short.h5 --end-time '9 ms'");
-    expect(program_run(p, "solve", "single.h5 -o x.h5 --start-from short.h5 --pause '9 s'"), "points in contact");
+    expect(program_run(p, "solve", "single.h5 -o x.h5 --start-from short.h5 --pause '9 s'"),
+           "points in contact");
     assert_int_not_equal(access(program_path(p, "x.h5"), F_OK), 0);
     expect(program_run(p, "post", "series one.h5 -o x"), "is no series");
     expect(program_run(p, "post", "series s.h5 s-3.h5 -o x"), "not drop 2");
@@ -133,7 +140,7 @@ static void another_pad_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(later_drops_are_harder),    cmocka_unit_test(bits_are_those_of_single_runs),
+        cmocka_unit_test(later_drops_are_harder),        cmocka_unit_test(bits_are_those_of_single_runs),
         cmocka_unit_test(a_series_goes_on_where_it_was), cmocka_unit_test(wrong_series_are_refused),
         cmocka_unit_test(another_pad_is_refused),
     };

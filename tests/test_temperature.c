@@ -14,13 +14,14 @@
 
 static program_result make(const program_place *p, const char *curves, const char *temperature) {
     char text[2048];
-    snprintf(text, sizeof text,
-             "geometry: { file = \"geo/pad.geo\"; missile_file = \"geo/hemisphere.geo\"; length_unit = \"mm\";\n"
-             "parameters = { fine_spacing = 20.0; outer_spacing = 25.0; }; };\n"
-             "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = ( %s ); };\n"
-             "pad: { mesh_error_limit = 10.0; %s };\nmissile: { mass = \"4.6 kg\"; velocity = \"2 m/s\"; };\n"
-             "solver: { end_time = \"1 ms\"; };\n",
-             curves, temperature);
+    snprintf(
+        text, sizeof text,
+        "geometry: { file = \"geo/pad.geo\"; missile_file = \"geo/hemisphere.geo\"; length_unit = \"mm\";\n"
+        "parameters = { fine_spacing = 20.0; outer_spacing = 25.0; }; };\n"
+        "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = ( %s ); };\n"
+        "pad: { mesh_error_limit = 10.0; %s };\nmissile: { mass = \"4.6 kg\"; velocity = \"2 m/s\"; };\n"
+        "solver: { end_time = \"1 ms\"; };\n",
+        curves, temperature);
     program_write_text(p, "t.cfg", text);
     return program_run(p, "pre", "t.cfg -o t.h5 --force");
 }
@@ -34,7 +35,8 @@ static int set_up(void **state) {
     return 0;
 }
 
-static const char TWO[] = "{ temperature = \"-5 degC\"; file = \"cold.csv\"; }, { temperature = \"45 degC\"; file = \"warm.csv\"; }";
+static const char TWO[] =
+    "{ temperature = \"-5 degC\"; file = \"cold.csv\"; }, { temperature = \"45 degC\"; file = \"warm.csv\"; }";
 
 static double factor_at(const program_place *p, const char *temperature) {
     sf_model m = {0};
@@ -75,14 +77,19 @@ static void what_the_data_do_not_say_is_refused(void **state) {
     expect(make(p, TWO, ""), "pad.temperature, such as");
     expect(make(p, TWO, "temperature = \"23 m\";"), "a temperature");
     expect(make(p, TWO, "temperature = \"23\";"), "no unit");
-    expect(make(p, "{ temperature = \"5 degC\"; file = \"cold.csv\"; }", "temperature = \"5 degC\";"), "two of them");
-    expect(make(p,
-                "{ temperature = \"45 degC\"; file = \"warm.csv\"; }, { temperature = \"-5 degC\"; file = \"cold.csv\"; }",
-                "temperature = \"5 degC\";"),
-           "ascend");
-    expect(make(p, "{ temperature = \"5 degC\"; file = \"cold.csv\"; }, { rate = \"5 1/s\"; file = \"cold.csv\"; }",
-                "temperature = \"5 degC\";"),
-           "each entry must be { temperature");
+    expect(make(p, "{ temperature = \"5 degC\"; file = \"cold.csv\"; }", "temperature = \"5 degC\";"),
+           "two of them");
+    expect(
+        make(
+            p,
+            "{ temperature = \"45 degC\"; file = \"warm.csv\"; }, { temperature = \"-5 degC\"; file = \"cold.csv\"; }",
+            "temperature = \"5 degC\";"),
+        "ascend");
+    expect(
+        make(p,
+             "{ temperature = \"5 degC\"; file = \"cold.csv\"; }, { rate = \"5 1/s\"; file = \"cold.csv\"; }",
+             "temperature = \"5 degC\";"),
+        "each entry must be { temperature");
     expect(make(p, "{ rate = \"5 1/s\"; file = \"cold.csv\"; }", "temperature = \"5 degC\";"),
            "no curves at several temperatures");
 }

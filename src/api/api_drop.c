@@ -43,9 +43,10 @@ softfall_status softfall_drop_create(const softfall_model *model, const softfall
     softfall_drop_list(d);
     int before = softfall_drop_enter(d);
     if (d->model.run.drops > 1)
-        SF_FAIL(&err, SF_ERR_INPUT,
-                "the model is a series of %g drops; the library solves single ones: softfall-solve has series",
-                d->model.run.drops);
+        SF_FAIL(
+            &err, SF_ERR_INPUT,
+            "the model is a series of %g drops; the library solves single ones: softfall-solve has series",
+            d->model.run.drops);
     if (err.status == SF_OK && sf_model_check(&d->model, &err) == SF_OK &&
         sf_operators_build(&d->model, &d->operators, &err) == SF_OK)
         sf_state_create(&d->model, &d->state, &err);

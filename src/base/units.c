@@ -210,7 +210,8 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     if (name[0] == '\0')
         return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" has no unit; expected %s, for example \"%s\"", text,
                        want->phrase, want->example);
-    if (kind == SF_TEMPERATURE && strcmp(name, "degC") == 0) { /* the only scale that does not begin at zero */
+    if (kind == SF_TEMPERATURE &&
+        strcmp(name, "degC") == 0) { /* the only scale that does not begin at zero */
         *si = number + 273.15;
         return SF_OK;
     }

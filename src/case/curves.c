@@ -191,7 +191,7 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     return status;
 }
 
-/* What the curves of a list differ in. */
+/* The quantity in which the curves of a list differ. */
 typedef struct curve_order {
     const char *key, *example, *unit;
     sf_quantity quantity;
@@ -209,15 +209,16 @@ static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entr
     const config_setting_t *file =
         config_setting_is_group(entry) ? config_setting_get_member(entry, "file") : NULL;
     if (!rate || !file || config_setting_length(entry) != 2)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %s.curves: each entry must be { %s = \"%s\"; file = \"name.csv\"; }",
-                       sf_case_where(reader, entry, where), reader->material_group, order->key, order->example);
+        return SF_FAIL(
+            err, SF_ERR_INPUT, "%s: %s.curves: each entry must be { %s = \"%s\"; file = \"name.csv\"; }",
+            sf_case_where(reader, entry, where), reader->material_group, order->key, order->example);
     const char *text = config_setting_get_string(rate);
     sf_error inner = SF_ERROR_INIT;
     double value = 0.0;
     if (!text)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: the %s must be a text such as \"%s\"",
-                       sf_case_where(reader, rate, where), reader->material_group, order->key, order->example);
+                       sf_case_where(reader, rate, where), reader->material_group, order->key,
+                       order->example);
     if (sf_units_parse(reader->units, text, order->quantity, &value, &inner) != SF_OK)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %s", sf_case_where(reader, rate, where),
                        reader->material_group, inner.text);
@@ -266,8 +267,8 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The curve at part x of the way from curve k to the next, by the logarithm of the stress at the strains of both, up to
- * the end of the shorter one. */
+/* The curve at part x of the way from curve k to the next, by the logarithm of the stress at the strains of
+ * both, up to the end of the shorter one. */
 static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_case_curve *out, sf_error *err) {
     int64_t first = c->curve_ptr[k], count = c->curve_ptr[k + 2] - first;
     double end = fmin(c->curve_strain[c->curve_ptr[k + 1] - 1], c->curve_strain[c->curve_ptr[k + 2] - 1]);
@@ -288,7 +289,8 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
     return SF_OK;
 }
 
-/* Leaves the curve at the pad's temperature, of those at several, whose temperatures stand in place of rates. */
+/* Leaves the curve at the pad's temperature, of those at several, whose temperatures stand in place of rates.
+ */
 static sf_status take_temperature(sf_case_reader *reader, const config_setting_t *setting, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     sf_law_curves *card = sf_material_curves(reader->material);
@@ -300,18 +302,20 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
                        sf_case_where(reader, setting, where), reader->material_group,
                        at == 0 ? "pad.temperature, such as \"23 degC\", in the case" : "two of them or more");
     if (at < t[0] || at > t[last])
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
-                       "extrapolation",
-                       sf_case_where(reader, setting, where), reader->material_group, at - 273.15, t[0] - 273.15,
-                       t[last] - 273.15);
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: %s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
+            "extrapolation",
+            sf_case_where(reader, setting, where), reader->material_group, at - 273.15, t[0] - 273.15,
+            t[last] - 273.15);
     while (k < last - 1 && at > t[k + 1])
         k++;
     if (interpolate(card, k, (at - t[k]) / (t[k + 1] - t[k]), &curve, err) == SF_OK) {
-        sf_sink_tell(reader->sink, SF_NOTE,
-                     "%s: the curve at %g degC lies between those at %g and %g degC; E, unloading, memory and rate are "
-                     "the same at any temperature",
-                     reader->material_group, at - 273.15, t[k] - 273.15, t[k + 1] - 273.15);
+        sf_sink_tell(
+            reader->sink, SF_NOTE,
+            "%s: the curve at %g degC lies between those at %g and %g degC; E, unloading, memory and rate are "
+            "the same at any temperature",
+            reader->material_group, at - 273.15, t[k] - 273.15, t[k + 1] - 273.15);
         sf_law_curves_free(card);
         add_curve(card, 0, &curve, err);
         reader->out->temperature_acts = true;

@@ -401,14 +401,15 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     sf_run_options *run = &reader->out->run;
     bool series = run->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
-    const char *wrong = run->drops != floor(run->drops) ? "the number of drops is a whole number"
-                        : series && !has_interval ? "a series needs series.interval, such as \"90 s\""
-                        : !series && has_interval ? "an interval belongs to a series: give series.drops, from 2 on"
-                        : series && reader->out->motion_count > 0
-                            ? "a prescribed motion is no series of drops: put its cycles into missile.motion"
-                        : series && !run->stop_after_rebound
-                            ? "a series needs solver.stop_after_rebound: each drop ends when the missile has left"
-                            : NULL;
+    const char *wrong =
+        run->drops != floor(run->drops) ? "the number of drops is a whole number"
+        : series && !has_interval       ? "a series needs series.interval, such as \"90 s\""
+        : !series && has_interval       ? "an interval belongs to a series: give series.drops, from 2 on"
+        : series && reader->out->motion_count > 0
+            ? "a prescribed motion is no series of drops: put its cycles into missile.motion"
+        : series && !run->stop_after_rebound
+            ? "a series needs solver.stop_after_rebound: each drop ends when the missile has left"
+            : NULL;
     if (wrong)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: series.drops = %g: %s",
                        sf_case_where_is(reader, "series.drops", where), run->drops, wrong);

@@ -29,10 +29,11 @@ bool sf_foam_has_recovery(const void *card) {
 sf_status sf_foam_check_shared(const void *card, sf_error *err) {
     const sf_foam_shared *foam = card;
     if (sf_foam_has_memory(card) && foam->hysteresis_hu == 1)
-        return SF_FAIL(err, SF_ERR_MODEL,
-                       "memory.reload is %g and memory.recovery %g, but HU is 1: without hysteresis there is no "
-                       "softening to remember; give HU, SHAPE and ALPHA of the unloading",
-                       foam->memory.reload, foam->memory.recovery);
+        return SF_FAIL(
+            err, SF_ERR_MODEL,
+            "memory.reload is %g and memory.recovery %g, but HU is 1: without hysteresis there is no "
+            "softening to remember; give HU, SHAPE and ALPHA of the unloading",
+            foam->memory.reload, foam->memory.recovery);
     if (foam->hysteresis_alpha == 1 || foam->hysteresis_shape >= SF_UNLOADING_LEAST_SHAPE)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_MODEL,

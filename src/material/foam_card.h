@@ -26,7 +26,7 @@ enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
     double rate_reference;   /* s-1, rate up to which it does not */                                         \
     double rate_filter_time; /* s, time constant of the strain rate */                                       \
     sf_memory memory;                                                                                        \
-    double informed_strain;  /* -, up to here the data of the material inform the law; 0 = data_end */
+    double informed_strain; /* -, up to here the data of the material inform the law; 0 = data_end */
 typedef struct sf_foam_shared {
     SF_FOAM_SHARED
 } sf_foam_shared;

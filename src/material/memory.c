@@ -31,8 +31,8 @@ void sf_memory_rest(const sf_memory *m, double pause, sf_memory_point *p) {
 }
 
 /* One step of a point: `z` at the W of the step, `top` the largest Z before it, `risen` the new one if this W
- * is the largest, else -1. Returns p. At a W beyond all before, 1 - f is 0: the range begins anew, and what its
- * elastic part held is lost. */
+ * is the largest, else -1. Returns p. At a W beyond all before, 1 - f is 0: the range begins anew, and what
+ * its elastic part held is lost. */
 static inline double step(const sf_memory *m, double z, double top, double risen, double *restrict back,
                           double *restrict loops, double *restrict passes, double *restrict recovered) {
     double length = sf_larger(SF_MEMORY_ELASTIC * top, 1e-300), q = factor_of(m, *passes, *recovered);
@@ -58,7 +58,8 @@ SF_KERNEL void sf_memory_lanes(const sf_memory *m, const sf_unloading *u, const 
     for (int l = 0; l < SF_LANES; l++) {
         bool below = energy[l] < old[l];
         double top = share * old[l], gap = 1 - factor[l], z = below ? energy[l] - stored[l] : top;
-        double p = step(m, z, top, below ? -1 : share * peak[l], &point[0][l], &point[1][l], &point[2][l], &point[3][l]);
+        double p = step(m, z, top, below ? -1 : share * peak[l], &point[0][l], &point[1][l], &point[2][l],
+                        &point[3][l]);
         double length = sf_larger(SF_MEMORY_ELASTIC * top, 1e-300);
         factor[l] = 1 - gap * (1 - p);
         softening[l] = below ? softening[l] * (1 - p) + gap * gap / length : softening[l];
@@ -71,9 +72,11 @@ double sf_memory_advance(const sf_memory *m, const sf_unloading *u, double energ
                          sf_memory_point *point) {
     double old = *peak, share = 1 - u->hu, top = share * u->whole * old;
     bool below = energy < old;
-    double ratio = below ? energy / old : 1, z = share * old * (below ? sf_unloading_integral(u, ratio) : u->whole);
+    double ratio = below ? energy / old : 1,
+           z = share * old * (below ? sf_unloading_integral(u, ratio) : u->whole);
     double gap = below ? 1 - sf_unloading_factor(u->hu, u->shape, u->alpha, ratio) : 0;
     *peak = below ? old : energy;
-    double p = step(m, z, top, below ? -1 : share * u->whole * energy, &point->back, &point->loops, &point->passes, &point->recovered);
+    double p = step(m, z, top, below ? -1 : share * u->whole * energy, &point->back, &point->loops,
+                    &point->passes, &point->recovered);
     return 1 - gap * (1 - p);
 }

@@ -43,8 +43,8 @@ double sf_memory_factor(const sf_memory *memory, const sf_memory_point *point);
 /* A rest of `pause` (s) without load, in closed form: two rests give the same as one of their sum. */
 void sf_memory_rest(const sf_memory *memory, double pause, sf_memory_point *point);
 
-/* Does the same as sf_unloading_lanes, with memory; rows of `point` are its members. `softening` bounds the derivative of
- * the factor on both sides of a reversal. */
+/* Evaluates a batch as sf_unloading_lanes does, with memory; rows of `point` are its members. `softening`
+ * bounds the derivative of the factor on both sides of a reversal. */
 void sf_memory_lanes(const sf_memory *memory, const sf_unloading *unloading, const double energy[SF_LANES],
                      double peak[SF_LANES], double (*point)[SF_LANES], double factor[SF_LANES],
                      double softening[SF_LANES], double stored[SF_LANES], double lost[SF_LANES]);

@@ -52,12 +52,21 @@ void sf_solve_print_ledger(const sf_model *model, const sf_state *state, const s
 
 /* softfall-solve's run, from the model's file to the results. */
 
-/* Solves the model of the options, all drops of its series, or resumes them; `command` is for the provenance. Non-zero `*stop`
- * ends the run after the present step. Progress and report go to stdout. */
+/* Solves the model of the options, all drops of its series, or resumes them; `command` is for the provenance.
+ * Non-zero `*stop` ends the run after the present step. Progress and report go to stdout. */
 sf_status sf_solve(const sf_solve_options *options, const char *command, const volatile sig_atomic_t *stop,
                    sf_error *err);
 
-enum { END_TIME = 256, RESTART, START_FROM, PAUSE, CHECKPOINT_EVERY, CHECKPOINT_TIME, NO_CHECKPOINT, ON_FAILURE };
+enum {
+    END_TIME = 256,
+    RESTART,
+    START_FROM,
+    PAUSE,
+    CHECKPOINT_EVERY,
+    CHECKPOINT_TIME,
+    NO_CHECKPOINT,
+    ON_FAILURE
+};
 
 /* A positive time with its unit. */
 static double parse_time(const char *option, const char *text, struct argp_state *state) {
@@ -87,8 +96,9 @@ static void check_options(sf_solve_options *o, struct argp_state *state) {
     if (!o->restart && (!o->model || !o->output))
         argp_error(state, "usage: softfall-solve model.h5 -o results.h5");
     if (!o->earlier.results != !(o->earlier.pause > 0) || (o->restart && o->earlier.results))
-        argp_error(state, "a run on the pad of an earlier one needs --start-from RESULTS and --pause TIME, and no "
-                          "--restart: what is resumed knows its pad");
+        argp_error(state,
+                   "a run on the pad of an earlier one needs --start-from RESULTS and --pause TIME, and no "
+                   "--restart: what is resumed knows its pad");
     if (o->restart)
         o->output = o->restart;
 }
@@ -153,7 +163,8 @@ void sf_solve_options_parse(int argc, char **argv, sf_solve_options *o) {
          "resume RESULTS from RESULTS.restart, bit for bit as if uninterrupted; MODEL only if it has been moved",
          0},
         {"start-from", START_FROM, "RESULTS", 0,
-         "begin with the pad as this earlier run left it, from RESULTS.restart: its foam remembers the drop", 0},
+         "begin with the pad as this earlier run left it, from RESULTS.restart: its foam remembers the drop",
+         0},
         {"pause", PAUSE, "TIME", 0, "rest of the pad between that run and this one, such as \"90 s\"", 0},
         {"end-time", END_TIME, "TIME", 0, "another end of the simulated time, such as \"40 ms\"", 0},
         {"checkpoint-every", CHECKPOINT_EVERY, "TIME", 0, "wall time between checkpoints (default: 60 s)", 0},
@@ -171,11 +182,12 @@ void sf_solve_options_parse(int argc, char **argv, sf_solve_options *o) {
         .options = list,
         .parser = parse,
         .args_doc = "MODEL",
-        .doc = "Solves the drop in MODEL (from softfall-pre), or the drops of its series, one after the other: the results "
-               "of the second are RESULTS-2.h5. Ctrl-C (SIGINT, SIGTERM) ends the run after "
-               "the present step with readable results and a checkpoint, from which --restart resumes.\vExit "
-               "code: 0 done, 2 wrong input, 3 a file failed, 4 wrong model, 5 numerical failure, 6 out of "
-               "memory, 7 a library failed, 130 interrupted (SIGINT, SIGTERM)."};
+        .doc =
+            "Solves the drop in MODEL (from softfall-pre), or the drops of its series, one after the other: the results "
+            "of the second are RESULTS-2.h5. Ctrl-C (SIGINT, SIGTERM) ends the run after "
+            "the present step with readable results and a checkpoint, from which --restart resumes.\vExit "
+            "code: 0 done, 2 wrong input, 3 a file failed, 4 wrong model, 5 numerical failure, 6 out of "
+            "memory, 7 a library failed, 130 interrupted (SIGINT, SIGTERM)."};
     *o = (sf_solve_options){
         .threads = omp_get_max_threads(), .checkpoint_wall = 60, .checkpoint_time = INFINITY};
     argp_parse(&argp, argc, argv, 0, NULL, o);
@@ -333,9 +345,10 @@ static sf_status check_series(const sf_solve_options *o, const series *all, sf_e
     if (all->drops == 1)
         return SF_OK;
     if (o->no_checkpoint || (o->restart && o->end_time > 0))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "a series of drops is solved without %s: each drop begins with the pad at the end of the one before",
-                       o->no_checkpoint ? "--no-checkpoint" : "--restart and --end-time");
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "a series of drops is solved without %s: each drop begins with the pad at the end of the one before",
+            o->no_checkpoint ? "--no-checkpoint" : "--restart and --end-time");
     for (int64_t k = 2; k <= all->drops && !o->restart; k++) {
         char path[SF_PATH_SIZE];
         sf_output output;

@@ -34,15 +34,16 @@ typedef struct overlay {
     const char *directory;
     bool force;
     bool series;
-    int mean[2];                       /* first and last drop of the mean; 0: from the second on */
-    char files[MOST_RUNS][PATH_MAX];   /* names of a series' drops */
+    int mean[2];                     /* first and last drop of the mean; 0: from the second on */
+    char files[MOST_RUNS][PATH_MAX]; /* names of a series' drops */
     int count;
     overlay_run run[MOST_RUNS];
     sf_staging output;
     char *command;
 } overlay;
 
-static const char *const names[] = {"compare.csv", "compare.gp", "compare.png", "report.html", "series.csv", NULL};
+static const char *const names[] = {"compare.csv", "compare.gp", "compare.png",
+                                    "report.html", "series.csv", NULL};
 static const char *const colours[MOST_RUNS] = {"#08519c", "#cb181d", "#238b45", "#6a51a3",
                                                "#d94801", "#17becf", "#8c6d31", "#525252",
                                                "#e7298a", "#66c2a4", "#fdae6b", "#9e9ac8"};
@@ -130,9 +131,10 @@ static sf_status name_drops(overlay *o, sf_error *err) {
     int64_t drops = 0;
     SF_TRY(read_count(o->run[0].results.file, "/summary/drops", &drops, err));
     if (drops < 2 || drops > MOST_RUNS)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s is no series of 2 to %d drops (series.drops); name the files of drops that were run one by one",
-                       o->run[0].path, MOST_RUNS);
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s is no series of 2 to %d drops (series.drops); name the files of drops that were run one by one",
+            o->run[0].path, MOST_RUNS);
     for (o->count = 1; o->count < drops; o->count++) {
         sf_model_series_file(o->run[0].path, o->count + 1, o->files[o->count], PATH_MAX);
         o->run[o->count].name = o->files[o->count];
@@ -163,11 +165,12 @@ static sf_status read_series(overlay *o, sf_error *err) {
         o->mean[1] = o->count;
     }
     return o->mean[1] <= o->count ? SF_OK
-                                  : SF_FAIL(err, SF_ERR_INPUT, "--mean %d-%d: the series has %d drops", o->mean[0],
-                                            o->mean[1], o->count);
+                                  : SF_FAIL(err, SF_ERR_INPUT, "--mean %d-%d: the series has %d drops",
+                                            o->mean[0], o->mean[1], o->count);
 }
 
-static const char *const of_series[] = {"a_max_g", "hic", "v_rebound_m_s", "max_indentation_mm", "max_local_strain"};
+static const char *const of_series[] = {"a_max_g", "hic", "v_rebound_m_s", "max_indentation_mm",
+                                        "max_local_strain"};
 enum { OF_SERIES = sizeof of_series / sizeof *of_series };
 
 static double series_number(const overlay *o, int k, int figure) {
@@ -227,7 +230,9 @@ static void put_series(FILE *page, const overlay *o) {
         }
     }
     sf_html_table_end(&t);
-    sf_html_note(page, "series.csv has them too. What a material remembers is as good as its data: see material.memory.");
+    sf_html_note(
+        page,
+        "series.csv has them too. What a material remembers is as good as its data: see material.memory.");
 }
 
 static void print_series(const overlay *o) {
@@ -381,8 +386,9 @@ static sf_status run(overlay *o, sf_error *err) {
     if (o->series)
         SF_TRY(read_series(o, err));
     if (sf_staging_begin(o->directory, names, o->force, &o->output, err) != SF_OK ||
-        write_csv(o, err) != SF_OK || (o->series && write_series(o, err) != SF_OK) || write_picture(o, warning, sizeof warning, err) != SF_OK ||
-        write_page(o, err) != SF_OK || sf_staging_commit(&o->output, err) != SF_OK)
+        write_csv(o, err) != SF_OK || (o->series && write_series(o, err) != SF_OK) ||
+        write_picture(o, warning, sizeof warning, err) != SF_OK || write_page(o, err) != SF_OK ||
+        sf_staging_commit(&o->output, err) != SF_OK)
         return err->status;
     if (o->series)
         print_series(o);
@@ -409,13 +415,15 @@ int sf_overlay_main(int argc, char **argv) {
     static const struct argp_option known[] = {
         {"output", 'o', "DIR", 0, "write everything there (required)", 0},
         {"force", 'f', NULL, 0, "replace an earlier comparison in DIR", 0},
-        {"mean", 'm', "A-B", 0, "of a series: the drops whose mean counts (default: from the second to the last)", 0},
+        {"mean", 'm', "A-B", 0,
+         "of a series: the drops whose mean counts (default: from the second to the last)", 0},
         {0}};
-    static const struct argp parser = {.options = known,
-                                       .parser = parse,
-                                       .args_doc = "RESULTS RESULTS ... -o DIR",
-                                       .doc = "Overlays runs: files results.h5, or folders that hold one. `series`: "
-                                              "the drops on one pad, of which the first file names them all."};
+    static const struct argp parser = {
+        .options = known,
+        .parser = parse,
+        .args_doc = "RESULTS RESULTS ... -o DIR",
+        .doc = "Overlays runs: files results.h5, or folders that hold one. `series`: "
+               "the drops on one pad, of which the first file names them all."};
     static char name[] = "softfall-post compare", name_of_series[] = "softfall-post series";
     sf_error err = SF_ERROR_INIT;
     overlay *o = sf_alloc(&err, 1, sizeof *o, "the runs");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* softfall-post compare A B ... -o DIR: several runs in one picture and one table. softfall-post series: the drops
- * of a series on one pad, with their growth and mean. */
+/* softfall-post compare A B ... -o DIR: several runs in one picture and one table. softfall-post series: the
+ * drops of a series on one pad, with their growth and mean. */
 #ifndef SF_POST_OVERLAY_H
 #define SF_POST_OVERLAY_H
 

@@ -76,8 +76,8 @@ static void take_lanes(const sf_material_law *law, const uint8_t *material, int 
 }
 
 /* Updates the batch of a block with the laws of its nodes' materials, and their history at `from` into `to`
- * (NULL: not stored; may be `from`), after a rest of `pause` (s; 0: none). Nodes are ordered by material: nearly every block has one. A block at a
- * border is updated once for each of its materials. */
+ * (NULL: not stored; may be `from`), after a rest of `pause` (s; 0: none). Nodes are ordered by material:
+ * nearly every block has one. A block at a border is updated once for each of its materials. */
 static void update_laws(const sf_model *m, const sf_operators *op, double dt, int64_t block, int count,
                         const double *from, double *to, double pause, sf_law_batch *b) {
     const uint8_t *material = &m->node_material[block * SF_LANES];

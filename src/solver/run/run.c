@@ -257,7 +257,8 @@ static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     if (d->note[0])
         sf_sink_tell(&sink, SF_WARNING, "%s", d->note);
     if (d->s->drop > 1)
-        sf_sink_tell(&sink, SF_WARNING, "drop %lld on this pad, %g s after the one before: the foam is not new",
+        sf_sink_tell(&sink, SF_WARNING,
+                     "drop %lld on this pad, %g s after the one before: the foam is not new",
                      (long long)d->s->drop, d->s->pause);
     sf_run_tell(d->m, d->s, &extremes, &sink);
     return sf_h5_write_text(file, &info, notes.text, err);
@@ -274,10 +275,11 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         write_count(file, "/summary/interactions", "(domain, node) pairs", m->domain_nnz, err) != SF_OK ||
         write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) !=
             SF_OK ||
-        (m->run.drops > 1 && write_count(file, "/summary/drops", "drops of the series", (int64_t)m->run.drops,
-                                         err) != SF_OK) ||
+        (m->run.drops > 1 &&
+         write_count(file, "/summary/drops", "drops of the series", (int64_t)m->run.drops, err) != SF_OK) ||
         (s->drop > 1 &&
-         (write_count(file, "/summary/drop", "number of the drop on this pad, from 1", s->drop, err) != SF_OK ||
+         (write_count(file, "/summary/drop", "number of the drop on this pad, from 1", s->drop, err) !=
+              SF_OK ||
           write_scalar(file, "/summary/pause", "s", "rest of the pad before it", s->pause, err) != SF_OK)) ||
         write_count(file, "/summary/restarts", "times that the run went on from a checkpoint", d->r.restarts,
                     err) != SF_OK ||
@@ -339,10 +341,11 @@ static sf_status begin_again(const drop *d, sf_error *err) {
 static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     const sf_recorder old = d->r;
     if (d->s->drop > 1 && !d->run->earlier.results)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "frame %lld of the run so far is missing or damaged, and the run began from the pad of an earlier "
-                       "one: start it again with --force and --start-from",
-                       (long long)frame);
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "frame %lld of the run so far is missing or damaged, and the run began from the pad of an earlier "
+            "one: start it again with --force and --start-from",
+            (long long)frame);
     sf_sink_tell(d->run->sink, SF_WARNING,
                  "frame %lld of the run so far is missing or damaged: the run starts from the beginning",
                  (long long)frame);
@@ -386,8 +389,8 @@ static sf_status replay(drop *d, sf_error *err) {
         return err->status;
     sf_recorder_free(&d->r);
     sf_state_free(d->s);
-    if ((there ? sf_state_create(d->m, d->s, err) : begin_again(d, err)) == SF_OK && load(d, there ? &last : NULL, err) == SF_OK &&
-        run_steps(d, there, err) == SF_OK)
+    if ((there ? sf_state_create(d->m, d->s, err) : begin_again(d, err)) == SF_OK &&
+        load(d, there ? &last : NULL, err) == SF_OK && run_steps(d, there, err) == SF_OK)
         save(d, err);
     sf_checkpoint_close(&last);
     return err->status;

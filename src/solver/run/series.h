@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A drop on a pad that has been hit before: its foam's history goes on from the end of an earlier run. The laws
- * have no permanent set, so that the pad at rest is the undeformed one, exactly: the history is unloaded to it
- * and rests, and nothing else of the earlier run remains. */
+/* A drop on a pad that has been hit before: its foam's history goes on from the end of an earlier run. The
+ * laws have no permanent set, so that the pad at rest is the undeformed one, exactly: the history is unloaded
+ * to it and rests, and nothing else of the earlier run remains. */
 #ifndef SF_SOLVER_RUN_SERIES_H
 #define SF_SOLVER_RUN_SERIES_H
 #include "solver/operators.h"
@@ -9,8 +9,9 @@
 
 /* The pad from which a run begins. */
 typedef struct sf_earlier {
-    const char *results; /* of the earlier run, with its checkpoint beside it; NULL: the pad is new; borrowed */
-    double pause;        /* s, of the pad between them */
+    const char
+        *results; /* of the earlier run, with its checkpoint beside it; NULL: the pad is new; borrowed */
+    double pause; /* s, of the pad between them */
 } sf_earlier;
 
 /* A new state (sf_state_create) on that pad. SF_ERR_INPUT if the earlier run has not ended with the missile

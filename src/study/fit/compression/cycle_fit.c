@@ -19,7 +19,7 @@ const char *sf_cycle_fit_name(int number) {
 
 /* Bounds of HU, SHAPE, ALPHA, reload, drift and recovery; their logarithm is searched. */
 static const double LEAST[HYSTERESIS + MEMORY] = {1e-4, 0.05, 0.1, 1e-3, 1e-4, 1e-4},
-                    LARGEST[HYSTERESIS + MEMORY] = {0.999, 20, 5, 1, 10, 1};
+                                       LARGEST[HYSTERESIS + MEMORY] = {0.999, 20, 5, 1, 10, 1};
 
 typedef struct problem {
     const sf_form_fit *fit;

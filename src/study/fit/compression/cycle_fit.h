@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The law with memory along a record of cycles: the form's unknowns, HU, SHAPE and ALPHA, reload and drift, and
- * recovery where the record has pauses, together by least squares over the fitted cycles. */
+/* The law with memory along a record of cycles: the form's unknowns, HU, SHAPE and ALPHA, reload and drift,
+ * and recovery where the record has pauses, together by least squares over the fitted cycles. */
 #ifndef SF_FIT_COMPRESSION_CYCLE_FIT_H
 #define SF_FIT_COMPRESSION_CYCLE_FIT_H
 
 #include "study/fit/compression/form_fit.h"
 
-/* "reload", "drift", "recovery", and the half width of their interval (two standard errors; NaN: the record does not
- * tell it, and its value is that without effect). */
+/* "reload", "drift", "recovery", and the half width of their interval (two standard errors; NaN: the record
+ * does not tell it, and its value is that without effect). */
 const char *sf_cycle_fit_name(int number);
 
 /* Refines `fit`, whose values are the start, by the record of its configuration, and fills fit->cycles. */

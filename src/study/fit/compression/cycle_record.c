@@ -50,8 +50,9 @@ static sf_status take_tables(const char *path, sf_cycle_record *r, sf_error *err
     }
     for (int i = 0; i < r->count && err->status == SF_OK; i++) {
         if (!(r->strain[i] < LIMIT) || (i > 0 && !(r->time[i] > r->time[i - 1])))
-            SF_FAIL(err, SF_ERR_INPUT, "%s:%d: time %g s after %g s, strain %g: time must rise, strain stay below %g",
-                    path, stress.line[i], r->time[i], i > 0 ? r->time[i - 1] : 0, r->strain[i], LIMIT);
+            SF_FAIL(err, SF_ERR_INPUT,
+                    "%s:%d: time %g s after %g s, strain %g: time must rise, strain stay below %g", path,
+                    stress.line[i], r->time[i], i > 0 ? r->time[i - 1] : 0, r->strain[i], LIMIT);
         r->strain[i] = fmax(0, r->strain[i]);
         r->largest_stress = fmax(r->largest_stress, r->stress[i]);
     }
@@ -80,13 +81,15 @@ static sf_status find_turns(sf_cycle_record *r, sf_error *err) {
     if (!up)
         r->turn[turns] = at;
     if (r->cycles < 2)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %d cycle of compression: memory is in the cycles after the first",
-                       r->path, r->cycles);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s: %d cycle of compression: memory is in the cycles after the first", r->path,
+                       r->cycles);
     for (int c = 0; c < r->cycles; c++)
         if (r->strain[r->turn[2 * c + 2]] > RETURN * r->strain[r->turn[2 * c + 1]])
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: cycle %d returns from a strain of %g to %g only; it must unload below a quarter of it",
-                           r->path, c + 1, r->strain[r->turn[2 * c + 1]], r->strain[r->turn[2 * c + 2]]);
+            return SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s: cycle %d returns from a strain of %g to %g only; it must unload below a quarter of it",
+                r->path, c + 1, r->strain[r->turn[2 * c + 1]], r->strain[r->turn[2 * c + 2]]);
     return SF_OK;
 }
 
@@ -98,7 +101,8 @@ sf_status sf_cycle_record_read(const sf_config *file, const config_setting_t *ro
     if (!group)
         return SF_OK;
     if (!config_setting_is_group(group))
-        return sf_config_refuse(file, group, err, "cycles must be a group: cycles = { file = \"cycles.csv\"; };");
+        return sf_config_refuse(file, group, err,
+                                "cycles must be a group: cycles = { file = \"cycles.csv\"; };");
     SF_TRY(sf_config_names(file, group, "file|fitted", err));
     SF_TRY(sf_config_whole(file, group, "fitted", false, 2, SF_CYCLES, &fitted, err));
     SF_TRY(sf_config_file(file, group, "file", true, &r->path, err));

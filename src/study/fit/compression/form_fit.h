@@ -27,9 +27,10 @@ enum { SF_CYCLE_MEMORY = 3 };
 
 /* The memory in a record of cycles (cycle_fit.h). */
 typedef struct sf_cycle_result {
-    double value[SF_CYCLE_MEMORY], width[SF_CYCLE_MEMORY]; /* of the memory, and half widths; see sf_cycle_fit_name */
-    double rms[2][SF_CYCLES]; /* -, of loading and of unloading of each cycle, over the largest stress */
-    double *stress;           /* [count] Pa, of the law along the record; NULL: there is none; owned */
+    double value[SF_CYCLE_MEMORY],
+        width[SF_CYCLE_MEMORY]; /* of the memory, and half widths; see sf_cycle_fit_name */
+    double rms[2][SF_CYCLES];   /* -, of loading and of unloading of each cycle, over the largest stress */
+    double *stress;             /* [count] Pa, of the law along the record; NULL: there is none; owned */
 } sf_cycle_result;
 
 typedef struct sf_form_fit {

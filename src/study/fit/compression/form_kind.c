@@ -78,8 +78,8 @@ static void put_cycles(FILE *out, const sf_form_fit *fit) {
     fprintf(out, "\n  largest rms of a cycle, of the largest stress: loading %.2g %%, unloading %.2g %%",
             100 * sf_cycle_fit_worst(fit, 0, 0, r->fitted), 100 * sf_cycle_fit_worst(fit, 1, 0, r->fitted));
     if (r->fitted < r->cycles)
-        fprintf(out, "; predicted, cycles %d to %d: loading %.2g %%, unloading %.2g %%", r->fitted + 1, r->cycles,
-                100 * sf_cycle_fit_worst(fit, 0, r->fitted, r->cycles),
+        fprintf(out, "; predicted, cycles %d to %d: loading %.2g %%, unloading %.2g %%", r->fitted + 1,
+                r->cycles, 100 * sf_cycle_fit_worst(fit, 0, r->fitted, r->cycles),
                 100 * sf_cycle_fit_worst(fit, 1, r->fitted, r->cycles));
     fputs("\n  Not in the law: permanent set, and the fall of the stress at the largest strain.\n", out);
 }
