@@ -1,20 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/memory.h"
 
-/* q after `passes` unloadings, and the passes after which q has this value. */
-static inline double factor_after(const sf_memory *m, double passes) {
-    double fresh = m->reload - (1 - m->reload) * passes, worn = m->reload / (1 + m->drift * (passes - 1));
-    return passes < 0 ? fresh : passes > 1 ? worn : m->reload;
-}
-
-static inline double passes_at(const sf_memory *m, double q) {
-    double fresh = (m->reload - q) / sf_larger(1 - m->reload, 1e-300),
-           worn = 1 + (m->reload / sf_larger(q, 1e-300) - 1) / sf_larger(m->drift, 1e-300);
-    return q >= m->reload ? fresh : m->drift > 0 ? worn : 1;
-}
+/* Decay of what has recovered, with each whole unloading: 5 % remain. */
+static const double RENEWAL = 3;
 
 static inline double factor_of(const sf_memory *m, double passes, double recovered) {
-    double q = factor_after(m, passes);
+    double q = m->reload / (1 + m->drift * sf_larger(passes - 1, 0));
     return q + recovered * (1 - q);
 }
 
@@ -37,12 +28,12 @@ static inline double step(const sf_memory *m, double z, double top, double risen
                           double *restrict loops, double *restrict passes, double *restrict recovered) {
     double length = sf_larger(SF_MEMORY_ELASTIC * top, 1e-300), q = factor_of(m, *passes, *recovered);
     double trial = (z - *back) / length, low = sf_larger(trial, 0), p = sf_smaller(low, q);
-    bool virgin = risen >= 0, renewed = virgin | (trial < 0);
-    double count = *recovered > 0 ? passes_at(m, q) : *passes;
-    double raised = sf_larger(count, 0) * top / sf_larger(risen, 1e-300);
+    bool virgin = risen >= 0;
+    double rest, slid = SF_MEMORY_ELASTIC * sf_larger(-trial, 0),
+                 younger = *passes * top / sf_larger(risen, 1e-300);
     *loops += q * length * (low - p) + (virgin ? 0.5 * length * p * p : 0);
-    *passes = virgin ? raised : renewed ? count - trial * SF_MEMORY_ELASTIC : *passes;
-    *recovered = renewed ? 0 : *recovered;
+    *passes = virgin ? younger : *passes + slid;
+    *recovered = virgin ? 0 : *recovered * (1 + sf_lane_expm1(-RENEWAL * slid, &rest));
     *back = virgin ? risen : z - length * p;
     return virgin ? 0 : p;
 }

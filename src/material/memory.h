@@ -32,9 +32,8 @@ static inline bool sf_memory_acts(const sf_memory *m) {
 typedef struct sf_memory_point {
     double back;      /* J m-3, Z - L p */
     double loops;     /* J m-3, lost in loading below the largest W */
-    double passes;    /* -, unloadings since the largest W, 1: a whole one; below 0: what recovery has left of
-                         q above `reload` */
-    double recovered; /* -, part of the softening that the present rest has taken back */
+    double passes;    /* -, unloadings since the largest W, 1: a whole one */
+    double recovered; /* -, part of the softening that rests have taken back; it fades with unloading */
 } sf_memory_point;
 
 /* q of the point. */
