@@ -130,6 +130,11 @@ static void another_pad_is_refused(void **state) {
         0);
     expect(program_run(p, "solve", "other.h5 -o x.h5 --start-from s.h5 --pause '9 s'"),
            "remembers other things");
+    program_succeed(p, "solve", "other.h5 -o plain.h5 --threads 1");
+    program_succeed(p, "solve", "other.h5 -o plain-2.h5 --start-from plain.h5 --pause '9 s' --threads 1");
+    assert_non_null(
+        strstr(program_succeed(p, "post", "plain-2.h5 -o plain").err, "loads along its unloading path"));
+    assert_null(strstr(program_succeed(p, "post", "s-2.h5 -o second").err, "loads along its unloading path"));
     program_succeed(p, "solve", "single.h5 -o short.h5 --end-time '9 ms'");
     expect(program_run(p, "solve", "single.h5 -o x.h5 --start-from short.h5 --pause '9 s'"),
            "points in contact");

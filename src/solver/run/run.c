@@ -248,6 +248,20 @@ static sf_status write_count(sf_h5 *file, const char *path, const char *text, in
     return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
 }
 
+/* True if every material has a reloading path of its own. */
+static bool has_memory(const sf_model *m) {
+    bool all = true;
+    for (int64_t k = 0; k < m->material_count; k++) {
+        bool found = false;
+        for (int v = 0; v < m->material[k].law->history_count; v++) {
+            const sf_history_variable *h = &m->material[k].law->history[v];
+            found |= strcmp(h->name, "memory") == 0 && (!h->needed || h->needed(m->material[k].card));
+        }
+        all &= found;
+    }
+    return all;
+}
+
 /* The notes on the run, beginning with that of the program. */
 static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     sf_h5_info info = {"/summary/notes", "1", "what the solver noted of the run, a sentence per line"};
@@ -257,9 +271,12 @@ static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     if (d->note[0])
         sf_sink_tell(&sink, SF_WARNING, "%s", d->note);
     if (d->s->drop > 1)
-        sf_sink_tell(&sink, SF_WARNING,
-                     "drop %lld on this pad, %g s after the one before: the foam is not new",
-                     (long long)d->s->drop, d->s->pause);
+        sf_sink_tell(
+            &sink, SF_WARNING, "drop %lld on this pad, %g s after the one before: the foam is not new%s",
+            (long long)d->s->drop, d->s->pause,
+            has_memory(d->m) ? ""
+                             : ", and a material without `memory` loads along its unloading path up to "
+                               "the largest energy so far: too soft");
     sf_run_tell(d->m, d->s, &extremes, &sink);
     return sf_h5_write_text(file, &info, notes.text, err);
 }
