@@ -46,6 +46,7 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
 /* The drop as its results file would show it; the arrays stay the drop's. */
 static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
     const sf_model *m = &d->model;
+    double lock_begin, lock_up = sf_model_lock_up(m, &lock_begin);
     *r = (sf_results){.node_count = m->node_count,
                       .position = m->position,
                       .volume = m->volume,
@@ -60,6 +61,8 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .air = m->air,
                       .speed_scatter = m->run.speed_scatter,
                       .thickness_tolerance = m->run.thickness_tolerance,
+                      .lock_up = lock_up,
+                      .lock_begin = lock_begin,
                       .impact_x = m->missile.impact_known ? m->missile.impact[0] : NAN,
                       .impact_y = m->missile.impact_known ? m->missile.impact[1] : NAN,
                       .missile_mass = m->missile.mass,

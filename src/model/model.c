@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "material/low_density_foam.h"
+#include "material/foam_card.h"
 
 #define ARRAY(member, type, rows, extra, columns, path, units, text)                                         \
     {                                                                                                        \
@@ -200,6 +202,19 @@ double sf_model_informed_strain(const sf_model *model) {
     for (int64_t k = 0; k < model->material_count; k++)
         least = fmin(least, sf_material_informed(&model->material[k]));
     return least;
+}
+
+double sf_model_lock_up(const sf_model *model, double *begin) {
+    static const double BENDS = 0.95; /* of the pole, of a table that reaches farther */
+    *begin = NAN;
+    if (model->material_count != 1 || model->material[0].law != &sf_low_density_foam)
+        return NAN;
+    const sf_foam_card *card = sf_foam_card_of(&model->material[0]);
+    double pole = card->densification_limit, start = card->densification_start;
+    if (!(pole < 1))
+        return NAN;
+    *begin = fmin(BENDS * pole, start > 0 ? start : card->curve_strain[card->curve_points - 1]);
+    return pole;
 }
 
 double sf_model_density(const sf_model *model) {

@@ -218,6 +218,9 @@ static inline const sf_material *sf_model_material(const sf_model *model, int64_
 /* Least, over the materials, of the strain up to which their data inform (sf_material_informed); INFINITY:
  * they do not say. */
 double sf_model_informed_strain(const sf_model *model);
+/* Strain at which the pad's only foam locks up, the pole of its stress below 1, and from which this pole
+ * bends its stress; NaN: there is none. */
+double sf_model_lock_up(const sf_model *model, double *begin);
 /* Mean density of the undeformed pad, kg m-3. */
 double sf_model_density(const sf_model *model);
 

@@ -7,6 +7,9 @@
 static const double secants[][2] = {{0.5, 0.25}, {0.35, 0.2}, {0.25, 0.12}, {0.2, 0.08}, {0.15, 0.04}};
 static const double LAG = 1.24; /* of e over that of the steepest */
 static const double PERCENT = 0.01;
+static const double LATER = 0.005; /* of the lock-up strain */
+static const double SHARPER = 0.8; /* of the mean's change over the peak's, as the top grows sharper */
+static const double ROUND = 0.5;   /* q over p: the middle of a pad is compressed more evenly than columns */
 
 /* The first row from `first` on in which the missile has slowed down to this speed; -1: none. */
 static int64_t row_of_speed(const sf_history *h, int64_t first, double speed) {
@@ -38,9 +41,44 @@ static double steepest(const sf_history *h, int64_t first) {
     return growth;
 }
 
-void sf_edge_estimate(const sf_results *r, sf_edge *edge) {
+/* Part of the peak's change that HIC has: by the duration of the force above that of row `from`, over the
+ * window of HIC. */
+static double share_of_hic(const sf_history *h, int64_t from, double largest, double window) {
+    double begin = h->contact_force[from], duration = 0, impulse = 0;
+    for (int64_t i = from + 1; i < h->rows && h->contact_force[i] > begin; i++) {
+        duration += h->time[i] - h->time[i - 1];
+        impulse += h->contact_force[i] * (h->time[i] - h->time[i - 1]);
+    }
+    double mean = impulse / duration;
+    return duration > 0
+               ? 1.5 * SHARPER * duration / window * (mean - begin) / (largest - begin) * largest / mean
+               : 0;
+}
+
+/* The changes by a later lock-up: `slope` (m-1) is (dF/dd) / F at the turn, `q` as in edge.h. */
+static void estimate_lock_up(const sf_results *r, int64_t first, int64_t deepest, double slope, double q,
+                             double window, sf_edge *edge) {
     const sf_history *h = &r->history;
-    *edge = (sf_edge){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+    double room = r->lock_up - r->lock_begin, shift = LATER * r->thickness, bend = 0, energy = 0, w = 0,
+           largest = h->contact_force[sf_history_row_of_largest(h, h->contact_force)];
+    int64_t begin = row_of_indentation(h, first, r->lock_begin * r->thickness);
+    edge->a_max_by_lock_up = edge->hic_by_lock_up = isfinite(room) ? 0 : NAN;
+    if (begin < 0 || !(room > 0))
+        return;
+    for (int64_t i = begin + 1; i <= deepest; i++) {
+        double x = fmin(1, (h->indentation[i] / r->thickness - r->lock_begin) / room),
+               gain = fmax(0, h->contact_force[i] - h->contact_force[i - 1]);
+        w = x * x;
+        bend += x < 1 ? gain * 2 * x / (room * r->thickness) : 0; /* of the integral of F' dw */
+        energy -= shift * (w * gain - q * bend * (h->indentation[i] - h->indentation[i - 1]));
+    }
+    edge->a_max_by_lock_up = -shift * (w * slope - q * bend / largest) - slope * energy / largest;
+    edge->hic_by_lock_up = edge->a_max_by_lock_up * share_of_hic(h, begin, largest, window);
+}
+
+void sf_edge_estimate(const sf_results *r, double window, sf_edge *edge) {
+    const sf_history *h = &r->history;
+    *edge = (sf_edge){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     if (r->driven || r->turns)
         return;
     int64_t first = 0;
@@ -60,6 +98,7 @@ void sf_edge_estimate(const sf_results *r, sf_edge *edge) {
     edge->hic_by_speed = 1.5 * edge->a_max_by_speed + PERCENT;
     edge->hic_by_thickness = 1.5 * edge->a_max_by_thickness;
     edge->hic_by_stress = 1.5 * edge->a_max_by_stress;
+    estimate_lock_up(r, first, deepest, LAG * growth, ROUND * p, window, edge);
     double speed = r->speed_scatter / PERCENT, thickness = r->thickness_tolerance / r->thickness / PERCENT;
     edge->a_max_scatter = hypot(edge->a_max_by_speed * speed, edge->a_max_by_thickness * thickness);
     edge->hic_scatter = hypot(edge->hic_by_speed * speed, edge->hic_by_thickness * thickness);

@@ -8,6 +8,12 @@
  *     d ln a_max = 2 e d ln v,  (p - (1 + p) e) d ln h,  (1 - e) d ln C;
  *     d ln HIC = 1.5 d ln a_max, and d ln v in addition.
  *
+ * A lock-up strain eps_D later by 0.005 shifts the locked part of the stress, from eps_s on, by that times
+ * w = ((eps - eps_s) / (eps_D - eps_s))^2 (which is the law's own change for the exponent 1). With eps = d /
+ * h the force loses h 0.005 (w F' - q int F' dw), where q is 0 below a flat missile; then d ln a_max = dF / F
+ * - (dF/dd) dE / F^2 with the energy dE that the force no longer takes. The impulse of the locked part is
+ * that of the speed with which it begins, so that only its duration changes, and HIC with it.
+ *
  * The slope is that of the steepest of five secants before the turn, the first where the missile slows down
  * from a half to a quarter of its speed: later ones are bent by the rate of a smooth foam, but see a lock-up.
  * It lags behind the slope at the turn: e is 1.24 times that of the secant, calibrated to seven drops. While
@@ -23,11 +29,13 @@
 typedef struct sf_edge {
     double a_max_by_speed, a_max_by_thickness, a_max_by_stress;
     double hic_by_speed, hic_by_thickness, hic_by_stress;
+    double a_max_by_lock_up, hic_by_lock_up; /* for a lock-up strain later by 0.005; NaN: there is none */
     /* relative standard deviations by the scatter of the case's speed and the tolerance of its thickness */
     double a_max_scatter, hic_scatter;
 } sf_edge;
 
-/* All NaN of a driven or free missile, and where the force tells nothing. The run has rebounded. */
-void sf_edge_estimate(const sf_results *results, sf_edge *edge);
+/* `window` (s) is that of HIC. All NaN of a driven or free missile, and where the force tells nothing. The
+ * run has rebounded. */
+void sf_edge_estimate(const sf_results *results, double window, sf_edge *edge);
 
 #endif

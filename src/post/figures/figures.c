@@ -355,10 +355,12 @@ static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
 
 static void take_edge(const sf_results *results, sf_figures *f) {
     sf_edge edge;
-    sf_edge_estimate(results, &edge);
+    sf_edge_estimate(results, f->injury.hic.t2 - f->injury.hic.t1, &edge);
     f->a_max_by_speed = edge.a_max_by_speed;
     f->a_max_by_thickness = edge.a_max_by_thickness;
     f->a_max_by_stress = edge.a_max_by_stress;
+    f->a_max_by_lock_up = edge.a_max_by_lock_up;
+    f->hic_by_lock_up = edge.hic_by_lock_up;
     f->hic_by_speed = edge.hic_by_speed;
     f->hic_by_thickness = edge.hic_by_thickness;
     f->hic_by_stress = edge.hic_by_stress;

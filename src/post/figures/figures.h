@@ -47,10 +47,14 @@
     X(NUMBER, a_max_by_thickness, "a_max_change_by_thickness", 1, "the same for 1 % more thickness of the pad", \
       .name = "a_max, 1 % thicker", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, a_max_by_stress, "a_max_change_by_stress", 1, "the same for 1 % more stress of the foam") \
+    X(NUMBER, a_max_by_lock_up, "a_max_change_by_lock_up", 1, "the same for a lock-up strain later by 0.005: of a foam whose stress has a pole below 1, alone in its pad", \
+      .name = "a_max, lock-up later by 0.005", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, hic_by_speed, "hic_change_by_speed", 1, "estimated relative change of HIC for 1 % more speed", \
       .name = "HIC, 1 % more speed", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, hic_by_thickness, "hic_change_by_thickness", 1, "the same for 1 % more thickness of the pad") \
     X(NUMBER, hic_by_stress, "hic_change_by_stress", 1, "the same for 1 % more stress of the foam") \
+    X(NUMBER, hic_by_lock_up, "hic_change_by_lock_up", 1, "the same for a lock-up strain later by 0.005", \
+      .name = "HIC, lock-up later by 0.005", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, a_max_scatter, "a_max_scatter", 1, "estimated standard deviation of a_max from drop to drop, over it: by `missile.speed_scatter` and `pad.thickness_tolerance`", \
       .name = "a_max, scatter of drops", .shown = 100, .unit = "%", .format = "%.2f") \
     X(NUMBER, hic_scatter, "hic_scatter", 1, "the same of HIC", \

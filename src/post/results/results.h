@@ -59,6 +59,7 @@ typedef struct sf_results {
     double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; NaN: not estimated */
     double air;                 /* m, gaps on the way of the thickness, which close first; NaN: not stored */
     double speed_scatter, thickness_tolerance; /* -, m: standard deviations; NaN: not stored */
+    double lock_up, lock_begin; /* -, see sf_model_lock_up; NaN: none, or the file does not say */
     double slit_fraction;    /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
                                 the file does not say */
     double informed_strain;  /* -, up to which data inform the material (of layers the least); NaN: the file

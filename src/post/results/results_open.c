@@ -223,6 +223,8 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         read_optional(r, "/model/air", &r->air, err) != SF_OK ||
         read_optional(r, "/model/speed_scatter", &r->speed_scatter, err) != SF_OK ||
         read_optional(r, "/model/thickness_tolerance", &r->thickness_tolerance, err) != SF_OK ||
+        read_optional(r, "/model/lock_up", &r->lock_up, err) != SF_OK ||
+        read_optional(r, "/model/lock_begin", &r->lock_begin, err) != SF_OK ||
         read_optional(r, "/model/slit_fraction", &r->slit_fraction, err) != SF_OK ||
         read_optional(r, "/model/symmetry_x", &r->symmetry_place[0], err) != SF_OK ||
         read_optional(r, "/model/symmetry_y", &r->symmetry_place[1], err) != SF_OK ||
