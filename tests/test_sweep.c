@@ -69,6 +69,7 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
         double *place = sf_runs_place(runs, row[k]), x = sf_plan_value(runs->plan, 0, row[k]);
         place[sf_runs_figure("a_max_g")] = 100 * sqrt(x) + sf_plan_value(runs->plan, 1, row[k]) / 3;
         place[sf_runs_figure("hic")] = 900 + 100 * x / 3;
+        place[sf_runs_figure("hic_scatter")] = 0.01;
         char folder[32];
         snprintf(folder, sizeof folder, "drop-%lld", (long long)row[k] % 6);
         sf_runs_done(runs, row[k], SF_GRADE_VALID, folder, NULL, err);
@@ -526,6 +527,7 @@ static void the_probability_is_over_what_is_uncertain(void **state) {
         assert_int_equal(hic->unknown, k == 0);
         assert_int_equal(hic->below, x < 3 - 1e-9 ? 6 - (k == 0) : 0);
         assert_int_equal(hic->above, x < 3 - 1e-9 ? 0 : 6);
+        assert_int_equal(hic->within, k >= 5 && k <= 7 ? 6 : 0); /* from 981 to 1020 */
     }
     sf_analysis_free(&a);
     sf_runs_free(&runs);

@@ -133,6 +133,11 @@ static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_resul
     return err->status;
 }
 
+double sf_runner_figure(const sf_runner_result *result, const char *key) {
+    size_t count;
+    return result->figure ? result->figure[sf_figure_find(key) - sf_figure_list(&count)] : NAN;
+}
+
 static double figure_of(const sf_run_record *record, const char *key) {
     size_t count;
     return record->figure[sf_figure_find(key) - sf_figure_list(&count)];

@@ -48,6 +48,9 @@ typedef struct sf_runner_result {
     bool reused;
 } sf_runner_result;
 
+/* A number of the list of figures; NaN: the run does not define it. */
+double sf_runner_figure(const sf_runner_result *result, const char *key);
+
 /* True if a campaign itself sets this key ("output.fields"), over the value of the drop. */
 bool sf_runner_sets_key(const char *key);
 

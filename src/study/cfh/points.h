@@ -95,12 +95,14 @@ typedef struct sf_cfh_point {
                        grade and note are set */
     bool on_anvil;  /* it failed as the missile reached the anvil: worse than every limit */
     sf_grade grade; /* of the run; "do not use" if it failed */
-    double value[SF_CFH_CRITERIA]; /* g, - */
-    double v_rebound;              /* m s-1, NaN: contact had not ended */
-    double max_indentation;        /* m */
-    double max_local_strain;       /* - */
-    double energy_error;           /* - */
-    char note[SF_CFH_NOTE_SIZE];   /* sentence, or "" */
+    double value[SF_CFH_CRITERIA];   /* g, - */
+    double scatter[SF_CFH_CRITERIA]; /* -, of single pads and drops (a_max_scatter, hic_scatter); NaN: not
+                                        known */
+    double v_rebound;                /* m s-1, NaN: contact had not ended */
+    double max_indentation;          /* m */
+    double max_local_strain;         /* - */
+    double energy_error;             /* - */
+    char note[SF_CFH_NOTE_SIZE];     /* sentence, or "" */
 } sf_cfh_point;
 
 typedef struct sf_cfh_points {

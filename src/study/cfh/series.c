@@ -41,6 +41,8 @@ void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf
     }
     p->value[SF_CFH_A_MAX] = r->a_max_g;
     p->value[SF_CFH_HIC] = r->hic;
+    p->scatter[SF_CFH_A_MAX] = sf_runner_figure(r, "a_max_scatter");
+    p->scatter[SF_CFH_HIC] = sf_runner_figure(r, "hic_scatter");
     p->v_rebound = r->v_rebound;
     p->max_indentation = r->max_indentation;
     p->max_local_strain = r->max_local_strain;

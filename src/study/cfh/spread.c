@@ -87,7 +87,8 @@ static double interpolate(int count, const double *height, const double *value, 
 
 static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const sf_material_law *own,
                                  const sf_cfh_points *points, sf_error *err) {
-    double height[SF_CFH_MAX_POINTS], bracket[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS];
+    double height[SF_CFH_MAX_POINTS], bracket[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS],
+        scatter[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS];
     int count = 0;
     for (int k = 0; k < points->count && !points->point[k].on_anvil; k++) {
         const sf_cfh_point *p = &points->point[k];
@@ -101,8 +102,10 @@ static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const 
             continue;
         }
         height[count] = p->height;
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
             bracket[c][count] = log(p->value[c]) - y[c];
+            scatter[c][count] = p->scatter[c];
+        }
         count++;
     }
     if (err->status != SF_OK)
@@ -117,8 +120,10 @@ static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const 
     s->grid = (int)fmin(SF_CFH_GRID, ceil(span / STEP) + 1);
     for (int k = 0; k < s->grid; k++) {
         s->height[k] = low * exp(span * k / (s->grid - 1));
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
             s->correction[c][k] = interpolate(count, height, bracket[c], s->height[k]);
+            s->scatter[c][k] = interpolate(count, height, scatter[c], s->height[k]);
+        }
     }
     return SF_OK;
 }
@@ -383,6 +388,7 @@ typedef struct errors {
     double mesh, fit[SF_CFH_CRITERIA];
     double columns[SF_CFH_CRITERIA]; /* Student's t, the same quantile of both */
     double rig;
+    double drop; /* of a single pad and drop, over the scatter of a criterion */
 } errors;
 
 static double or_none(double scatter) {
@@ -433,12 +439,19 @@ static double factor_of(const sf_cfh_spread *s, int d, const errors *e, sf_cfh_p
     return exp(fmax(-MOST_SHIFT, fmin(shift, MOST_SHIFT)));
 }
 
+/* Scatter of single pads and drops at a draw's critical height. */
+static double scatter_of(const sf_cfh_spread *s, int d, int criterion) {
+    double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];
+    return or_none(interpolate(s->grid, s->height, s->scatter[criterion], height));
+}
+
 /* values [SF_CFH_FIRST + 1][count] and rig [count] of one repeat, at `at`. */
 static void repeat(const sf_cfh_spread *s, int d, const errors *e, const sf_cfh_rig *rig, sf_cfh_part part,
                    int count, int at, double *values, double *on_rig) {
     double first = INFINITY;
     for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-        double height = cross(s, d, c, raise_of(e, part, c)) * factor_of(s, d, e, part, c);
+        double drop = part == SF_CFH_PARTS ? e->drop * scatter_of(s, d, c) : 0,
+               height = cross(s, d, c, raise_of(e, part, c) + drop) * factor_of(s, d, e, part, c);
         values[(size_t)c * (size_t)count + (size_t)at] = height;
         first = fmin(first, height);
     }
@@ -462,6 +475,7 @@ static void evaluate_part(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_cfh_part p
     for (int at = 0; at < count; at++) {
         errors e = random_errors(s, rig, random);
         respond(s, at, of_draw, &e);
+        e.drop = part == SF_CFH_PARTS ? gsl_ran_ugaussian(random) : 0;
         repeat(s, at / SF_CFH_REPEATS, &e, rig, part, count, at, values, on_rig);
     }
     for (int c = 0; c <= SF_CFH_FIRST; c++)
@@ -476,6 +490,7 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         s->trend[c] = find_trend(s, c);
     if (values && random && of_draw) {
+        evaluate_part(s, rig, SF_CFH_PARTS, count, values, random, of_draw);
         for (int part = 0; part < SF_CFH_PARTS; part++)
             evaluate_part(s, rig, (sf_cfh_part)part, count, values, random, of_draw);
         s->rig = rig->pairs ? height_interval(s, &values[(size_t)count * (SF_CFH_FIRST + 1)], count,

@@ -104,7 +104,10 @@ typedef struct sf_cfh_spread {
     int above, below, collapsed,
         beyond; /* draws: no limit reached; one exceeded at the lowest height; columns
                    collapse before a limit; crossing outside of `simulated` */
-    sf_cfh_interval part[SF_CFH_PARTS][SF_CFH_FIRST + 1];
+    double scatter[SF_CFH_CRITERIA]
+                  [SF_CFH_GRID]; /* -, of single pads and drops, at the heights; NaN: not known */
+    /* the last: that of a single pad and drop, which the whole interval does not hold */
+    sf_cfh_interval part[SF_CFH_PARTS + 1][SF_CFH_FIRST + 1];
     sf_cfh_interval rig; /* of the first, on the rig, with g_eff; NaN without a rig */
 } sf_cfh_spread;
 

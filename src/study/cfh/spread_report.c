@@ -77,6 +77,13 @@ static void put_share(sf_html_table *table, double share) {
         sf_html_cell(table, "%.0f", 100 * share);
 }
 
+/* The line of the interval that a single pad and drop have. */
+static const char *single_drop_text(const sf_cfh_spread *s) {
+    return isnan(s->scatter[SF_CFH_A_MAX][0])
+               ? "of a single pad and drop: not known, as above"
+               : "of a single pad and drop, with the scatter of speed and thickness; not in the whole interval";
+}
+
 static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
     static const char *const words[SF_CFH_PARTS] = {
         "foam alone (the draws: parameters and curve)", "and the errors of the responses",
@@ -94,9 +101,17 @@ static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig)
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
             sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][c], text, sizeof text));
     }
+    const sf_cfh_interval *drop = s->part[SF_CFH_PARTS];
+    sf_html_row(&table);
+    sf_html_cell(&table, "%s", single_drop_text(s));
+    sf_html_number(&table, 3, drop[SF_CFH_FIRST].median);
+    sf_html_cell(&table, "%s", sf_cfh_interval_text(&drop[SF_CFH_FIRST], text, sizeof text));
+    sf_html_cell(&table, "–");
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        sf_html_cell(&table, "%s", sf_cfh_interval_text(&drop[c], text, sizeof text));
     if (rig->pairs > 0) {
         sf_html_row(&table);
-        sf_html_cell(&table, "and g_eff: on the rig");
+        sf_html_cell(&table, "without that, and g_eff: on the rig");
         sf_html_number(&table, 3, s->rig.median);
         sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->rig, text, sizeof text));
         for (int k = 0; k < 1 + SF_CFH_CRITERIA; k++)
@@ -279,6 +294,7 @@ void sf_cfh_put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     sf_json_number(json, "fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]);
     for (int part = 0; part < SF_CFH_PARTS; part++)
         sf_cfh_put_interval_json(json, names[part], &s->part[part][SF_CFH_FIRST]);
+    sf_cfh_put_interval_json(json, "single_drop", &s->part[SF_CFH_PARTS][SF_CFH_FIRST]);
     sf_json_bool(json, "response_errors", s->with_response);
     sf_json_open(json, "shares", '{');
     for (int part = 0; part < SF_CFH_PARTS; part++)

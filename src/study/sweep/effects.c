@@ -230,6 +230,15 @@ void sf_probability_judge(sf_probability *p, double independent) {
     p->high = possible < n ? gsl_cdf_beta_Pinv(1 - TAIL, possible + 1, n - possible) : 1;
 }
 
+/* 95 % scatter of a figure of a run from drop to drop, over it; 0: of another figure, or not estimated. */
+static double scatter_of(const sf_runs *r, int64_t row, const char *figure) {
+    const char *key = strcmp(figure, "a_max_g") == 0 ? "a_max_scatter"
+                      : strcmp(figure, "hic") == 0   ? "hic_scatter"
+                                                     : NULL;
+    double sd = key ? sf_runs_place((sf_runs *)r, row)[sf_runs_figure(key)] : 0;
+    return isnan(sd) ? 0 : gsl_cdf_ugaussian_Pinv(1 - TAIL) * sd;
+}
+
 static void count(const sf_runs *r, int64_t row, const sf_sweep_limit *limit, sf_probability *p) {
     double value =
         sf_runs_usable(r, row) ? sf_runs_place((sf_runs *)r, row)[sf_runs_figure(limit->figure)] : NAN;
@@ -238,6 +247,7 @@ static void count(const sf_runs *r, int64_t row, const sf_sweep_limit *limit, sf
     p->below += value < limit->limit;
     p->above += value >= limit->limit || anvil;
     p->unknown += isnan(value) && !anvil;
+    p->within += fabs(log(limit->limit / value)) < scatter_of(r, row, limit->figure);
 }
 
 sf_status sf_probabilities_count(const sf_runs *r, sf_probabilities *p, sf_error *err) {

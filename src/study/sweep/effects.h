@@ -58,7 +58,9 @@ enum { SF_PROBABILITY_CELLS = 4096 };
  * interval count them as above, its high end as below. */
 typedef struct sf_probability {
     int64_t below, above, unknown;
-    double share;     /* `below` of all three; NaN: no run */
+    int64_t
+        within;   /* of a_max_g and hic: runs whose limit lies within the 95 % scatter of drops about them */
+    double share; /* `below` of all three; NaN: no run */
     double low, high; /* the 95 % interval of Clopper and Pearson */
 } sf_probability;
 

@@ -181,6 +181,7 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
         sf_json_integer(j, "below", c->below);
         sf_json_integer(j, "above", c->above);
         sf_json_integer(j, "unknown", c->unknown);
+        sf_json_integer(j, "within_scatter", c->within);
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -291,8 +292,8 @@ static void put_probability_row(sf_html_table *t, const sf_sweep_report *r, int6
         if (isnan(r->plan->figure[k].limit))
             continue;
         sf_html_cell(t, isnan(c->share) ? "–" : "%.3f (%.3f to %.3f)", c->share, c->low, c->high);
-        sf_html_cell(t, "%lld / %lld / %lld", (long long)c->below, (long long)c->above,
-                     (long long)c->unknown);
+        sf_html_cell(t, "%lld / %lld / %lld / %lld", (long long)c->below, (long long)c->above,
+                     (long long)c->unknown, (long long)c->within);
     }
 }
 
@@ -310,9 +311,10 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
         }
     for (int k = 0; k < r->plan->figure_count && used < sizeof columns; k++)
         if (!isnan(r->plan->figure[k].limit))
-            used += (size_t)snprintf(columns + used, sizeof columns - used,
-                                     "%s>P(%s < %g), 95 %% interval|>below / above / unknown",
-                                     used ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
+            used +=
+                (size_t)snprintf(columns + used, sizeof columns - used,
+                                 "%s>P(%s < %g), 95 %% interval|>below / above / unknown / within scatter",
+                                 used ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
     if (used == 0)
         return;
     sf_html_heading(page, "Probability of staying below the limits");
@@ -324,8 +326,9 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
         page,
         "Over the uncertain factors of the plan, all draws equally probable; the interval (Clopper and Pearson) "
         "is that of the number of runs. Unknown ones (failed, or not to be used) are taken as above, and as "
-        "below for the high end of the interval alone. A run that reached the anvil counts as above. It holds neither "
-        "the error of the model nor what the plan does not vary.%s%s",
+        "below for the high end of the interval alone. A run that reached the anvil counts as above. Within scatter: runs "
+        "whose limit another pad or drop may find on the other side, by the scatter of speed and thickness (95 %%). The "
+        "interval holds neither that nor the error of the model nor what the plan does not vary.%s%s",
         q->open > 0 ? " Open runs are not counted." : "",
         q->cells > CELLS_LISTED ? " sweep.json has the other combinations." : "");
 }
