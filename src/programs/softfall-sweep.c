@@ -6,6 +6,7 @@
 #include "study/engine.h"
 #include "study/manifest.h"
 #include "study/setup.h"
+#include "study/sweep/adaptive.h"
 #include "study/sweep/cost.h"
 #include "study/sweep/drops.h"
 #include "study/sweep/sweep_plot.h"
@@ -98,6 +99,11 @@ static sf_status estimate(const sf_study *study, job *j, sf_error *err) {
         return err->status;
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);
     sf_sweep_cost_print(stdout, &cost, elsewhere ? 0 : study->jobs);
+    if (sf_plan_is_adaptive(&j->plan))
+        printf(
+            "  (at most: %lld rows are simulated first, then those without which the others are not predicted as "
+            "accurately as the plan asks)\n",
+            (long long)sf_sweep_adaptive_design(&j->plan));
     fflush(stdout);
     j->drop_seconds = cost.seconds;
     int abreast = !elsewhere ? study->jobs : open < SF_MANIFEST_GROUPS ? (int)open : SF_MANIFEST_GROUPS;
@@ -119,6 +125,21 @@ static void choose_jobs(sf_study *study) {
         study->threads = study->jobs;
 }
 
+/* Runs all rows, or those that a plan with wishes for its accuracy needs. */
+static sf_status run_rows(sf_study *study, job *j, const sf_sweep_engine *engine, sf_error *err) {
+    if (!sf_plan_is_adaptive(&j->plan))
+        return sf_sweep_campaign_run(&j->campaign, engine, &j->runs, err);
+    sf_sweep_adaptive *adaptive = sf_sweep_adaptive_new(&j->plan, study->runs, study->jobs, stdout, err);
+    if (!adaptive)
+        return err->status;
+    const sf_sweep_chooser chooser = sf_sweep_adaptive_chooser(adaptive);
+    j->campaign.chooser = &chooser;
+    sf_sweep_campaign_run(&j->campaign, engine, &j->runs, err);
+    j->campaign.chooser = NULL;
+    sf_sweep_adaptive_free(adaptive);
+    return err->status;
+}
+
 static sf_status run_campaign(sf_study *study, job *j, sf_error *err) {
     choose_jobs(study);
     SF_TRY(sf_engine_check(&study->engine, err));
@@ -130,7 +151,7 @@ static sf_status run_campaign(sf_study *study, job *j, sf_error *err) {
     study->runner.engine.drop_seconds = j->drop_seconds;
     const sf_sweep_engine engine = sf_sweep_drops(&study->runner, study->jobs);
     j->campaign.log = stdout;
-    SF_TRY(sf_sweep_campaign_run(&j->campaign, &engine, &j->runs, err));
+    SF_TRY(run_rows(study, j, &engine, err));
     return write_report(study, j, err);
 }
 

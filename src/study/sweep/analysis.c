@@ -18,6 +18,10 @@ static void count(sf_analysis *a) {
         a->done += done;
         a->failed += a->runs->state[k] == SF_SWEEP_FAILED;
         a->open += a->runs->state[k] == SF_SWEEP_OPEN;
+        a->predicted += a->runs->state[k] == SF_SWEEP_PREDICTED;
+        a->usable += sf_runs_usable(a->runs, k);
+        for (int i = 0; i < a->plan->figure_count; i++)
+            a->widest[i] = fmax(a->widest[i], expm1(sf_runs_half(a->runs, k, i)));
         a->unusable += done && a->runs->grade[k] == SF_GRADE_DO_NOT_USE;
         a->remarks += done && a->runs->grade[k] == SF_GRADE_REMARKS;
     }

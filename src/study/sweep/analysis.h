@@ -23,6 +23,9 @@ typedef struct sf_analysis {
     const sf_runs *runs;
     size_t figure[SF_SWEEP_FIGURES]; /* their places in the list of figures */
     int64_t done, failed, open;
+    int64_t usable; /* done and not "do not use", or predicted */
+    int64_t predicted;
+    double widest[SF_SWEEP_FIGURES]; /* -, largest relative half of an interval of the predicted */
     int64_t unusable; /* of the done: "do not use" */
     int64_t remarks;  /* of the done: "valid with remarks" */
     sf_effect effect[SF_SWEEP_FIGURES][SF_SWEEP_FACTORS];

@@ -171,6 +171,7 @@ static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_e
         return SF_OK;
     open_all(runs, SF_SWEEP_DONE);
     open_all(runs, SF_SWEEP_FAILED);
+    open_all(runs, SF_SWEEP_PREDICTED);
     return SF_FAIL(err, SF_ERR_IO,
                    "the inputs of the campaign changed while it ran: %.700s; finished drops are kept: repeat "
                    "the command",
@@ -410,7 +411,9 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
     int64_t from = 0, done = 0, open = sf_runs_count(runs, SF_SWEEP_OPEN);
     double start = now(), written = start, duration = 0;
     int count;
-    while (err->status == SF_OK && (count = next_piece(runs, &from, engine->piece, row)) > 0) {
+    while (err->status == SF_OK &&
+           (count = c->chooser ? c->chooser->next(c->chooser->context, runs, engine->piece, row, err)
+                               : next_piece(runs, &from, engine->piece, row)) > 0) {
         int fresh = 0;
         if (engine->run(engine->context, runs, count, row, &fresh, err) != SF_OK)
             return err->status;
@@ -421,7 +424,8 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
         save(c, runs, false, err);
         written = now();
         duration = written - time;
-        tell_progress(c, runs->count - open, done, open, start);
+        if (!c->chooser)
+            tell_progress(c, runs->count - open, done, open, start);
     }
     return err->status;
 }
@@ -436,6 +440,8 @@ sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engin
     if (pick_samples(runs, &s, err) == SF_OK && write_samples_open(c, runs, turned, &s, err) == SF_OK &&
         probe(c, engine, runs, &s, err) == SF_OK && work(c, engine, runs, row, err) == SF_OK)
         turned = probe_again(engine, runs, err) != SF_OK || turned;
+    if (c->chooser && err->status == SF_OK)
+        c->chooser->finish(c->chooser->context, runs, err);
     save(c, runs, turned, err);
 done:
     free_samples(&s);

@@ -18,6 +18,15 @@ typedef struct sf_sweep_engine {
     bool (*is_current)(void *context, const sf_runs *runs, int64_t row);
 } sf_sweep_engine;
 
+/* Chooses which open rows are run, and says what the others are. */
+typedef struct sf_sweep_chooser {
+    /* The next rows, `most` at the most; 0: no more are needed, or a failure. */
+    int (*next)(void *context, const sf_runs *runs, int most, int64_t *row, sf_error *err);
+    /* Fills in rows that were not run, when the others are done. */
+    sf_status (*finish)(void *context, sf_runs *runs, sf_error *err);
+    void *context;
+} sf_sweep_chooser;
+
 typedef struct sf_sweep_campaign {
     const sf_plan *plan;
     const char *folder; /* of the output; it exists */
@@ -30,6 +39,7 @@ typedef struct sf_sweep_campaign {
     const char *const
         *report; /* names of the files in `folder` that are made of the table, ends with NULL: they
                     are removed when the table turns to other inputs or another plan; NULL: none */
+    const sf_sweep_chooser *chooser; /* NULL: all rows are run, in order */
     bool retry;  /* failed rows are done again */
     bool force;  /* another plan in the folder gives way */
     FILE *log;   /* NULL: silent */

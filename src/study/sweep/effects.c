@@ -230,9 +230,13 @@ void sf_probability_judge(sf_probability *p, double independent) {
     p->high = possible < n ? gsl_cdf_beta_Pinv(1 - TAIL, possible + 1, n - possible) : 1;
 }
 
-static void count(const sf_runs *r, int64_t row, const sf_sweep_limit *limit, sf_probability *p) {
+/* A prediction whose interval holds the limit is unknown. */
+static void count(const sf_runs *r, int64_t row, int figure, sf_probability *p) {
+    const sf_sweep_limit *limit = &r->plan->figure[figure];
     double value =
         sf_runs_usable(r, row) ? sf_runs_place((sf_runs *)r, row)[sf_runs_figure(limit->figure)] : NAN;
+    if (fabs(log(value / limit->limit)) < sf_runs_half(r, row, figure))
+        value = NAN;
     bool anvil =
         r->state[row] == SF_SWEEP_FAILED && r->message[row] && strstr(r->message[row], SF_ENDED_ON_ANVIL);
     p->below += value < limit->limit;
@@ -253,7 +257,7 @@ sf_status sf_probabilities_count(const sf_runs *r, sf_probabilities *p, sf_error
         p->row[cell] = row;
         p->open += r->state[row] == SF_SWEEP_OPEN;
         for (int k = 0; k < plan->figure_count && r->state[row] != SF_SWEEP_OPEN; k++)
-            count(r, row, &plan->figure[k], &p->cell[k * p->cells + cell]);
+            count(r, row, k, &p->cell[k * p->cells + cell]);
     }
     for (int64_t k = 0; k < plan->figure_count * p->cells && err->status == SF_OK; k++)
         sf_probability_judge(&p->cell[k], count_independent(plan));

@@ -259,14 +259,17 @@ static sf_status read_set(const sf_config *config, sf_plan *p, sf_error *err) {
 }
 
 static sf_status add_figure(const sf_config *config, const config_setting_t *s, const char *key, double limit,
-                            sf_plan *p, sf_error *err) {
+                            double accuracy, sf_plan *p, sf_error *err) {
     const sf_figure *figure = sf_figure_find(key);
     if (!figure || figure->row.type == SF_ROW_TEXT)
         return sf_config_refuse(config, s, err, "\"%.80s\" is no figure of summary.json (docs/formats.md)",
                                 key);
     if (p->figure_count == SF_SWEEP_FIGURES)
         return sf_config_refuse(config, s, err, "at most %d figures", SF_SWEEP_FIGURES);
-    p->figure[p->figure_count++] = (sf_sweep_limit){figure->row.key, limit};
+    p->figure[p->figure_count++] = (sf_sweep_limit){figure->row.key, limit, accuracy};
+    if ((accuracy > 0) != (p->figure[0].accuracy > 0))
+        return sf_config_refuse(
+            config, s, err, "accuracy: give it to every figure or to none, as a predicted row has no others");
     return SF_OK;
 }
 
@@ -274,8 +277,8 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
     const config_setting_t *list = config_lookup(&config->config, "figures");
     if (!list) {
         p->figure_count = 2;
-        p->figure[0] = (sf_sweep_limit){"a_max_g", SF_DEFAULT_LIMIT_G};
-        p->figure[1] = (sf_sweep_limit){"hic", SF_DEFAULT_LIMIT_HIC};
+        p->figure[0] = (sf_sweep_limit){"a_max_g", SF_DEFAULT_LIMIT_G, 0};
+        p->figure[1] = (sf_sweep_limit){"hic", SF_DEFAULT_LIMIT_HIC, 0};
         return SF_OK;
     }
     if (!config_setting_is_list(list) || config_setting_length(list) == 0)
@@ -284,13 +287,14 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
     for (int k = 0; k < config_setting_length(list) && err->status == SF_OK; k++) {
         const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
         const char *key = NULL;
-        double limit = NAN;
+        double limit = NAN, accuracy = 0;
         if (!config_setting_is_group(s))
             return sf_config_refuse(config, s, err, "figures: each entry must be a group: { ... }");
-        if (sf_config_names(config, s, "key|limit", err) == SF_OK &&
+        if (sf_config_names(config, s, "key|limit|accuracy", err) == SF_OK &&
             sf_config_text(config, s, "key", true, &key, err) == SF_OK &&
-            sf_config_number(config, s, "limit", false, -1e300, 1e300, &limit, err) == SF_OK)
-            add_figure(config, s, key, limit, p, err);
+            sf_config_number(config, s, "limit", false, -1e300, 1e300, &limit, err) == SF_OK &&
+            sf_config_number(config, s, "accuracy", false, 1e-4, 0.5, &accuracy, err) == SF_OK)
+            add_figure(config, s, key, limit, accuracy, p, err);
     }
     return err->status;
 }
@@ -380,6 +384,10 @@ uint64_t sf_plan_hash(const sf_plan *p) {
             hash = sf_hash_bytes(hash, factor->label[k], strlen(factor->label[k]) + 1);
     }
     return hash;
+}
+
+bool sf_plan_is_adaptive(const sf_plan *p) {
+    return p->figure[0].accuracy > 0;
 }
 
 const sf_block *sf_plan_saltelli(const sf_plan *p) {

@@ -33,6 +33,8 @@ typedef struct sf_block {
 typedef struct sf_sweep_limit {
     const char *figure; /* static */
     double limit;
+    double accuracy; /* -, half of the 95 % interval of rows that are predicted, relative; 0: all are
+                        simulated */
 } sf_sweep_limit;
 
 typedef struct sf_plan {
@@ -71,6 +73,9 @@ void sf_plan_set(const sf_plan *plan, int k, char *text);
 
 /* A hash of the rows: of keys, units and values. */
 uint64_t sf_plan_hash(const sf_plan *plan);
+
+/* True if rows may be predicted instead of simulated: each figure then has its accuracy. */
+bool sf_plan_is_adaptive(const sf_plan *plan);
 
 /* The block of Saltelli samples; NULL: none. */
 const sf_block *sf_plan_saltelli(const sf_plan *plan);

@@ -194,7 +194,7 @@ static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, ch
             list[columns++] = f;
     if (columns == 0 || figures == 0)
         return SF_OK;
-    bool *shown = sf_analysis_pick(a->done - a->unusable, POINTS, err);
+    bool *shown = sf_analysis_pick(a->usable, POINTS, err);
     sf_chart *chart = sf_chart_new("factors", columns > 1 ? 900 * columns : 1300, 620 * figures, err);
     sf_chart_columns(chart, columns);
     for (int c = 0; c < columns && err->status == SF_OK; c++)
@@ -235,7 +235,7 @@ static sf_status plot_curves(const sf_staging *output, const sf_analysis *a, con
     bool titled[SERIES] = {false};
     if (choose_series(a->plan, -1, &s, err) != SF_OK)
         return err->status;
-    bool *shown = sf_analysis_pick(a->done - a->unusable, CURVES, err);
+    bool *shown = sf_analysis_pick(a->usable, CURVES, err);
     sf_chart *chart = sf_chart_new("curves", 1600, 900, err);
     sf_panel *panel = sf_chart_panel(chart);
     if (panel) {
@@ -502,7 +502,7 @@ static sf_status plot_probability(const sf_staging *output, const sf_analysis *a
 sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *a, const char *folder, char *warning,
                         size_t size, sf_error *err) {
     warning[0] = '\0';
-    if (a->done - a->unusable < 1)
+    if (a->usable < 1)
         return SF_OK;
     if (plot_factors(output, a, warning, size, err) == SF_OK &&
         plot_curves(output, a, folder, warning, size, err) == SF_OK &&

@@ -198,6 +198,7 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     sf_json_integer(&j, "done", a->done);
     sf_json_integer(&j, "failed", a->failed);
     sf_json_integer(&j, "open", a->open);
+    sf_json_integer(&j, "predicted", a->predicted);
     sf_json_integer(&j, "do_not_use", a->unusable);
     json_factors(&j, r->plan);
     sf_json_open(&j, "figures", '[');
@@ -205,6 +206,12 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
         sf_json_open(&j, NULL, '{');
         sf_json_text(&j, "figure", r->plan->figure[k].figure);
         sf_json_number(&j, "limit", r->plan->figure[k].limit);
+        if (sf_plan_is_adaptive(r->plan)) {
+            sf_json_number(&j, "accuracy", r->plan->figure[k].accuracy);
+            sf_json_number(&j, "widest_prediction", a->widest[k]);
+            sf_json_integer(&j, "checked_rows", r->runs->checked[k]);
+            sf_json_integer(&j, "held_rows", r->runs->held[k]);
+        }
         json_probability(&j, r, k);
         json_effects(&j, r, k);
         json_indices(&j, r, k);
@@ -223,9 +230,10 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
     char value[64], remark[96];
     sf_html_tiles_begin(page);
     snprintf(value, sizeof value, "%lld of %lld", (long long)a->done, (long long)r->plan->rows);
-    snprintf(remark, sizeof remark, "%lld failed, %lld open", (long long)a->failed, (long long)a->open);
+    snprintf(remark, sizeof remark, "%lld predicted, %lld failed, %lld open", (long long)a->predicted,
+             (long long)a->failed, (long long)a->open);
     sf_html_tile(page, a->failed + a->open > 0 ? "fair" : "good", "runs done", value, remark);
-    snprintf(value, sizeof value, "%lld", (long long)(a->done - a->unusable));
+    snprintf(value, sizeof value, "%lld", (long long)a->usable);
     snprintf(remark, sizeof remark, "%lld with remarks; %lld more are not to be used", (long long)a->remarks,
              (long long)a->unusable);
     sf_html_tile(page, a->unusable > 0 ? "fair" : "good", "runs whose figures count", value, remark);
@@ -259,6 +267,30 @@ static void put_factors(FILE *page, const sf_plan *p) {
     }
     sf_html_table_end(&t);
     sf_html_paragraph(page, "%lld runs of %s, a row each in runs.csv.", (long long)p->rows, p->case_path);
+}
+
+static void put_predictions(FILE *page, const sf_sweep_report *r) {
+    const sf_analysis *a = r->analysis;
+    if (!sf_plan_is_adaptive(r->plan))
+        return;
+    sf_html_heading(page, "Predicted runs");
+    sf_html_table t = sf_html_table_begin(
+        page, "dense", "figure|>accuracy asked for|>widest half of a 95 % interval|>checks held");
+    for (int k = 0; k < r->plan->figure_count; k++) {
+        sf_html_row(&t);
+        sf_html_cell(&t, "%s", r->plan->figure[k].figure);
+        sf_html_cell(&t, "%.3g %%", 100 * r->plan->figure[k].accuracy);
+        sf_html_cell(&t, a->predicted > 0 ? "%.3g %%" : "–", 100 * a->widest[k]);
+        sf_html_cell(&t, "%d of %d", r->runs->held[k], r->runs->checked[k]);
+    }
+    sf_html_table_end(&t);
+    sf_html_note(
+        page,
+        "%lld of %lld rows were not simulated but predicted from the others; runs.csv has the state and the "
+        "interval of each. The checks are random rows that were simulated and from which nothing was learnt. In "
+        "probabilities a prediction whose interval holds the limit is unknown. %lld rows "
+        "are open: they are expected to fail or to be not to be used.",
+        (long long)a->predicted, (long long)r->plan->rows, (long long)a->open);
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
@@ -332,7 +364,7 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
 
 /* Means and fits of a part that the outcome has chosen. */
 static void note_missing(FILE *page, const sf_sweep_report *r, const char *what) {
-    int64_t missing = r->plan->rows - (r->analysis->done - r->analysis->unusable);
+    int64_t missing = r->plan->rows - r->analysis->usable;
     if (missing > 0)
         sf_html_note(page,
                      "%lld of %lld runs are left out (failed, not to be used, or open). These are no random "
@@ -476,15 +508,17 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
     bool whole = a->failed + a->open + a->unusable == 0;
     sf_html_banner(
         page,
-        whole                   ? "good"
-        : a->done > a->unusable ? "fair"
-                                : "bad",
+        whole           ? "good"
+        : a->usable > 0 ? "fair"
+                        : "bad",
         whole ? "complete" : "with gaps",
-        "%lld of %lld runs are done, %lld failed, %lld are open; the figures of %lld are not to be used. %s",
-        (long long)a->done, (long long)r->plan->rows, (long long)a->failed, (long long)a->open,
-        (long long)a->unusable, caution);
+        "%lld of %lld runs are done, %lld are predicted, %lld failed, %lld are open; the figures of %lld are not to "
+        "be used. %s",
+        (long long)a->done, (long long)r->plan->rows, (long long)a->predicted, (long long)a->failed,
+        (long long)a->open, (long long)a->unusable, caution);
     put_tiles(page, r);
     put_factors(page, r->plan);
+    put_predictions(page, r);
     put_pictures(page, output);
     put_probability(page, r);
     put_effects(page, r);
@@ -503,6 +537,10 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     fprintf(out, "%lld runs: %lld done, %lld failed, %lld open; the figures of %lld are not to be used\n",
             (long long)r->plan->rows, (long long)a->done, (long long)a->failed, (long long)a->open,
             (long long)a->unusable);
+    for (int k = 0; k < r->plan->figure_count && a->predicted > 0; k++)
+        fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n",
+                (long long)a->predicted, r->plan->figure[k].figure, 100 * a->widest[k],
+                100 * r->plan->figure[k].accuracy);
     int listed = 0;
     for (int64_t row = 0; row < r->runs->count && listed < 5; row++)
         if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)
