@@ -1,102 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/shape.h"
 
-#include "post/view/cut.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* A face of a cell: its nodes around it, and sorted. */
-typedef struct face {
-    int32_t node[4], sorted[4]; /* -1 in the fourth place of a triangle, in the first of the sorted ones */
-} face;
-
-static void sort_nodes(face *f) {
-    memcpy(f->sorted, f->node, sizeof f->sorted);
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && f->sorted[j] < f->sorted[j - 1]; j--) {
-            int32_t other = f->sorted[j];
-            f->sorted[j] = f->sorted[j - 1];
-            f->sorted[j - 1] = other;
-        }
-}
-
-static int by_nodes(const void *a, const void *b) {
-    const face *x = a, *y = b;
-    for (int k = 0; k < 4; k++)
-        if (x->sorted[k] != y->sorted[k])
-            return x->sorted[k] < y->sorted[k] ? -1 : 1;
-    return 0;
-}
-
-static int64_t list_faces(const sf_cells *c, face *out) {
-    int64_t count = 0;
-    for (int64_t k = 0; k < c->cell_count; k++) {
-        const int(*faces)[4];
-        int n = sf_cell_faces(c->type[k], &faces);
-        for (int f = 0; f < n; f++, count++) {
-            for (int v = 0; v < 4 && out; v++)
-                out[count].node[v] = faces[f][v] < 0 ? -1 : c->node[c->ptr[k] + faces[f][v]];
-            if (out)
-                sort_nodes(&out[count]);
-        }
-    }
-    return count;
-}
-
-/* Keeps those that are alone. */
-static int64_t keep_skin(face *list, int64_t count) {
-    int64_t kept = 0;
-    for (int64_t k = 0, next; k < count; k = next) {
-        for (next = k + 1; next < count && by_nodes(&list[k], &list[next]) == 0; next++)
-            ;
-        if (next == k + 1)
-            list[kept++] = list[k];
-    }
-    return kept;
-}
-
-/* Numbers the nodes of the skin in the order of the model. */
-static sf_status number_nodes(const sf_cells *c, const face *list, sf_shape *s, sf_error *err) {
-    int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's picture");
-    for (int64_t k = 0; place && k < s->pad.face_count; k++)
-        for (int v = 0; v < 4; v++)
-            if (list[k].node[v] >= 0)
-                place[list[k].node[v]] = 1;
-    for (int64_t i = 0; place && i < c->node_count; i++)
-        s->pad.node_count += place[i];
-    s->pad_node = sf_alloc(err, (unsigned long)s->pad.node_count, sizeof *s->pad_node, "the pad's picture");
-    s->pad.position =
-        sf_alloc(err, 3 * (unsigned long)s->pad.node_count, sizeof(double), "the pad's picture");
-    int64_t next = 0;
-    for (int64_t i = 0; i < c->node_count && err->status == SF_OK; i++)
-        if (place[i]) {
-            place[i] = (int32_t)next;
-            s->pad_node[next] = i;
-            for (int d = 0; d < 3; d++)
-                s->pad.position[3 * next + d] = c->position[3 * i + d] / s->unit;
-            next++;
-        }
-    for (int64_t k = 0; k < 4 * s->pad.face_count && err->status == SF_OK; k++) {
-        int32_t node = list[k / 4].node[k % 4];
-        s->pad.face[k] = node < 0 ? -1 : place[node];
-    }
-    free(place);
-    return err->status;
-}
-
 static sf_status find_skin(const sf_cells *c, sf_shape *s, sf_error *err) {
-    int64_t count = list_faces(c, NULL);
-    face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
-    if (!list)
-        return err->status;
-    list_faces(c, list);
-    qsort(list, (size_t)count, sizeof *list, by_nodes);
-    s->pad.face_count = keep_skin(list, count);
-    s->pad.face =
-        sf_alloc(err, 4 * (unsigned long)s->pad.face_count, sizeof *s->pad.face, "the pad's picture");
-    if (s->pad.face)
-        number_nodes(c, list, s, err);
-    free(list);
+    sf_skin_faces skin;
+    if (sf_skin_faces_find(c, &skin, err) == SF_OK)
+        s->pad.position =
+            sf_alloc(err, 3 * (unsigned long)skin.node_count, sizeof(double), "the pad's picture");
+    for (int64_t k = 0; k < 3 * skin.node_count && s->pad.position; k++)
+        s->pad.position[k] = c->position[3 * skin.node[k / 3] + k % 3] / s->unit;
+    s->pad.node_count = skin.node_count;
+    s->pad.face_count = skin.face_count;
+    s->pad.face = (int32_t *)skin.face;
+    s->pad_node = skin.node;
     return err->status;
 }
 

@@ -3,18 +3,10 @@
 #ifndef SF_GUI_SHAPE_H
 #define SF_GUI_SHAPE_H
 
+#include "model/cells.h"
 #include "model/model.h"
 #include "gui/gmsh/view.h"
 #include "post/results/results.h"
-
-/* A mesh, borrowed. */
-typedef struct sf_cells {
-    int64_t node_count, cell_count;
-    const double *position; /* [node_count][3] m */
-    const uint8_t *type;
-    const int64_t *ptr;
-    const int32_t *node;
-} sf_cells;
 
 /* Pad and missile. */
 typedef struct sf_shape {
