@@ -97,6 +97,7 @@ typedef struct sf_case {
     sf_run_options run;
     int frame_time_count;                 /* further frames, beside run.frame_interval */
     double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */
+    char about[3][SF_CASE_NAME_SIZE]; /* sample, laboratory, conditions: words for the report; "": not given */
 } sf_case;
 
 /* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in

@@ -137,6 +137,10 @@ static const sf_key keys[] = {
      "times of further frames", .quantity = SF_TIME, .count_offset = offsetof(sf_case, frame_time_count)},
     {"output", "fields", SF_KEY_FIELDS, ALL_FIELDS, AT(run.output_fields),
      "fields of a frame (default: all)", .words = FIELD_WORDS},
+    /* report: words for report.html and summary.json */
+    {"report", "sample", SF_KEY_NAME, "", AT(about[0]), "what is tested, in words: batch, age, supplier", .idle = true},
+    {"report", "laboratory", SF_KEY_NAME, "", AT(about[1]), "who tests it, and where", .idle = true},
+    {"report", "conditions", SF_KEY_NAME, "", AT(about[2]), "temperature, humidity, storage before the test; they are not used", .idle = true},
 };
 /* clang-format on */
 

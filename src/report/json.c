@@ -2,6 +2,7 @@
 #include "report/json.h"
 
 #include "base/text.h"
+#include "report/html.h"
 #include <math.h>
 
 static void put_text(FILE *file, const char *text) {
@@ -13,7 +14,7 @@ static void put_text(FILE *file, const char *text) {
             length = 1;
         } else if (*s == '"' || *s == '\\') {
             fprintf(file, "\\%c", *s);
-        } else if (*s < 0x20 || *s == 0x7f) {
+        } else if (*s < 0x20 || *s == 0x7f || *s == '<') {
             fprintf(file, "\\u%04x", *s);
         } else {
             fwrite(s, 1, (size_t)length, file);
@@ -69,6 +70,13 @@ void sf_json_integer(sf_json *json, const char *key, int64_t value) {
 void sf_json_bool(sf_json *json, const char *key, bool value) {
     begin(json, key);
     fputs(value ? "true" : "false", json->file);
+}
+
+void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size) {
+    begin(json, key);
+    fputc('"', json->file);
+    sf_html_base64(json->file, data, size);
+    fputc('"', json->file);
 }
 
 void sf_json_text(sf_json *json, const char *key, const char *text) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes strictly valid JSON (RFC 8259): a number that is not finite becomes null, texts are escaped and
- * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. */
+ * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. No text holds a '<', so that the whole may
+ * stand in a script element of a page. */
 #ifndef SF_IO_JSON_H
 #define SF_IO_JSON_H
 
@@ -21,5 +22,6 @@ void sf_json_integer(sf_json *json, const char *key,
                      int64_t value); /* negative: null (all of ours are counts) */
 void sf_json_bool(sf_json *json, const char *key, bool value);
 void sf_json_text(sf_json *json, const char *key, const char *text); /* NULL: null */
+void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size);
 
 #endif
