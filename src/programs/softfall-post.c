@@ -6,6 +6,7 @@
 #include "io/provenance.h"
 #include "post/figures/layer_figures.h"
 #include "post/figures/compare.h"
+#include "post/view/browser.h"
 #include "post/view/csv.h"
 #include "post/figures/figures.h"
 #include "io/staging.h"
@@ -33,6 +34,7 @@ enum {
     KEY_STRICT,
     KEY_FULL,
     KEY_FILM,
+    KEY_VIEW,
     KEY_LIMIT_G,
     KEY_LIMIT_HIC,
     KEY_TUNED, /* the next ones need --reference */
@@ -59,6 +61,7 @@ typedef struct options {
     bool force;
     bool full;        /* doubles for ParaView */
     const char *film; /* name of the file; NULL: none is asked for */
+    double view;      /* MB that view.html may have; 0: none */
     bool strict;      /* the exit status shows the verdict */
     sf_limits limits;
     double cfc;
@@ -77,11 +80,11 @@ typedef struct job {
     sf_verdict verdict;
     sf_comparison comparison;
     sf_staging output;
-    const char *names[19];        /* of every file that may be written */
+    const char *names[20];        /* of every file that may be written */
     char data[SF_XDMF_NAME_SIZE]; /* of the data of pad.xdmf */
     char *command_line;
     sf_xdmf xdmf;
-    char plot_warning[512], state_warning[512];
+    char plot_warning[512], state_warning[512], view_warning[512];
 } job;
 
 static sf_status parse_filter(const char *option, const char *text, double *cfc, sf_error *err) {
@@ -126,6 +129,11 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
         break;
     case KEY_FILM:
         sf_paraview_check_film(text, &o->film, &o->err);
+        break;
+    case KEY_VIEW:
+        if (!sf_decimal_is(text, &o->view) || !(o->view >= 0 && o->view <= SF_BROWSER_MOST_MB))
+            SF_FAIL(&o->err, SF_ERR_INPUT, "--view %s: a size from 0 to %d MB is expected", text,
+                    SF_BROWSER_MOST_MB);
         break;
     case KEY_STRICT:
         o->strict = true;
@@ -224,6 +232,9 @@ static sf_status parse_command(int argc, char **argv, options *o) {
          "a film of the drop too, pad.mp4 or pad.gif, and pad.png, the picture at the peak, which report.html then "
          "shows; by pvbatch (ParaView) and ffmpeg",
          0},
+        {"view", KEY_VIEW, "MB", 0,
+         "size that view.html may have (default 5; 0: do not write it); a larger model shows fewer frames, or its surface only",
+         0},
         {"filter", KEY_FILTER, "CFC", 0, "channel frequency class: 60, 180, 600 or 1000 (default)", 0},
         {"mount", KEY_MOUNT, "F, DAMPING", 0,
          "pass the model's acceleration through the mount of an accelerometer, a second-order system, before the filter: "
@@ -277,7 +288,7 @@ static sf_status parse_command(int argc, char **argv, options *o) {
         .parser = parse_option,
         .args_doc = "RESULTS.h5 -o DIR\ncompare RESULTS RESULTS ... -o DIR",
         .doc =
-            "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, summary.json, "
+            "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, view.html, summary.json, "
             "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
             "motion compression.csv and .png instead of the acceleration. Open the drop in ParaView with paraview "
             "--script=pad_paraview.py, in that directory. The "
@@ -285,6 +296,7 @@ static sf_status parse_command(int argc, char **argv, options *o) {
     };
     argp_program_version_hook = print_version;
     *o = (options){.cfc = 1000,
+                   .view = 5,
                    .limits = SF_DEFAULT_LIMITS,
                    .compare = {.reference = {.cfc = NAN,
                                              .from = -INFINITY,
@@ -313,25 +325,11 @@ static sf_status parse_command(int argc, char **argv, options *o) {
 /* Every file that this program may write. The data of pad.xdmf are moved before it, and earlier ones (pad.h5
  * of earlier versions) removed after it. Without a name of the data yet, pad.xdmf stands for them. */
 static void name_output(job *j) {
-    const char *const names[] = {j->data,
-                                 "pad.xdmf",
-                                 "pad_paraview.py",
-                                 "pad.mp4",
-                                 "pad.gif",
-                                 "pad.png",
-                                 "history.csv",
-                                 "section.csv",
-                                 "reference.csv",
-                                 "compression.csv",
-                                 "compression.gp",
-                                 "compression.png",
-                                 "acceleration.csv",
-                                 "acceleration.gp",
-                                 "acceleration.png",
-                                 "report.html",
-                                 "summary.json",
-                                 "pad.h5",
-                                 NULL};
+    const char *const names[] = {
+        j->data,          "pad.xdmf",        "pad_paraview.py",  "pad.mp4",         "pad.gif",
+        "pad.png",        "history.csv",     "section.csv",      "reference.csv",   "compression.csv",
+        "compression.gp", "compression.png", "acceleration.csv", "acceleration.gp", "acceleration.png",
+        "view.html",      "report.html",     "summary.json",     "pad.h5",          NULL};
     static_assert(sizeof names == sizeof j->names, "as many as the job holds");
     memcpy(j->names, names, sizeof names);
     snprintf(j->data, sizeof j->data, "pad.xdmf");
@@ -361,7 +359,9 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
     const sf_summary summary = {
         o->results_path, o->compare.reference.path, &j->results, &j->figures, comparison, &j->verdict};
     const sf_report report = {&summary, j->command_line};
-    if (sf_report_write(&j->output, &report, err) != SF_OK ||
+    if (sf_browser_write(&j->output, &report, &j->xdmf, o->view, j->view_warning, sizeof j->view_warning,
+                         err) != SF_OK ||
+        sf_report_write(&j->output, &report, err) != SF_OK ||
         sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
         return err->status;
     sf_xdmf_remove_old(o->directory, j->data);
@@ -384,6 +384,8 @@ static void print_warnings(const job *j) {
         fprintf(stderr, "softfall-post: warning: %s\n", j->plot_warning);
     if (j->state_warning[0])
         fprintf(stderr, "softfall-post: warning: %s\n", j->state_warning);
+    if (j->view_warning[0])
+        fprintf(stderr, "softfall-post: warning: %s\n", j->view_warning);
 }
 
 static void print_files(const job *j) {
@@ -391,6 +393,7 @@ static void print_files(const job *j) {
         const char *name, *meaning;
     } files[] = {
         {"report.html", "a page to read or print, usually two sides of A4"},
+        {"view.html", "the drop to turn, cut and play in a browser"},
         {"summary.json", "the figures"},
         {"acceleration.png", "the curves and the HIC window"},
         {"acceleration.csv", "the filtered curve of a_max and HIC, from 5 ms before contact"},
