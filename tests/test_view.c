@@ -110,11 +110,11 @@ static void assert_works(const program_place *p, const char *folder, const char 
 }
 
 static void a_quarter_works_on_a_desktop_and_a_phone(void **state) {
-    assert_works(*state, "quarter", "quarter_results.h5", "900x640 390x844");
+    assert_works(*state, "quarter", "quarter_results.h5", "800x560 390x844");
 }
 
 static void a_compression_test_works(void **state) {
-    assert_works(*state, "pressed", "pressed_results.h5", "900x640");
+    assert_works(*state, "pressed", "pressed_results.h5", "800x560");
 }
 
 static void a_skin_alone_works(void **state) {
@@ -126,7 +126,7 @@ static void a_skin_alone_works(void **state) {
     assert_non_null(strstr(page, "its surface is shown"));
     assert_null(strstr(page, "\"cells\""));
     free(page);
-    assert_works(p, "skin", "quarter_results.h5", "900x640");
+    assert_works(p, "skin", "quarter_results.h5", "800x560");
 }
 
 /* A name that ends the script element, as a part of the path, and one frame. */
