@@ -82,15 +82,10 @@ static bool choose(page *p) {
     return p->frame_count >= (all < 2 ? all : 2);
 }
 
-/* Returns the peak's place among the frames that are there, -1: there is none. */
-static int64_t find_peak(const page *p) {
-    return p->shown.peak < p->made->frames ? p->shown.peak : -1;
-}
-
 /* Returns the place of the shown frame k among those that are there: they are evenly spread, but the one next
  * to the peak, not the first, is the peak; *peak is set if it is. */
 static int64_t frame_at(const page *p, int64_t k, bool *is_peak) {
-    int64_t all = p->made->frames, gaps = p->frame_count - 1, peak = find_peak(p);
+    int64_t all = p->made->frames, gaps = p->frame_count - 1, peak = p->shown.peak < all ? p->shown.peak : -1;
     int64_t nearest = peak > 0 && gaps > 0 ? (2 * peak * gaps + all - 1) / (2 * (all - 1)) : 0;
     if (peak > 0 && nearest == 0 && gaps > 0)
         nearest = 1;
@@ -108,6 +103,14 @@ static int64_t node_of(const page *p, int64_t i) {
 static void encode(unsigned char *to, uint32_t value, int bytes) {
     for (int b = 0; b < bytes; b++)
         to[b] = (unsigned char)(value >> 8 * b);
+}
+
+/* Writes every `step`-th of the numbers as an array. */
+static void put_numbers(page *p, const char *key, const double *value, int64_t count, int64_t step) {
+    sf_json_open(&p->json, key, '[');
+    for (int64_t i = 0; i < count; i += step)
+        sf_json_number(&p->json, NULL, value[i]);
+    sf_json_close(&p->json, ']');
 }
 
 /* Writes value[count][components] with the least value and the step of each component. */
@@ -129,14 +132,8 @@ static void put_quantised(page *p, const char *key, const double *value, int64_t
         encode(&p->coded[2 * i], (uint32_t)fmin(code, HIGHEST_CODE), 2);
     }
     sf_json_open(&p->json, key, '{');
-    sf_json_open(&p->json, "low", '[');
-    for (int c = 0; c < components; c++)
-        sf_json_number(&p->json, NULL, low[c]);
-    sf_json_close(&p->json, ']');
-    sf_json_open(&p->json, "step", '[');
-    for (int c = 0; c < components; c++)
-        sf_json_number(&p->json, NULL, step[c]);
-    sf_json_close(&p->json, ']');
+    put_numbers(p, "low", low, components, 1);
+    put_numbers(p, "step", step, components, 1);
     sf_json_base64(&p->json, "data", p->coded, 2 * (size_t)(count * components));
     sf_json_close(&p->json, '}');
 }
@@ -151,59 +148,52 @@ static void put_indices(page *p, const char *key, const int32_t *index, int64_t 
 
 /* ---- the parts of the facts ---- */
 
-static void put_verdict(page *p) {
+static void put_texts(page *p) {
     const sf_verdict *verdict = p->report->summary->verdict;
-    char title[SF_REPORT_TITLE_SIZE], line[SF_VERDICT_LINE_SIZE];
+    char title[SF_REPORT_TITLE_SIZE], line[SF_VERDICT_LINE_SIZE], foot[320];
     sf_report_title(p->results, title, sizeof title);
+    snprintf(foot, sizeof foot, "softfall-post %s (%s), from %.160s; drawn by WebGL 2, without a library",
+             SF_VERSION, SF_GIT_REVISION, p->report->summary->results_path);
     sf_json_text(&p->json, "title", title);
     sf_json_text(&p->json, "verdict", sf_verdict_phrase(verdict->grade));
     sf_json_text(&p->json, "kind", sf_report_kind(verdict->grade));
     sf_json_text(&p->json, "findings", sf_report_findings(verdict, line, sizeof line));
+    sf_json_text(&p->json, "foot", foot);
 }
 
-static void put_notes(page *p) {
+static void put_notes(page *p, bool planes_known) {
     const sf_results *r = p->results;
-    char text[256];
-    double place[2];
+    char few[160], skin[160];
+    snprintf(few, sizeof few,
+             "%lld of %lld frames are shown, so that the page has at most %.3g MB (softfall-post --view).",
+             (long long)p->frame_count, (long long)p->made->frames, p->bytes * 1e-6);
+    snprintf(skin, sizeof skin,
+             "Of the pad its surface is shown, so that the page has at most %.3g MB: a cut shows no inside.",
+             p->bytes * 1e-6);
+    const struct {
+        bool holds;
+        const char *text;
+    } notes[] = {{p->frame_count < p->made->frames, few},
+                 {!p->inside, skin},
+                 {!(p->made->fields & SF_FIELD_DISPLACEMENT),
+                  "The frames hold no displacement: the pad is shown undeformed."},
+                 {!planes_known,
+                  "Only the modelled part is shown: results.h5 does not say where the symmetry planes lie."}};
     sf_json_open(&p->json, "notes", '[');
-    if (p->frame_count < p->made->frames) {
-        snprintf(
-            text, sizeof text,
-            "%lld of %lld frames are shown, so that the page has at most %.3g MB (softfall-post --view).",
-            (long long)p->frame_count, (long long)p->made->frames, p->bytes * 1e-6);
-        sf_json_text(&p->json, NULL, text);
-    }
-    if (!p->inside) {
-        snprintf(
-            text, sizeof text,
-            "Of the pad its surface is shown, so that the page has at most %.3g MB: a cut shows no inside.",
-            p->bytes * 1e-6);
-        sf_json_text(&p->json, NULL, text);
-    }
-    if (!(p->made->fields & SF_FIELD_DISPLACEMENT))
-        sf_json_text(&p->json, NULL, "The frames hold no displacement: the pad is shown undeformed.");
-    if (!sf_axis_planes(r, place))
-        sf_json_text(
-            &p->json, NULL,
-            "Only the modelled part is shown: results.h5 does not say where the symmetry planes lie.");
+    for (size_t k = 0; k < sizeof notes / sizeof notes[0]; k++)
+        if (notes[k].holds)
+            sf_json_text(&p->json, NULL, notes[k].text);
     for (int k = 0; k < r->note_count; k++)
         sf_json_text(&p->json, NULL, r->notes[k]);
     sf_json_close(&p->json, ']');
-    snprintf(text, sizeof text, "softfall-post %s (%s), from %.160s; drawn by WebGL 2, without a library",
-             SF_VERSION, SF_GIT_REVISION, p->report->summary->results_path);
-    sf_json_text(&p->json, "foot", text);
 }
 
 static void put_scale(page *p) {
+    double colours[3 * SF_PICTURE_COLOURS];
+    for (int k = 0; k < 3 * SF_PICTURE_COLOURS; k++)
+        colours[k] = sf_picture_colours[k / 3][k % 3];
+    put_numbers(p, "colours", colours, 3 * SF_PICTURE_COLOURS, 1);
     sf_json_number(&p->json, "decades", sf_picture_decades);
-    sf_json_open(&p->json, "colours", '[');
-    for (int k = 0; k < SF_PICTURE_COLOURS; k++) {
-        sf_json_open(&p->json, NULL, '[');
-        for (int c = 0; c < 3; c++)
-            sf_json_integer(&p->json, NULL, sf_picture_colours[k][c]);
-        sf_json_close(&p->json, ']');
-    }
-    sf_json_close(&p->json, ']');
     sf_json_open(&p->json, "fields", '[');
     for (int k = 0; k < COLOURINGS; k++) {
         if (!(p->made->fields >> colourings[k].field & 1))
@@ -215,25 +205,6 @@ static void put_scale(page *p) {
         sf_json_bool(&p->json, "logarithmic", colourings[k].logarithmic);
         sf_json_close(&p->json, '}');
     }
-    sf_json_close(&p->json, ']');
-}
-
-static void put_planes(page *p) {
-    double place[2], axis[2];
-    sf_axis_planes(p->results, place);
-    sf_axis_find(p->results, axis);
-    sf_json_open(&p->json, "mirrors", '[');
-    for (int k = 0; k < 2; k++)
-        if (isfinite(place[k])) {
-            sf_json_open(&p->json, NULL, '[');
-            sf_json_integer(&p->json, NULL, k);
-            sf_json_number(&p->json, NULL, place[k]);
-            sf_json_close(&p->json, ']');
-        }
-    sf_json_close(&p->json, ']');
-    sf_json_open(&p->json, "axis", '[');
-    for (int k = 0; k < 2; k++)
-        sf_json_number(&p->json, NULL, axis[k]);
     sf_json_close(&p->json, ']');
 }
 
@@ -280,13 +251,9 @@ static void put_missile(page *p) {
     sf_json_open(&p->json, "missile", '{');
     put_quantised(p, "position", r->surface_position, r->surface_node_count, 3);
     put_indices(p, "triangle", r->surface_triangle, 3 * r->surface_triangle_count);
-    if (r->sphere_radius > 0) {
-        sf_json_open(&p->json, "sphere", '[');
-        for (int d = 0; d < 3; d++)
-            sf_json_number(&p->json, NULL, r->sphere_centre[d]);
-        sf_json_number(&p->json, NULL, r->sphere_radius);
-        sf_json_close(&p->json, ']');
-    }
+    const double *c = r->sphere_centre, sphere[4] = {c[0], c[1], c[2], r->sphere_radius};
+    if (r->sphere_radius > 0)
+        put_numbers(p, "sphere", sphere, 4, 1);
     sf_json_close(&p->json, '}');
 }
 
@@ -304,28 +271,19 @@ static void put_curve(page *p) {
         snprintf(label, sizeof label, "%s (g), CFC %.0f%s", f->acceleration, f->cfc, f->passed);
     sf_json_open(&p->json, "curve", '{');
     sf_json_text(&p->json, "label", label);
-    for (int k = 0; k < 2; k++) {
-        sf_json_open(&p->json, k ? "value" : "time", '[');
-        for (int64_t i = 0; i < count; i += step)
-            sf_json_number(&p->json, NULL, k ? y[i] : x[i]);
-        sf_json_close(&p->json, ']');
-    }
+    put_numbers(p, "time", x, count, step);
+    put_numbers(p, "value", y, count, step);
     sf_json_close(&p->json, '}');
 }
 
 /* ---- frames ---- */
 
-/* The places of the origin and of the unit points of the missile at rest. */
+/* Writes the places of the origin and of the unit points of the missile at rest. */
 static void put_motion(page *p, const sf_frame_head *head) {
-    sf_json_open(&p->json, "missile", '[');
-    for (int k = 0; k < 4; k++) {
-        const double point[3] = {k == 1, k == 2, k == 3};
-        double place[3];
-        sf_results_place(p->results, head, point, place);
-        for (int d = 0; d < 3; d++)
-            sf_json_number(&p->json, NULL, place[d]);
-    }
-    sf_json_close(&p->json, ']');
+    double place[4][3];
+    for (int k = 0; k < 4; k++)
+        sf_results_place(p->results, head, (const double[3]){k == 1, k == 2, k == 3}, place[k]);
+    put_numbers(p, "missile", place[0], 12, 1);
 }
 
 static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
@@ -375,23 +333,23 @@ static sf_status put_frames(page *p, sf_error *err) {
 
 /* ---- the page ---- */
 
-static int64_t largest(int64_t a, int64_t b) {
-    return a > b ? a : b;
-}
-
 static sf_status write_facts(page *p, sf_error *err) {
     const sf_results *r = p->results;
-    int64_t numbers = largest(largest(3 * p->node_count, 3 * r->surface_node_count), 4 * p->skin.face_count);
-    numbers = largest(largest(numbers, r->cell_nnz), 3 * r->surface_triangle_count);
+    double place[2], axis[2];
+    bool known = sf_axis_planes(r, place);
+    int64_t numbers = 3 * (p->node_count + r->surface_node_count + r->surface_triangle_count) +
+                      4 * p->skin.face_count + r->cell_nnz; /* more than the longest array has */
     p->value = sf_alloc(err, 3 * (unsigned long)p->node_count, sizeof *p->value, "view.html");
     p->coded = sf_alloc(err, (unsigned long)numbers, 4, "view.html");
     if (err->status != SF_OK)
         return err->status;
+    sf_axis_find(r, axis);
     sf_json_open(&p->json, NULL, '{');
-    put_verdict(p);
-    put_notes(p);
+    put_texts(p);
+    put_notes(p, known);
     put_scale(p);
-    put_planes(p);
+    put_numbers(p, "planes", place, 2, 1);
+    put_numbers(p, "axis", axis, 2, 1);
     put_skin(p);
     put_cells(p);
     put_missile(p);
