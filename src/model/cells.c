@@ -63,12 +63,9 @@ static int by_node(const void *a, const void *b) {
     return (*x > *y) - (*x < *y);
 }
 
+/* The order is that of the bytes: the triangles of model.h5, and with them the bits of a run, follow it. */
 static int by_nodes(const void *a, const void *b) {
-    const face *x = a, *y = b;
-    for (int k = 0; k < 4; k++)
-        if (x->sorted[k] != y->sorted[k])
-            return x->sorted[k] < y->sorted[k] ? -1 : 1;
-    return 0;
+    return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
 }
 
 /* Returns the number of faces of all cells; writes them unless `out` is NULL. */

@@ -7,68 +7,27 @@
 
 #include "base/grid.h"
 #include "base/mat3.h"
-#include "pre/mesh/mesh.h"
+#include "model/cells.h"
 #include "pre/mesh/missile_shape.h"
 
 /* ---- the pad's surface ---- */
 
-/* A face of a cell: its nodes as they stand in the cell, and ascending. */
-typedef struct face {
-    int32_t node[4], sorted[4]; /* [3] is -1 of a triangle, in `sorted` [0] */
-} face;
-
-static int by_nodes(const void *a, const void *b) {
-    return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
-}
-
-static void sort4(int32_t v[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int k = i; k > 0 && v[k] < v[k - 1]; k--) {
-            int32_t swap = v[k];
-            v[k] = v[k - 1];
-            v[k - 1] = swap;
-        }
-}
-
-static int64_t list_faces(const sf_model *m, face *list) {
-    int64_t count = 0;
-    for (int64_t c = 0; c < m->cell_count; c++) {
-        const sf_cell_topology *cell = sf_cell_topology_of(m->cell_type[c]);
-        for (int f = 0; f < cell->faces; f++) {
-            face *out = &list[count++];
-            for (int k = 0; k < 4; k++)
-                out->node[k] = k < cell->face_size[f] ? m->cell_node[m->cell_ptr[c] + cell->face[f][k]] : -1;
-            memcpy(out->sorted, out->node, sizeof out->sorted);
-            sort4(out->sorted);
-        }
-    }
-    qsort(list, (size_t)count, sizeof *list, by_nodes);
-    return count;
-}
-
 sf_status sf_skin_triangles(const sf_model *m, int64_t *triangles, int32_t **out, sf_error *err) {
-    int64_t most = 0;
+    const sf_cells cells = {m->node_count, m->cell_count, m->position,
+                            m->cell_type,  m->cell_ptr,   m->cell_node};
+    sf_skin_faces skin;
     *triangles = 0;
-    for (int64_t c = 0; c < m->cell_count; c++)
-        most += sf_cell_topology_of(m->cell_type[c])->faces;
-    face *list = sf_alloc(err, (unsigned long)most, sizeof *list, "faces of the pad");
-    int64_t count = list ? list_faces(m, list) : 0, single = 0;
-    for (int64_t i = 0; i < count; i++) { /* two cells share an inner face */
-        bool paired = i + 1 < count && by_nodes(&list[i], &list[i + 1]) == 0;
-        if (!paired)
-            list[single++] = list[i];
-        i += paired;
-    }
-    int32_t *node = *out = sf_alloc(err, 6 * (unsigned long)single, sizeof *node, "surface of the pad");
-    for (int64_t i = 0; node && i < single; i++) {
-        const int32_t *n = list[i].node;
-        memcpy(&node[3 * (*triangles)++], n, 3 * sizeof *n);
-        if (n[3] >= 0) {
-            const int32_t half[3] = {n[0], n[2], n[3]};
-            memcpy(&node[3 * (*triangles)++], half, sizeof half);
+    sf_skin_faces_find(&cells, &skin, err);
+    int32_t *node = *out =
+        sf_alloc(err, 6 * (unsigned long)skin.face_count, sizeof *node, "surface of the pad");
+    for (int64_t i = 0; err->status == SF_OK && i < skin.face_count; i++)
+        for (int half = 0; half < (skin.face[i][3] < 0 ? 1 : 2); half++) {
+            const int corner[3] = {0, 1 + half, 2 + half};
+            for (int k = 0; k < 3; k++)
+                node[3 * *triangles + k] = (int32_t)skin.node[skin.face[i][corner[k]]];
+            (*triangles)++;
         }
-    }
-    free(list);
+    sf_skin_faces_free(&skin);
     return err->status;
 }
 
