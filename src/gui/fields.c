@@ -455,8 +455,7 @@ void sf_fields_mark(sf_fields *fields, const char *sentence) {
 }
 
 static void lock_unknown(void *user, const char *name) {
-    static const char *const ours[] = {"ONELAB", "0Modules/", "Gmsh/",    "1Drop/",
-                                       "2Case/", "3Checks/",  "4Results/"};
+    static const char *const ours[] = {"ONELAB", "0Modules/", "Gmsh/", "1Drop/", "2Case/", "3Checks/"};
     const sf_fields *fields = user;
     for (size_t k = 0; k < sizeof ours / sizeof ours[0]; k++)
         if (strncmp(name, ours[k], strlen(ours[k])) == 0)

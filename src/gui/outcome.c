@@ -84,23 +84,24 @@ void sf_checks_progress(const char *text, char *out, size_t size) {
 
 static const char GOOD[] = "LightGreen", FAIR[] = "Khaki", BAD[] = "LightCoral";
 
-static const char *const names[] = {"4Results/1verdict",
-                                    "4Results/2a_max",
-                                    "4Results/3HIC",
-                                    "4Results/4rebound",
-                                    "4Results/5largest indentation",
-                                    "4Results/6largest local strain"};
+/* Below the buttons, at all times: a tree that grows would move what the user is about to click. */
+static const char *const names[] = {"1Drop/70verdict",
+                                    "1Drop/71a_max",
+                                    "1Drop/72HIC",
+                                    "1Drop/73rebound",
+                                    "1Drop/74largest indentation",
+                                    "1Drop/75largest local strain"};
 enum { VERDICT, A_MAX, HIC, REBOUND, INDENTATION, STRAIN, ENTRIES };
 enum { FILTER = 1000 }; /* CFC of curve and figures */
-
-void sf_outcome_clear(void) {
-    for (int k = 0; k < ENTRIES; k++)
-        sf_window_remove(names[k]);
-}
 
 static void put(int which, const char *text, const char *colour) {
     sf_window_put(&(sf_entry){
         .name = names[which], .kind = SF_ENTRY_SHOWN, .text = text, .help = text, .colour = colour});
+}
+
+void sf_outcome_clear(void) {
+    for (int k = 0; k < ENTRIES; k++)
+        put(k, "–", NULL);
 }
 
 static const char *limit_colour(const sf_limit *limit) {
@@ -139,6 +140,7 @@ sf_status sf_outcome_show(const sf_results *r, char *line, size_t size, sf_error
     sf_figures f = {0};
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS;
+    sf_outcome_clear();
     if (sf_figures_compute(r, FILTER, &f, err) == SF_OK) {
         sf_verdict_compute(r, &f, &limits, &verdict);
         sf_verdict_line(&verdict, line, size);

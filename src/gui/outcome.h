@@ -32,10 +32,10 @@ void sf_checks_progress(const char *text, char *out, size_t size);
 
 /* The figures of a run in the tree, by the functions of softfall-post. */
 
-/* Puts them into the branch Results, coloured by pass and fail; returns the sentence of the verdict in
+/* Puts them into the rows below the buttons, coloured by pass and fail; returns the sentence of the verdict in
  * `line`. A run that has not ended or never touched has what is known. */
 sf_status sf_outcome_show(const sf_results *results, char *line, size_t size, sf_error *err);
-/* Empties the branch. */
+/* Puts a dash into each row. */
 void sf_outcome_clear(void);
 /* The curve of the figures so far, filtered as they are; the raw one, and its title says so, of a run that
  * has no figures yet. */

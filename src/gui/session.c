@@ -41,7 +41,7 @@ static void show_buttons(void) {
         {"1Drop/1Mesh", "mesh", "mesh the geometry and check the model (softfall-pre)"},
         {"1Drop/2Run", "run", "simulate the drop; one that was stopped goes on"},
         {"1Drop/3Stop", "stop", "end the run after the present step; Run goes on from there"},
-        {"1Drop/4Report", "report", "open report.html"},
+        {"1Drop/4Report", "report", "open report.html and view.html"},
         {"1Drop/5ParaView", "paraview", "open the frames in ParaView"},
         {"1Drop/6Save case", "save",
          "write the case with its geometry and material into a new folder of its own"},
@@ -49,6 +49,7 @@ static void show_buttons(void) {
     for (size_t k = 0; k < sizeof button / sizeof button[0]; k++)
         sf_window_put(&(sf_entry){
             .name = button[k][0], .kind = SF_ENTRY_BUTTON, .text = button[k][1], .help = button[k][2]});
+    sf_window_branch("0Modules", false); /* its list of pictures would grow above the buttons */
 }
 
 /* The case's folder tells more than its own name. */
@@ -256,7 +257,7 @@ static void show_results(sf_session *s, bool whole) {
 /* Removes the results of an earlier run from the folder, so that they do not stand beside those of the new
  * run. */
 static void remove_results(sf_session *s) {
-    static const char *const products[] = {"report.html", "pad.xdmf"};
+    static const char *const products[] = {"report.html", "view.html", "pad.xdmf"};
     char path[SF_RUN_PATH_SIZE + 64];
     sf_folder_remove_file(s->at.figures);
     sf_folder_remove_file(s->at.results);
@@ -331,7 +332,7 @@ static void show_finished(sf_session *s) {
     s->activity = SF_DONE;
     show_folder(s);
     show_results(s, true);
-    tell(s, false, "done earlier with the same values: see Results");
+    tell(s, false, "done earlier with the same values");
 }
 
 /* ---- the end of a program ---- */
@@ -351,7 +352,7 @@ static void tell_done(sf_session *s) {
         tell(s, false, "saved: softfall-pre and softfall-gui take the case.cfg of that folder");
         break;
     case SF_DONE:
-        tell(s, false, "done: see Results");
+        tell(s, false, "done");
         break;
     default:
         break;
@@ -497,7 +498,11 @@ static void leave(sf_session *s, const char *program, const char *argument) {
 
 static void open_report(sf_session *s) {
     char path[SF_RUN_PATH_SIZE + 64];
-    if (find_product(s, "report.html", path, sizeof path))
+    if (!find_product(s, "report.html", path, sizeof path))
+        return;
+    leave(s, "xdg-open", path);
+    snprintf(path, sizeof path, "%s/report/view.html", s->at.path);
+    if (is_there(path)) /* a large model may have none */
         leave(s, "xdg-open", path);
 }
 

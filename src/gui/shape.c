@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/shape.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,23 +19,56 @@ static sf_status find_skin(const sf_cells *c, sf_shape *s, sf_error *err) {
     return err->status;
 }
 
-static sf_status take_missile(int64_t nodes, const double *position, int64_t triangles,
-                              const int32_t *triangle, sf_shape *s, sf_error *err) {
-    unsigned long n = 3 * (unsigned long)nodes;
-    s->missile.position = sf_alloc(err, n, sizeof(double), "the missile's picture");
-    s->missile_position = sf_alloc(err, n, sizeof(double), "the missile's picture");
+/* The missile's triangles at t = 0, and the exact sphere that contact takes for them. */
+typedef struct missile_surface {
+    int64_t triangles;
+    const double *position;
+    const int32_t *triangle;
+    double radius; /* m; 0 or NaN: the triangles are the missile */
+    const double *centre;
+} missile_surface;
+
+/* The point `i` and `j` parts of `parts` from the first corner of a triangle to the others, on the sphere if
+ * there is one. */
+static void place_point(const missile_surface *m, int64_t triangle, int parts, int i, int j, double out[3]) {
+    const int share[3] = {parts - i - j, i, j};
+    double length = 0;
+    for (int d = 0; d < 3; d++) {
+        out[d] = 0;
+        for (int c = 0; c < 3; c++)
+            out[d] += share[c] * m->position[3 * (int64_t)m->triangle[3 * triangle + c] + d] / parts;
+        length += m->radius > 0 ? (out[d] - m->centre[d]) * (out[d] - m->centre[d]) : 0;
+    }
+    for (int d = 0; d < 3 && length > 0; d++)
+        out[d] = m->centre[d] + m->radius / sqrt(length) * (out[d] - m->centre[d]);
+}
+
+/* Each triangle of a sphere becomes `parts` x `parts` smaller ones: the foam would be seen through coarse
+ * ones. */
+static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *err) {
+    int parts = m->radius > 0 ? 4 : 1;
+    int64_t pieces = m->triangles * parts * parts;
+    s->missile.position = sf_alloc(err, 9 * (unsigned long)pieces, sizeof(double), "the missile's picture");
+    s->missile_position = sf_alloc(err, 9 * (unsigned long)pieces, sizeof(double), "the missile's picture");
     s->missile.face =
-        sf_alloc(err, 4 * (unsigned long)triangles, sizeof *s->missile.face, "the missile's picture");
+        sf_alloc(err, 4 * (unsigned long)pieces, sizeof *s->missile.face, "the missile's picture");
     if (err->status != SF_OK)
         return err->status;
-    s->missile.node_count = nodes;
-    s->missile.face_count = triangles;
-    for (unsigned long k = 0; k < n; k++) {
-        s->missile_position[k] = position[k];
-        s->missile.position[k] = position[k] / s->unit;
-    }
-    for (int64_t k = 0; k < 4 * triangles; k++)
-        s->missile.face[k] = k % 4 == 3 ? -1 : triangle[3 * (k / 4) + k % 4];
+    double *to = s->missile_position;
+    for (int64_t t = 0; t < m->triangles; t++)
+        for (int i = 0; i < parts; i++)
+            for (int j = 0; i + j < parts; j++)
+                for (int turned = 0; turned < (i + j + 1 < parts ? 2 : 1); turned++, to += 9) {
+                    place_point(m, t, parts, i + 1, j, to);
+                    place_point(m, t, parts, i + turned, j + 1, to + 3);
+                    place_point(m, t, parts, i, j + turned, to + 6);
+                }
+    s->missile.node_count = 3 * pieces;
+    s->missile.face_count = pieces;
+    for (int64_t k = 0; k < 9 * pieces; k++)
+        s->missile.position[k] = s->missile_position[k] / s->unit;
+    for (int64_t k = 0; k < 4 * pieces; k++)
+        s->missile.face[k] = k % 4 == 3 ? -1 : (int32_t)(3 * (k / 4) + k % 4);
     return SF_OK;
 }
 
@@ -42,9 +76,10 @@ sf_status sf_shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_erro
     const sf_cells cells = {m->node_count, m->cell_count, m->position,
                             m->cell_type,  m->cell_ptr,   m->cell_node};
     *s = (sf_shape){.unit = unit};
-    if (find_skin(&cells, s, err) != SF_OK ||
-        take_missile(m->surface_node_count, m->surface_position, m->surface_triangle_count,
-                     m->surface_triangle, s, err) != SF_OK)
+    const missile_surface missile = {m->surface_triangle_count, m->surface_position, m->surface_triangle,
+                                     m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0,
+                                     m->missile.sphere_centre};
+    if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
         sf_shape_free(s);
     return err->status;
 }
@@ -53,9 +88,9 @@ sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_
     const sf_cells cells = {r->node_count, r->cell_count, r->position,
                             r->cell_type,  r->cell_ptr,   r->cell_node};
     *s = (sf_shape){.unit = unit};
-    if (find_skin(&cells, s, err) != SF_OK ||
-        take_missile(r->surface_node_count, r->surface_position, r->surface_triangle_count,
-                     r->surface_triangle, s, err) != SF_OK)
+    const missile_surface missile = {r->surface_triangle_count, r->surface_position, r->surface_triangle,
+                                     r->sphere_radius, r->sphere_centre};
+    if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
         sf_shape_free(s);
     return err->status;
 }

@@ -73,7 +73,7 @@ cat >/tmp/drop.script <<'TEXT'
 wait ready 120
 press run
 wait done 900
-print 4Results/2a_max
+print 1Drop/71a_max
 TEXT
 cat >/tmp/look <<'TEXT'
 softfall-gui "$1" --script /tmp/drop.script >figures.txt &
@@ -95,7 +95,7 @@ as_user xvfb-run -a -s "-screen 0 1280x900x24" sh /tmp/look "$case" >out/window.
 cp /home/drop/empty/window.png out/
 [ "$(stat -c %s out/window.png)" -gt 5000 ] || fail "the window is empty: out/window.png"
 a_max=$(sed -n 's/^ *"a_max_g": \([^,]*\),*$/\1/p' /home/drop/empty/out/summary.json | head -n 1)
-grep -q "^4Results/2a_max = $a_max g" /home/drop/empty/figures.txt ||
+grep -q "^1Drop/71a_max = $a_max g" /home/drop/empty/figures.txt ||
     fail "a_max of the window: $(cat /home/drop/empty/figures.txt); of the command line: $a_max"
 as_user softfall-pre /usr/share/softfall/examples/compression/case.cfg -o example.h5 >>out/demo.txt # from where it is
 [ -z "$(find /usr/share/softfall -newer out/files -print -quit)" ] || fail "something was written into /usr/share/softfall"

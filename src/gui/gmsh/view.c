@@ -3,6 +3,7 @@
 
 #include "gui/gmsh/window.h"
 #include <gmshc.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,11 +12,21 @@
 /* The views of gmsh have fixed tags: a body has one of displacements and one of the values that colour it. */
 enum { MOVES = 101, VALUES = 201 };
 /* gmsh's numbers of kinds of elements, of views, of ranges and of colours. */
-enum { TRIANGLE = 2, QUADRANGLE = 3, DISPLACEMENT = 5, GRAPH = 4, TOP_RIGHT = 3, OWN_RANGE = 2, GREY = 9 };
+enum {
+    TRIANGLE = 2,
+    QUADRANGLE = 3,
+    DISPLACEMENT = 5,
+    GRAPH = 4,
+    TOP_RIGHT = 3,
+    OWN_RANGE = 2,
+    GREY = 9,
+    LOGARITHMIC = 2
+};
 
 /* A model of gmsh that is not shown holds the mesh of a body. It stays when its picture goes, until the
  * geometry is read anew: gmsh's window may still point to what it held. */
 static char models[SF_PICTURES][48];
+static double largest_value; /* of the pad, in all frames so far */
 
 static void name_model(sf_picture which) {
     static int serial;
@@ -101,7 +112,7 @@ void sf_view_remove(sf_picture which) {
 }
 
 /* gmsh forgets the options of a view with it. */
-static void dress(sf_picture which) {
+static void dress(sf_picture which, double largest) {
     int ierr = 0, moves = MOVES + (int)which, values = VALUES + (int)which;
     bool grey = which == SF_PICTURE_MISSILE;
     set_option(moves, "VectorType", DISPLACEMENT);
@@ -109,9 +120,14 @@ static void dress(sf_picture which) {
     set_option(moves, "ExternalView", grey ? -1 : gmshViewGetIndex(values, &ierr));
     set_option(moves, "ShowScale", !grey);
     set_option(moves, "Light", 1);
-    set_option(moves, "ShowElement", 1);
+    set_option(moves, "ShowElement", !grey);
     set_option(moves, "ShowTime", grey ? 0 : 1);
     if (!grey) {
+        set_option(moves, "ScaleType", LOGARITHMIC);
+        set_option(moves, "RangeType", OWN_RANGE);
+        set_option(moves, "CustomMin", largest / 300);
+        set_option(moves, "CustomMax", largest);
+        set_option(moves, "SaturateValues", 1);
         set_option(values, "Visible", 0);
         return;
     }
@@ -135,7 +151,8 @@ sf_status sf_view_begin(sf_picture which, const char *title, const sf_body *body
     if (which == SF_PICTURE_PAD)
         gmshViewAdd("von Mises stress [kPa]", VALUES + (int)which, &ierr);
     gmshViewAdd(title, MOVES + (int)which, &ierr);
-    dress(which);
+    largest_value = 0;
+    dress(which, 1);
     return err->status;
 }
 
@@ -153,8 +170,10 @@ void sf_view_add(sf_picture which, int frame, double time, const sf_body *body, 
     if (tag)
         gmshViewAddHomogeneousModelData(MOVES + (int)which, frame, models[which], "NodeData", tag, count,
                                         (double *)displacement, 3 * count, time, 3, 0, &ierr);
+    for (size_t k = 0; k < count && value; k++)
+        largest_value = fmax(largest_value, value[k]);
     free(tag);
-    dress(which);
+    dress(which, largest_value > 0 ? largest_value : 1);
 }
 
 void sf_view_show_frame(int frame) {

@@ -148,6 +148,7 @@ static void look_from_the_side(void) {
 }
 
 sf_status sf_window_start(sf_error *err) {
+    int ierr = 0;
     if (initialize() != 0)
         return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot be started");
     write_nothing();
@@ -157,6 +158,8 @@ sf_status sf_window_start(sf_error *err) {
     sf_window_option("General.GraphicsWidth", 1240);
     sf_window_option("General.GraphicsHeight", 900);
     sf_window_option("Geometry.PointSize", 0);
+    gmshOptionSetString("General.GraphicsFontEngine", "StringTexture",
+                        &ierr); /* the other one drops blanks */
     return SF_OK;
 }
 
