@@ -87,6 +87,14 @@ static void warnings_go_to_the_sink_and_errors_to_the_caller(void **state) {
     softfall_drop_free(NULL);
 }
 
+static double figure(const softfall_figures *figures, const char *key) {
+    softfall_error error;
+    double value = 0;
+    if (softfall_figure(figures, key, &value, &error) != SOFTFALL_OK)
+        fail_msg("%s", error.text);
+    return value;
+}
+
 static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     const place *p = *state;
     softfall_error error;
@@ -102,7 +110,7 @@ static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     softfall_figures_list(theirs, &same);
     assert_true(count > 40 && same == count);
     for (int k = 0; k < count; k++) {
-        double a = softfall_figure(ours, list[k].name), b = softfall_figure(theirs, list[k].name);
+        double a = figure(ours, list[k].name), b = figure(theirs, list[k].name);
         bool of_peak = strcmp(list[k].name, "local_collapse") == 0 ||
                        strcmp(list[k].name, "energy_beyond_data") == 0 ||
                        strcmp(list[k].name, "below_anvil_mm") == 0;
@@ -113,19 +121,46 @@ static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     }
     program_succeed(&p->folder, "post", "results.h5 -o out"); /* in the units of summary.json */
     for (int k = 0; k < count; k++) {
-        double a = softfall_figure(theirs, list[k].name),
+        double a = figure(theirs, list[k].name),
                b = program_file_number(&p->folder, "out/summary.json", list[k].name);
         if (isfinite(a) && isfinite(b) && !(fabs(a - b) <= 1e-8 * fabs(b)))
             fail_msg("%s is %.12g in the library and %.12g in summary.json", list[k].name, a, b);
     }
-    assert_true(softfall_figure(ours, "hic") > 0 && softfall_figure(ours, "a_max_g") > 0);
-    assert_true(softfall_figure(ours, "rebounded") == 1);
-    assert_true(isnan(softfall_figure(ours, "nodes")));
+    assert_true(figure(ours, "hic") > 0 && figure(ours, "a_max_g") > 0);
+    assert_true(figure(ours, "rebounded") == 1);
+    double value = 1;
+    assert_int_equal(softfall_figure(ours, "nodes", &value, &error), SOFTFALL_INPUT);
+    assert_true(value == 1 && strstr(error.text, "there is no figure \"nodes\""));
     assert_int_equal(softfall_drop_figures(p->drop, 100, &none, &error), SOFTFALL_INPUT);
     assert_null(none);
     softfall_figures_free(ours);
     softfall_figures_free(theirs);
     softfall_figures_free(NULL);
+}
+
+/* A half sine of 100 g over 20 ms at 10 kHz: the long window takes the part above 3/5 of its mean. */
+static void curves_of_the_host_are_evaluated_and_filtered(void **state) {
+    (void)state;
+    enum { COUNT = 201 };
+    softfall_error error;
+    double time[COUNT], value[COUNT], filtered[COUNT], hic, t1, t2, short_hic;
+    for (int i = 0; i < COUNT; i++) {
+        time[i] = 1e-4 * i;
+        value[i] = 100 * sin(M_PI * i / (COUNT - 1));
+    }
+    assert_int_equal(softfall_hic(time, value, COUNT, INFINITY, &hic, &t1, &t2, &error), SOFTFALL_OK);
+    /* Closed form: 0.4146 T a^2.5 with (t2 - t1) = 0.6 T, about. */
+    assert_true(fabs(hic / (0.02 * pow(100, 2.5)) - 0.4146) < 1e-3 && fabs(t1 + t2 - 0.02) < 1e-6);
+    assert_int_equal(softfall_hic(time, value, COUNT, 5e-3, &short_hic, NULL, NULL, &error), SOFTFALL_OK);
+    assert_true(short_hic < hic);
+    assert_int_equal(softfall_cfc(time, value, COUNT, 60, filtered, &error), SOFTFALL_OK);
+    assert_true(filtered[100] < 100 && filtered[100] > 90);
+    assert_int_equal(softfall_cfc(time, value, COUNT, 100, filtered, &error), SOFTFALL_INPUT);
+    assert_int_equal(softfall_cfc(time, value, 1, 60, filtered, &error), SOFTFALL_INPUT);
+    assert_int_equal(softfall_hic(time, value, COUNT, 0, &hic, NULL, NULL, &error), SOFTFALL_INPUT);
+    time[7] = time[6];
+    assert_int_equal(softfall_hic(time, value, COUNT, 1, &hic, NULL, NULL, &error), SOFTFALL_INPUT);
+    assert_true(isnan(hic) && strlen(error.text) > 10);
 }
 
 /* Steps taken one by one, from a model that was written and read, are those of the run. */
@@ -216,6 +251,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(warnings_go_to_the_sink_and_errors_to_the_caller),
         cmocka_unit_test(the_programs_compute_the_same_figures_bit_for_bit),
+        cmocka_unit_test(curves_of_the_host_are_evaluated_and_filtered),
         cmocka_unit_test(a_drop_can_be_stepped_observed_and_stopped),
         cmocka_unit_test(an_observer_can_stop_a_run),
         cmocka_unit_test(fields_are_those_of_the_frames),

@@ -81,6 +81,9 @@ SOFTFALL_API softfall_status softfall_case_read(const char *path, const char *co
                                                 const softfall_sink *sink, softfall_case **out,
                                                 softfall_error *error);
 SOFTFALL_API void softfall_case_free(softfall_case *c);
+/* The values of the case: a line for each key with its name, value as --set takes it, value in SI units, and
+ * "given" or "default", between blanks; owned by the case. */
+SOFTFALL_API const char *softfall_case_parameters(const softfall_case *c);
 
 /* Meshes the geometry of the case and builds the model. A case can be built once; afterwards it can only be
  * freed. */
@@ -187,8 +190,23 @@ SOFTFALL_API void softfall_figures_free(softfall_figures *figures);
 
 /* The list of figures [count]: name (the key) and description; the unit stands in the key. */
 SOFTFALL_API const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count);
-/* NaN also if there is no such figure. */
-SOFTFALL_API double softfall_figure(const softfall_figures *figures, const char *key);
+/* Sets `value`, NaN if the run does not define the figure. SOFTFALL_INPUT: there is no such figure. */
+SOFTFALL_API softfall_status softfall_figure(const softfall_figures *figures, const char *key, double *value,
+                                             softfall_error *error);
+
+/* ---- Curves of your own ---- */
+
+/* Curves [count] are piecewise linear over `time`, in s, ascending. */
+
+/* Head injury criterion of a deceleration in g, with windows of at most `window` s (INFINITY: no limit), and
+ * the window where it is reached, in s: NaN if the curve never decelerates. `t1` and `t2` may be NULL. */
+SOFTFALL_API softfall_status softfall_hic(const double *time, const double *deceleration, int64_t count,
+                                          double window, double *hic, double *t1, double *t2,
+                                          softfall_error *error);
+/* Values of the curve filtered with a channel frequency class, at the same times, as softfall-post filters a
+ * measured curve: at its own rate if that is uniform. `filtered` [count] belongs to the caller. */
+SOFTFALL_API softfall_status softfall_cfc(const double *time, const double *value, int64_t count,
+                                          double filter, double *filtered, softfall_error *error);
 
 #ifdef __cplusplus
 }

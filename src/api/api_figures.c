@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figures of a drop or of a results file, by the one function that softfall-post calls. */
+/* The figures of a drop, of a results file or of a curve, by the functions that softfall-post calls. */
 #include "model/flight.h"
 #include "api/api_drop.h"
 
@@ -105,9 +105,53 @@ const softfall_quantity *softfall_figures_list(const softfall_figures *figures, 
     return figures->figure;
 }
 
-double softfall_figure(const softfall_figures *figures, const char *key) {
-    for (int k = 0; k < figures->count; k++)
-        if (strcmp(figures->figure[k].name, key) == 0)
-            return figures->value[k];
-    return NAN;
+softfall_status softfall_figure(const softfall_figures *figures, const char *key, double *value,
+                                softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    int k = 0;
+    while (k < figures->count && strcmp(figures->figure[k].name, key) != 0)
+        k++;
+    if (k < figures->count)
+        *value = figures->value[k];
+    else
+        SF_FAIL(&err, SF_ERR_INPUT, "there is no figure \"%.80s\"; softfall_figures_list has their keys",
+                key);
+    return softfall_return(&err, error);
+}
+
+/* Curves of the host. The arrays are read only. */
+
+static sf_series borrow(const double *time, const double *value, int64_t count) {
+    return (sf_series){.count = count, .time = (double *)time, .value = (double *)value};
+}
+
+softfall_status softfall_hic(const double *time, const double *deceleration, int64_t count, double window,
+                             double *hic, double *t1, double *t2, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    const sf_series curve = borrow(time, deceleration, count);
+    sf_hic found = {0};
+    if (!(window > 0))
+        SF_FAIL(&err, SF_ERR_INPUT, "window: %g s is not above 0", window);
+    else if (sf_series_check(&curve, "the deceleration", &err) == SF_OK)
+        sf_hic_evaluate(&curve, window, &found, &err);
+    *hic = err.status == SF_OK ? found.value : NAN;
+    if (t1)
+        *t1 = found.t1;
+    if (t2)
+        *t2 = found.t2;
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_cfc(const double *time, const double *value, int64_t count, double filter,
+                             double *filtered, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    const sf_series curve = borrow(time, value, count);
+    sf_series made = {0};
+    if (check_filter(filter, &err) == SF_OK &&
+        sf_series_check(&curve, "the curve to filter", &err) == SF_OK &&
+        sf_signal_filter(&curve, filter, &made, &err) == SF_OK)
+        for (int64_t i = 0; i < count; i++)
+            filtered[i] = sf_series_at(&made, time[i]);
+    sf_series_free(&made);
+    return softfall_return(&err, error);
 }

@@ -210,6 +210,32 @@ done:
     return err->status;
 }
 
+/* The samples on their own uniform clock, if written times that are rounded are all that speaks against it.
+ */
+static bool take_uniform(const sf_series *raw, sf_series *uniform, sf_error *err) {
+    static const double OFF = 0.05; /* of a step: a time that is rounded */
+    double step = (raw->time[raw->count - 1] - raw->time[0]) / (double)(raw->count - 1);
+    for (int64_t i = 0; i < raw->count; i++)
+        if (fabs(raw->time[i] - raw->time[0] - (double)i * step) > OFF * step)
+            return false;
+    if (sf_series_create(raw->count, uniform, err) != SF_OK)
+        return true;
+    for (int64_t i = 0; i < raw->count; i++)
+        uniform->time[i] = raw->time[0] + (double)i * step;
+    memcpy(uniform->value, raw->value, (size_t)raw->count * sizeof(double));
+    return true;
+}
+
+sf_status sf_signal_filter(const sf_series *raw, double cfc, sf_series *filtered, sf_error *err) {
+    sf_series uniform = {0};
+    if (!take_uniform(raw, &uniform, err))
+        sf_signal_resample(raw, sf_signal_rate(raw), &uniform, err);
+    if (err->status == SF_OK)
+        sf_signal_filter_cfc(&uniform, cfc, filtered, err);
+    sf_series_free(&uniform);
+    return err->status;
+}
+
 /* ---- accelerometer ---- */
 
 static void pass_mount(const sf_signal_chain *chain, sf_series *s) {

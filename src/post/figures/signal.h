@@ -65,4 +65,8 @@ sf_status sf_signal_parse_coupling(const char *text, sf_signal_chain *chain, sf_
  * uniform or too far apart for `cfc`. */
 sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *filtered, sf_error *err);
 
+/* The same filter of any curve: at its own rate if its times are uniform but for their rounding, because
+ * interpolation between samples would be a filter of its own; else the curve is resampled. */
+sf_status sf_signal_filter(const sf_series *raw, double cfc, sf_series *filtered, sf_error *err);
+
 #endif
