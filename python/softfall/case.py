@@ -160,6 +160,8 @@ class Case(MutableMapping[str, Any]):
         """
         if threads is not None and (isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1):
             raise InputError(f"threads: {threads!r} is not a number from 1 on")
+        if on_step is not None and not callable(on_step):
+            raise InputError(f"on_step: {on_step!r} is no function")
         top = Path(RUNS if output is None else output).absolute()
         with _folder(top), tempfile.TemporaryDirectory(prefix=".softfall-", dir=top) as scratch:
             model = Path(scratch) / "model.h5"

@@ -33,9 +33,6 @@ class Function:
             raise InputError("a function needs one input and one output at least")
         self._known: dict[tuple[Any, ...], Drop | NumericError] = {}
 
-    def __repr__(self) -> str:
-        return f"<softfall.function of {', '.join(key for key, _ in self.inputs)}: {', '.join(self.outputs)}>"
-
     def drop(self, x: Any, values: Mapping[str, Any] | None = None) -> Drop:
         """Returns the drop at x, a number for each input; `values`: further values of the case."""
         point = np.atleast_1d(np.asarray(x, dtype=float))

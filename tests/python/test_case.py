@@ -95,6 +95,8 @@ def test_a_run_is_refused_with_the_sentence_of_the_program(case, tmp_path):
     for threads in (0, -1, 1.5, True, "2"):
         with pytest.raises(softfall.InputError, match="threads"):
             case.run(threads=threads)
+    with pytest.raises(softfall.InputError, match="on_step: 3 is no function"):
+        case.run(on_step=3)
     with pytest.raises(softfall.Error, match="cannot be written to"):
         softfall.Case("pad/case.cfg").run(output="pad/case.cfg/out")
 
@@ -122,6 +124,15 @@ def test_a_drop_that_is_there_is_not_computed_again(case, tmp_path):
     assert first.results.stat().st_mtime_ns == stamp
     case.run(output=tmp_path, force=True)
     assert first.results.stat().st_mtime_ns > stamp
+
+
+def test_names_with_blanks_and_umlauts(case, tmp_path):
+    source = tmp_path / "my päd"
+    program("new", source, "--from", "eva50-v4.5", cwd=".")
+    drop = softfall.Case(source / "case.cfg", {key: case[key] for key in (
+        "geometry.parameters.fine_spacing", "geometry.parameters.outer_spacing", "geometry.missile_parameters.element_size",
+        "pad.mesh_error_limit")}).run(output=tmp_path / "aus gang/ü")
+    assert drop.figures["hic"] == case.run().figures["hic"] and drop.report().exists()
 
 
 def test_other_values_get_another_folder(case):
