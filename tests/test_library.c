@@ -4,6 +4,7 @@
 
 #include "model_fixture.h"
 #include "softfall/softfall.h"
+#include <fcntl.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
@@ -163,6 +165,39 @@ static void curves_of_the_host_are_evaluated_and_filtered(void **state) {
     assert_true(isnan(hic) && strlen(error.text) > 10);
 }
 
+/* The record of a half sine has the figures of its curve; one that is cut in the pulse is not to be used. */
+static void a_measured_record_is_read_and_judged(void **state) {
+    (void)state;
+    static const char *const options[] = {"filter=none", "zero"}, *const wrong[] = {"fillter=600"};
+    softfall_record *record;
+    softfall_error error;
+    double hic, peak;
+    const double *time, *value;
+    char path[] = "/tmp/softfall-record-XXXXXX";
+    for (int cut = 0; cut < 2; cut++) {
+        int handle = cut ? open(path, O_WRONLY | O_TRUNC) : mkstemp(path);
+        FILE *file = fdopen(handle, "w");
+        fputs("time [s],acceleration [g]\n", file);
+        for (int i = -100; i < (cut ? 120 : 400); i++)
+            fprintf(file, "%.6f,%.9g\n", 1e-4 * i, i > 0 && i < 200 ? 100 * sin(M_PI * i / 200) : 0.);
+        fclose(file);
+        assert_int_equal(softfall_record_read(path, options, 2, &record, &error), SOFTFALL_OK);
+        assert_int_equal(softfall_record_grade(record), cut ? 2 : 0);
+        assert_non_null(strstr(softfall_record_verdict(record), cut ? "cut in the pulse" : "valid"));
+        assert_int_equal(softfall_record_curve(record, &time, &value), cut ? 220 : 500);
+        assert_int_equal(softfall_record_figure(record, "hic", &hic, &error), SOFTFALL_OK);
+        assert_int_equal(softfall_record_figure(record, "a_max_g", &peak, &error), SOFTFALL_OK);
+        if (!cut) /* closed form as above */
+            assert_true(fabs(hic / (0.02 * pow(100, 2.5)) - 0.4146) < 1e-3 && fabs(peak - 100) < 1e-9);
+        assert_int_equal(softfall_record_figure(record, "hicc", &hic, &error), SOFTFALL_INPUT);
+        softfall_record_free(record);
+    }
+    assert_int_equal(softfall_record_read(path, wrong, 1, &record, &error), SOFTFALL_INPUT);
+    assert_true(record == NULL && strstr(error.text, "no option \"fillter\""));
+    unlink(path);
+    assert_int_equal(softfall_record_read(path, NULL, 0, &record, &error), SOFTFALL_INPUT);
+}
+
 /* Steps taken one by one, from a model that was written and read, are those of the run. */
 static void a_drop_can_be_stepped_observed_and_stopped(void **state) {
     const place *p = *state;
@@ -252,6 +287,7 @@ int main(void) {
         cmocka_unit_test(warnings_go_to_the_sink_and_errors_to_the_caller),
         cmocka_unit_test(the_programs_compute_the_same_figures_bit_for_bit),
         cmocka_unit_test(curves_of_the_host_are_evaluated_and_filtered),
+        cmocka_unit_test(a_measured_record_is_read_and_judged),
         cmocka_unit_test(a_drop_can_be_stepped_observed_and_stopped),
         cmocka_unit_test(an_observer_can_stop_a_run),
         cmocka_unit_test(fields_are_those_of_the_frames),

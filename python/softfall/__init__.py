@@ -15,7 +15,10 @@ from .drop import Drop, Verdict, read_results
 from .errors import Error, InputError, Interrupted, NumericError, SoftfallWarning
 from .function import Function, function
 from .library import version
+from .rating import Rating, rate
+from .record import Record, read_record
 from .study import Fit, Table, fit_compression, sweep
 
-__all__ = ["Case", "Drop", "Error", "Fit", "Function", "InputError", "Interrupted", "NumericError", "SoftfallWarning", "Step",
-           "Table", "Verdict", "cfc", "example", "fit_compression", "function", "hic", "read_results", "sweep", "version"]
+__all__ = ["Case", "Drop", "Error", "Fit", "Function", "InputError", "Interrupted", "NumericError", "Rating",
+           "Record", "SoftfallWarning", "Step", "Table", "Verdict", "cfc", "example", "fit_compression", "function", "hic", "rate",
+           "read_record", "read_results", "sweep", "version"]

@@ -6,7 +6,9 @@ import ctypes as c
 import functools
 import locale
 import threading
-from typing import Any, Sequence
+from typing import Any, NamedTuple, Sequence
+
+import numpy as np
 
 from . import programs
 from .errors import Error, failure
@@ -28,6 +30,10 @@ def _load() -> c.CDLL:
             library.softfall_version.restype = library.softfall_revision.restype = c.c_char_p
             library.softfall_case_parameters.restype = c.c_char_p
             library.softfall_case_parameters.argtypes = library.softfall_case_free.argtypes = [c.c_void_p]
+            for text in (library.softfall_record_verdict, library.softfall_record_interpretation):
+                text.restype, text.argtypes = c.c_char_p, [c.c_void_p]
+            library.softfall_record_curve.restype = c.c_int64
+            library.softfall_record_grade.argtypes = library.softfall_record_free.argtypes = [c.c_void_p]
             return library
     raise Error(f"there is no library libsoftfall-build.so in {prefix}/lib, beside the programs of {programs.folder()}", 3)
 
@@ -81,3 +87,36 @@ def hic(time: Any, deceleration: Any, window: float) -> tuple[float, float, floa
 def cfc(time: Any, value: Any, channel_class: float, out: Any) -> None:
     """softfall_cfc: fills `out`; arrays of double of one length."""
     _call("softfall_cfc", _array(time), _array(value), c.c_int64(time.size), c.c_double(channel_class), _array(out))
+
+
+class RecordParts(NamedTuple):
+    """What the library says of a measured record."""
+
+    time: np.ndarray  # s
+    deceleration: np.ndarray  # g
+    grade: int
+    verdict: str
+    interpretation: str
+    figures: dict[str, float]
+
+
+RECORD_FIGURES = ("a_max_g", "a_max_time_ms", "hic", "hic_t1_ms", "hic_t2_ms", "hic15", "hic36", "gadd", "clip_3ms_g", "clip_3ms_cumulative_g")
+
+
+def read_record(path: str, options: Sequence[str]) -> RecordParts:
+    """softfall_record_read, and all that it has."""
+    texts = (c.c_char_p * max(1, len(options)))(*(text.encode() for text in options))
+    record, time, value = c.c_void_p(), c.POINTER(c.c_double)(), c.POINTER(c.c_double)()
+    with _one_at_a_time:
+        _call("softfall_record_read", path.encode(), texts, c.c_int(len(options)), c.byref(record))
+    try:
+        count = _load().softfall_record_curve(record, c.byref(time), c.byref(value))
+        figures, number = {}, c.c_double()
+        for key in RECORD_FIGURES:
+            _call("softfall_record_figure", record, key.encode(), c.byref(number))
+            figures[key] = number.value
+        return RecordParts(np.array(time[:count]), np.array(value[:count]), _load().softfall_record_grade(record),
+                           _load().softfall_record_verdict(record).decode(errors="replace"),
+                           _load().softfall_record_interpretation(record).decode(errors="replace"), figures)
+    finally:
+        _load().softfall_record_free(record)
